@@ -1639,7 +1639,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 747 operations (231 additions, 501 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 622 intermediates.
+    /// 724 operations (231 additions, 469 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 599 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1650,434 +1650,423 @@ impl Delta {
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.2304 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t9 = pose[1] * pose[1] + -0.3136;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.0576;
-        let t13 = 0.48 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
+        let t2 = 0.48 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t7 = pose[1] * pose[1] + -0.3136;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.0576;
+        let t11 = 0.48 * pose[2];
+        let t12 = 0.2304 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.0576) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t23 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t8 + -0.0576) / t23;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let s_cross_leg1 = t15 / t23;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 4.166666666666667 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t33 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t33;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t43 = 0.24 * c_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t48 = pose[1] * grod_vy_leg1;
-        let t49 = t48 * twist[1];
-        let rate_arm_leg1 = t35
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t49);
-        let t52 = rate_arm_leg1 * rate_arm_leg1;
-        let t54 = 0.56 * c_rod_leg1;
-        let t59 = t43 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t59;
-        let t61 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t45 = pose[1] * grod_vy_leg1;
+        let t46 = t45 * twist[1];
+        let t47 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t46;
+        let rate_arm_leg1 = t33 * t47;
+        let t49 = 0.24 * c_cross_leg1;
+        let t50 = t49 * rate_arm_leg1;
+        let t52 = 0.56 * c_rod_leg1;
+        let t56 = t50 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t56;
+        let t58 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t63 = rate_rod_leg1 * rate_rod_leg1;
-        let t69 = acceleration[1] + pose[1] * t63;
-        let t71 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t43 * t52 + t54 * (t61 + t63) + t48 * t69;
-        let rate_dot_arm_leg1 = t35 * t71;
-        let t73 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t35 * t48;
-        let t75 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
-        let t77 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t78 = 9.81 * c_arm_leg1;
-        let t82 = 9.81 * minus_s_arm_leg1;
-        let t92 = t34 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t92;
-        let t95 = rate_rod_leg1 * (1.7857142857142858 * t59);
+        let t60 = rate_rod_leg1 * rate_rod_leg1;
+        let t61 = t58 + t60;
+        let t66 = acceleration[1] + t46 * rate_rod_leg1;
+        let rate_dot_arm_leg1 = t33
+            * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+                + rate_arm_leg1 * t50 + t52 * t61 + t45 * t66);
+        let t70 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t33 * t45;
+        let t72 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t33;
+        let t74 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t75 = 9.81 * c_arm_leg1;
+        let t79 = 9.81 * minus_s_arm_leg1;
+        let t89 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t89;
+        let t92 = rate_rod_leg1 * (1.7857142857142858 * t56);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t97 = 0.24 * t52;
-        let t99 = 0.24 * rate_dot_arm_leg1;
-        let t105 = s_cross_leg1 * t97 + c_cross_leg1 * t99
-            + s_armcross_leg1 * acceleration[0] + c_armcross_leg1 * acceleration[2];
-        let t106 = t49 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t105 + t106 + t106);
-        let t110 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t112 = t95 + t110 + t95;
-        let t113 = c_rod_leg1 * t112;
-        let t114 = t48 * t113;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
-        let t119 = t61 * s_rod_leg1;
-        let t120 = 1.7857142857142858 * t119;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t92;
-        let t124 = t114 - minus_rate_dot_cross_leg1;
-        let t126 = t48 * t124 - t113;
-        let t128 = pose[1] * t120;
-        let t129 = t63 - t128;
-        let t130 = t61 + t129;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t69;
-        let t140 = s_rod_leg1 * (t54 * t120 + rate_dot_rod_leg1);
-        let t142 = t140 + c_rod_leg1 * t129;
-        let t152 = 1.7857142857142858 * acceleration[1];
-        let t163 = s_cross_leg1 * 0.24;
-        let t166 = 0.42857142857142855 * (c_cross_leg1 * t105)
-            + 0.8928571428571429 * t16 * t130 + t140 * t163;
-        let t168 = t99 - t78;
-        let t170 = t82 - t97;
-        let t172 = c_cross_leg1 * t168 - s_cross_leg1 * t170;
-        let t173 = c_rod_leg1 * t172;
-        let t177 = 0.24 * t168;
-        let t178 = garm_vy_leg1 * t177;
-        let t187 = t43 * t112 - t163 * (t152 - t119);
-        let t189 = s_rod_leg1 * t172;
-        let t197 = c_cross_leg1 * t170 + s_cross_leg1 * t168;
-        let t205 = t43 * t61 - minus_rate_dot_cross_leg1 * t163;
-        let t217 = t0 + 0.025;
-        let t218 = t217 * t217;
-        let t220 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t224 = t218 + t220 * t220 + t3 + -0.3136;
-        let t227 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t229 = 0.8660254037844387 * t217 - 0.5 * t227;
-        let t230 = pose[1] + t229;
-        let t232 = 0.3136 - t230 * t230;
-        let t234 = 0.2304 * (t224 + t232);
-        let t235 = t224 + 0.0576;
-        let t237 = t234 - t235 * t235;
-        ::overact::guard::reach(t237, "leg2")?;
-        let t238 = ::overact::math::sqrt(t237);
-        let t239 = 3.188775510204082 * t232;
-        ::overact::guard::reach(t239, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t239);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t241 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t238 / t241;
+        let t94 = 0.24 * rate_dot_arm_leg1;
+        let t99 = t47 * rate_arm_leg1;
+        let t100 = t46 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t94 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t99 + t100 + t100);
+        let t106 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t108 = t92 + t106 + t92;
+        let t109 = c_rod_leg1 * t108;
+        let t110 = t45 * t109;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t49 * garm_vy_leg1);
+        let t115 = t58 * s_rod_leg1;
+        let t116 = 1.7857142857142858 * t115;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t89;
+        let t120 = t110 - minus_rate_dot_cross_leg1;
+        let t122 = t45 * t120 - t109;
+        let t124 = t52 * t116;
+        let t125 = t45 * t124;
+        let t126 = t61 - t125;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t66;
+        let t135 = s_rod_leg1 * (t124 + rate_dot_rod_leg1);
+        let t138 = t135 + c_rod_leg1 * (t60 - t125);
+        let t148 = 1.7857142857142858 * acceleration[1];
+        let t157 = 0.8928571428571429 * t15;
+        let t159 = t157 / c_rod_leg1;
+        let t162 = t49 * (t120 / c_rod_leg1) - (t157 * t126 + t135 * t159);
+        let t164 = t94 - t75;
+        let t167 = t79 - t99 / s_cross_leg1;
+        let t169 = c_cross_leg1 * t164 - s_cross_leg1 * t167;
+        let t170 = c_rod_leg1 * t169;
+        let t174 = 0.24 * t164;
+        let t175 = garm_vy_leg1 * t174;
+        let t184 = t49 * t108 - t159 * (t148 - t115);
+        let t186 = s_rod_leg1 * t169;
+        let t194 = c_cross_leg1 * t167 + s_cross_leg1 * t164;
+        let t202 = t49 * t58 - minus_rate_dot_cross_leg1 * t159;
+        let t214 = t0 + 0.025;
+        let t215 = t214 * t214;
+        let t217 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t220 = t215 + t217 * t217 + t4;
+        let t223 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t225 = 0.8660254037844387 * t214 - 0.5 * t223;
+        let t226 = pose[1] + t225;
+        let t227 = t226 * t226;
+        let t228 = t220 - t227;
+        let t229 = 0.2304 * t228;
+        let t230 = t220 - 0.3136;
+        let t231 = t230 + 0.0576;
+        let t233 = t229 - t231 * t231;
+        ::overact::guard::reach(t233, "leg2")?;
+        let t234 = ::overact::math::sqrt(t233);
+        let t235 = t228 - t230;
+        let t236 = 3.188775510204082 * t235;
+        ::overact::guard::reach(t236, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t236);
+        let t238 = 0.2688 * c_rod_leg2;
+        let t239 = 0.2688 / t238;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t239;
+        let t241 = t234 * minus_grod_vy_leg2;
+        let s_cross_leg2 = 4.166666666666667 * t241;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t243 = 1.0 / s_cross_leg2;
-        let t244 = 4.166666666666667 * t243;
-        let t245 = 1.0 / c_rod_leg2;
-        let t246 = 1.7857142857142858 * t245;
-        let t247 = t230 * t246;
-        let t249 = 1.0 / t234;
-        let t252 = 0.5 * t217;
-        let t254 = 0.48 * (0.8660254037844387 * t220 - t252);
-        let minus_s_arm_leg2 = t249 * (t13 * t235 + t254 * t238);
-        let t258 = t243 * minus_s_arm_leg2;
-        let c_arm_leg2 = t249 * (t254 * t235 - t13 * t238);
-        let c_cross_leg2 = (-0.0576 + t224) / t241;
+        let t243 = 4.166666666666667 / s_cross_leg2;
+        let t244 = 1.7857142857142858 * t239;
+        let t245 = t226 * t244;
+        let t249 = 0.5 * t214;
+        let t251 = 0.48 * (0.8660254037844387 * t217 - t249);
+        let minus_s_arm_leg2 = (t11 * t231 + t251 * t234) / t229;
+        let t255 = minus_s_arm_leg2 / s_cross_leg2;
+        let c_cross_leg2 = (-0.0576 + t230) / t238;
+        let t258 = 0.24 * c_cross_leg2;
+        let c_arm_leg2 = (t251 * t231 - t11 * t234) / t229;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t268 = c_cross_leg2 * t243;
-        let c_armcross_leg2 = t258 + s_armcross_leg2 * t268;
-        let t271 = 0.5 * c_armcross_leg2;
-        let t272 = 0.8660254037844387 * t247 - t271;
-        let garm_vx_leg2 = t244 * t272;
-        let t274 = 0.8660254037844387 * c_armcross_leg2;
-        let t280 = 0.24 * c_cross_leg2;
-        let t286 = 0.8660254037844387 * twist[0];
-        let t287 = 0.5 * twist[1];
-        let t288 = t286 + t287;
-        let t289 = t247 * t288;
-        let rate_arm_leg2 = t244
-            * (t274 * twist[1] - t271 * twist[0] - s_armcross_leg2 * twist[2] + t289);
-        let t292 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t246 * t288;
-        let t296 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t297 = 0.5 * s_armcross_leg2;
-        let t299 = 0.8660254037844387 * s_armcross_leg2;
-        let t305 = t297 * twist[0] - t299 * twist[1] - c_armcross_leg2 * twist[2]
-            - t280 * rate_arm_leg2;
-        let rate_cross_leg2 = t246 * t305;
-        let t307 = rate_cross_leg2 * rate_cross_leg2;
-        let t311 = t274 * acceleration[1] - t271 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t280 * t292
-            + 0.56 * c_rod_leg2 * (t296 + t307);
-        let t312 = 0.8660254037844387 * acceleration[0];
-        let t313 = 0.5 * acceleration[1];
-        let t314 = t312 + t313;
-        let t316 = t314 + t230 * t296;
-        let rate_dot_arm_leg2 = t244 * (t311 + t247 * t316);
-        let t320 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t244 * (t274 + 0.5 * t247);
-        let t324 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t244;
-        let t326 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t327 = 9.81 * c_arm_leg2;
-        let t331 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t246 * (t297 - t272 * t268);
-        let t345 = minus_rate_rod_leg2 * (1.7857142857142858 * t305);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t230;
-        let t352 = 0.24 * t292;
-        let t354 = t289 * rate_cross_leg2;
-        let t358 = 0.24 * rate_dot_arm_leg2;
-        let t360 = t297 * acceleration[0] - t299 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t352 - (t354 + t354))
-            - c_cross_leg2 * t358;
-        let rate_dot_cross_leg2 = t246 * t360;
-        let t362 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t364 = t345 + t362 + t345;
-        let t365 = c_rod_leg2 * t364;
-        let t366 = t247 * t365;
-        let t368 = t230 * rate_cross_leg2;
-        let t369 = rate_cross_leg2 * t368;
-        let t370 = 2.76156059880242 * t369;
-        let minus_gcross_vy_leg2 = t246 * (t299 + t280 * garm_vy_leg2);
-        let t376 = 1.594387755102041 * t369;
-        let minus_gcross_vz_leg2 = t246 * t258;
-        let t380 = rate_dot_cross_leg2 - t366;
-        let t382 = t247 * t380 + t365;
-        let t384 = t368 * t368;
-        let t385 = t305 * t305;
-        let t387 = t245 * (t384 - t385);
-        let t394 = 3.188775510204082 * t385;
-        let t395 = t247 * t394;
-        let minus_rate_dot_rod_leg2 = t246 * t316;
-        let t397 = t395 + minus_rate_dot_rod_leg2;
-        let t399 = 3.188775510204082 * t384;
-        let t402 = minus_s_rod_leg2 * t397 + c_rod_leg2 * (t296 - t399);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t245;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t245;
-        let t417 = 1.7857142857142858 * t314;
-        let t427 = t358 - t327;
-        let t429 = t331 - t352;
-        let t431 = c_cross_leg2 * t427 - s_cross_leg2 * t429;
-        let t432 = c_rod_leg2 * t431;
-        let t434 = 0.8928571428571429 * t238;
-        let t437 = t247 * t434;
-        let t442 = t434 * (t394 + t296) + t437 * t397 - t280 * (t245 * t380);
-        let t447 = c_cross_leg2 * t429 + s_cross_leg2 * t427;
-        let t448 = minus_s_rod_leg2 * t447;
-        let t465 = t434 * (minus_rate_dot_rod_leg2 - t395) - t437 * (t399 + t296)
-            + t280 * t364;
-        let t467 = minus_s_rod_leg2 * t431;
-        let t483 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t280 * t307;
-        let t493 = 0.24 * t427;
-        let t500 = t218 + t227 * t227 + t3 + -0.3136;
-        let t502 = 0.3136 - t229 * t229;
-        let t504 = 0.2304 * (t500 + t502);
-        let t505 = t500 + 0.0576;
-        let t507 = t504 - t505 * t505;
-        ::overact::guard::reach(t507, "leg3")?;
-        let t508 = ::overact::math::sqrt(t507);
-        let t509 = 3.188775510204082 * t502;
-        ::overact::guard::reach(t509, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t509);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t511 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t508 / t511;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t243;
+        let c_armcross_leg2 = t255 + t258 * minus_garm_vz_leg2;
+        let t269 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t243 * (0.8660254037844387 * t245 - t269);
+        let t272 = 0.8660254037844387 * c_armcross_leg2;
+        let t283 = 0.8660254037844387 * twist[0];
+        let t284 = 0.5 * twist[1];
+        let t285 = t283 + t284;
+        let t286 = t245 * t285;
+        let t287 = t272 * twist[1] - t269 * twist[0] - s_armcross_leg2 * twist[2] + t286;
+        let rate_arm_leg2 = t243 * t287;
+        let t289 = t258 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t244 * t285;
+        let t293 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t294 = 0.5 * s_armcross_leg2;
+        let t296 = 0.8660254037844387 * s_armcross_leg2;
+        let t301 = t294 * twist[0] - t296 * twist[1] - c_armcross_leg2 * twist[2] - t289;
+        let rate_cross_leg2 = t244 * t301;
+        let t303 = rate_cross_leg2 * rate_cross_leg2;
+        let t304 = t293 + t303;
+        let t307 = t272 * acceleration[1] - t269 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t289
+            + 0.56 * c_rod_leg2 * t304;
+        let t308 = 0.8660254037844387 * acceleration[0];
+        let t309 = 0.5 * acceleration[1];
+        let t310 = t308 + t309;
+        let t312 = t310 + t286 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t243 * (t307 + t245 * t312);
+        let t316 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t243 * (t272 + 0.5 * t245);
+        let t320 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let t321 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t322 = 9.81 * c_arm_leg2;
+        let t326 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t244 * (t294 - garm_vx_leg2 * t258);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t226;
+        let t341 = minus_rate_rod_leg2 * (1.7857142857142858 * t301);
+        let t347 = t287 * rate_arm_leg2;
+        let t348 = t286 * rate_cross_leg2;
+        let t352 = 0.24 * rate_dot_arm_leg2;
+        let t354 = t294 * acceleration[0] - t296 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t347 - (t348 + t348))
+            - c_cross_leg2 * t352;
+        let rate_dot_cross_leg2 = t244 * t354;
+        let t356 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t358 = t341 + t356 + t341;
+        let t359 = minus_s_rod_leg2 * t358;
+        let t361 = t236 * t303;
+        let t362 = t245 * t361;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t239;
+        let t364 = t362 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t244 * (t296 + t258 * garm_vy_leg2);
+        let t370 = t362 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t244 * t255;
+        let t374 = rate_dot_cross_leg2 - t359;
+        let t377 = t245 * t374 + c_rod_leg2 * t358;
+        let t381 = t239 * (t303 * (t227 - t235));
+        let minus_rate_dot_rod_leg2 = t244 * t312;
+        let t389 = t362 + minus_rate_dot_rod_leg2;
+        let t391 = t361 + t293;
+        let t394 = minus_s_rod_leg2 * t389 + c_rod_leg2 * (t391 - t303);
+        let t407 = 1.7857142857142858 * t310;
+        let t417 = t352 - t322;
+        let t420 = t326 - t347 / s_cross_leg2;
+        let t423 = c_rod_leg2 * (c_cross_leg2 * t417 - s_cross_leg2 * t420);
+        let t424 = gcross_vx_leg2 * t423;
+        let t425 = 0.8928571428571429 * t234;
+        let t427 = t245 * t425;
+        let t432 = t425 * t391 + t427 * t389 - t258 * (t239 * t374);
+        let t437 = c_cross_leg2 * t420 + s_cross_leg2 * t417;
+        let t438 = 1.5464739353293548 * t437;
+        let t442 = minus_gcross_vy_leg2 * t423;
+        let t444 = 0.8928571428571429 * t437;
+        let t448 = minus_gcross_vz_leg2 * t423;
+        let t456 = t425 * (minus_rate_dot_rod_leg2 - t362) - t427 * (t304 - t361)
+            + t258 * t358;
+        let t470 = rate_dot_cross_leg2 * t241 + t258 * t303;
+        let t480 = 0.24 * t417;
+        let t486 = t215 + t223 * t223 + t4;
+        let t487 = t225 * t225;
+        let t488 = t486 - t487;
+        let t489 = t486 - 0.3136;
+        let t490 = t488 - t489;
+        let t491 = 3.188775510204082 * t490;
+        ::overact::guard::reach(t491, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t491);
+        let t493 = 0.2688 * c_rod_leg3;
+        let t494 = 0.2688 / t493;
+        let t495 = 0.2304 * t488;
+        let t496 = t489 + 0.0576;
+        let t498 = t495 - t496 * t496;
+        ::overact::guard::reach(t498, "leg3")?;
+        let t499 = ::overact::math::sqrt(t498);
+        let t500 = 0.8928571428571429 * t499;
+        let t501 = t494 * t500;
+        let s_cross_leg3 = 4.166666666666667 * t501;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t513 = 1.0 / s_cross_leg3;
-        let t514 = 4.166666666666667 * t513;
-        let t515 = 1.0 / t504;
-        let t518 = 0.48 * (t252 + 0.8660254037844387 * t227);
-        let s_arm_leg3 = t515 * (t518 * t508 - t13 * t505);
-        let t523 = t513 * s_arm_leg3;
-        let c_cross_leg3 = (-0.0576 + t500) / t511;
-        let minus_c_arm_leg3 = t515 * (t518 * t505 + t13 * t508);
+        let t503 = 4.166666666666667 / s_cross_leg3;
+        let t506 = 0.48 * (t249 + 0.8660254037844387 * t223);
+        let s_arm_leg3 = (t506 * t499 - t11 * t496) / t495;
+        let t511 = s_arm_leg3 / s_cross_leg3;
+        let c_cross_leg3 = (-0.0576 + t489) / t493;
+        let minus_c_arm_leg3 = (t506 * t496 + t11 * t499) / t495;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t533 = c_cross_leg3 * t513;
-        let minus_c_armcross_leg3 = t523 - s_armcross_leg3 * t533;
-        let t536 = 0.5 * minus_c_armcross_leg3;
-        let t537 = 1.0 / c_rod_leg3;
-        let t538 = 1.7857142857142858 * t537;
-        let t539 = t229 * t538;
-        let t541 = t536 + 0.8660254037844387 * t539;
-        let garm_vx_leg3 = t514 * t541;
-        let t544 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t549 = 0.24 * c_cross_leg3;
-        let t555 = t286 - t287;
-        let t556 = t539 * t555;
-        let rate_arm_leg3 = t514
-            * (t536 * twist[0] + t544 * twist[1] - s_armcross_leg3 * twist[2] + t556);
-        let t559 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t538 * t555;
-        let t563 = rate_rod_leg3 * rate_rod_leg3;
-        let t564 = 0.5 * s_armcross_leg3;
-        let t566 = 0.8660254037844387 * s_armcross_leg3;
-        let t572 = t564 * twist[0] + t566 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t549 * rate_arm_leg3;
-        let rate_cross_leg3 = t538 * t572;
-        let t574 = rate_cross_leg3 * rate_cross_leg3;
-        let t578 = t536 * acceleration[0] + t544 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t549 * t559
-            + 0.56 * c_rod_leg3 * (t563 + t574);
-        let t579 = t312 - t313;
-        let t581 = t579 + t229 * t563;
-        let rate_dot_arm_leg3 = t514 * (t578 + t539 * t581);
-        let t585 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t514 * (t544 - 0.5 * t539);
-        let t589 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t514;
-        let t591 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t592 = 9.81 * minus_c_arm_leg3;
-        let t596 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t538 * (t564 - t541 * t533);
-        let t610 = rate_rod_leg3 * (1.7857142857142858 * t572);
-        let s_rod_leg3 = 1.7857142857142858 * t229;
-        let t617 = 0.24 * t559;
-        let t619 = t556 * rate_cross_leg3;
-        let t623 = 0.24 * rate_dot_arm_leg3;
-        let t625 = t564 * acceleration[0] + t566 * acceleration[1]
-            + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t617 - (t619 + t619)) - c_cross_leg3 * t623;
-        let rate_dot_cross_leg3 = t538 * t625;
-        let t627 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t629 = t610 + t627 + t610;
-        let t630 = c_rod_leg3 * t629;
-        let t631 = t539 * t630;
-        let t633 = t229 * rate_cross_leg3;
-        let t634 = rate_cross_leg3 * t633;
-        let t635 = 2.76156059880242 * t634;
-        let gcross_vy_leg3 = t538 * (t566 - t549 * garm_vy_leg3);
-        let t641 = 1.594387755102041 * t634;
-        let gcross_vz_leg3 = t538 * t523;
-        let t645 = rate_dot_cross_leg3 - t631;
-        let t647 = t630 + t539 * t645;
-        let t649 = t633 * t633;
-        let t650 = t572 * t572;
-        let t652 = t537 * (t649 - t650);
-        let t659 = 3.188775510204082 * t650;
-        let t660 = t539 * t659;
-        let rate_dot_rod_leg3 = t538 * t581;
-        let t662 = t660 + rate_dot_rod_leg3;
-        let t664 = 3.188775510204082 * t649;
-        let t667 = s_rod_leg3 * t662 + c_rod_leg3 * (t563 - t664);
-        let grod_vx_leg3 = 1.5464739353293548 * t537;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t537;
-        let t682 = 1.7857142857142858 * t579;
-        let t692 = t596 + t617;
-        let t694 = t592 + t623;
-        let t696 = s_cross_leg3 * t692 + c_cross_leg3 * t694;
-        let t697 = c_rod_leg3 * t696;
-        let t699 = 0.8928571428571429 * t508;
-        let t702 = t539 * t699;
-        let t707 = t699 * (t659 + t563) + t702 * t662 - t549 * (t537 * t645);
-        let t712 = s_cross_leg3 * t694 - c_cross_leg3 * t692;
-        let t713 = s_rod_leg3 * t712;
-        let t730 = t699 * (t660 - rate_dot_rod_leg3) + t702 * (t664 + t563)
-            - t549 * t629;
-        let t732 = s_rod_leg3 * t696;
-        let t748 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t549 * t574;
-        let t758 = 0.24 * t694;
+        let t521 = c_cross_leg3 / s_cross_leg3;
+        let minus_c_armcross_leg3 = t511 - s_armcross_leg3 * t521;
+        let t524 = 0.5 * minus_c_armcross_leg3;
+        let t525 = 1.7857142857142858 * t494;
+        let t526 = t225 * t525;
+        let t528 = t524 + 0.8660254037844387 * t526;
+        let garm_vx_leg3 = t503 * t528;
+        let t531 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t541 = t283 - t284;
+        let t542 = t526 * t541;
+        let t543 = t524 * twist[0] + t531 * twist[1] - s_armcross_leg3 * twist[2] + t542;
+        let rate_arm_leg3 = t503 * t543;
+        let t545 = 0.24 * c_cross_leg3;
+        let t546 = t545 * rate_arm_leg3;
+        let rate_rod_leg3 = t525 * t541;
+        let t550 = rate_rod_leg3 * rate_rod_leg3;
+        let t551 = 0.5 * s_armcross_leg3;
+        let t553 = 0.8660254037844387 * s_armcross_leg3;
+        let t558 = t551 * twist[0] + t553 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t546;
+        let rate_cross_leg3 = t525 * t558;
+        let t560 = rate_cross_leg3 * rate_cross_leg3;
+        let t561 = t550 + t560;
+        let t564 = t524 * acceleration[0] + t531 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + rate_arm_leg3 * t546
+            + 0.56 * c_rod_leg3 * t561;
+        let t565 = t308 - t309;
+        let t567 = t565 + t225 * t550;
+        let t569 = t564 + t526 * t567;
+        let rate_dot_arm_leg3 = t503 * t569;
+        let t571 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t503 * (t531 - 0.5 * t526);
+        let t575 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t503;
+        let t577 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t578 = 9.81 * minus_c_arm_leg3;
+        let t582 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t525 * (t551 - t528 * t521);
+        let t595 = 1.7857142857142858 * t558;
+        let t596 = rate_rod_leg3 * t595;
+        let s_rod_leg3 = 1.7857142857142858 * t225;
+        let t603 = t543 * rate_arm_leg3;
+        let t604 = t542 * rate_cross_leg3;
+        let t609 = t551 * acceleration[0] + t553 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2] - (t603 - (t604 + t604))
+            - t521 * t569;
+        let rate_dot_cross_leg3 = t525 * t609;
+        let t611 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t613 = t596 + t611 + t596;
+        let t614 = c_rod_leg3 * t613;
+        let t615 = t526 * t614;
+        let t617 = t595 * t595;
+        let t618 = t526 * t617;
+        let grod_vx_leg3 = 1.5464739353293548 * t494;
+        let t620 = t618 * grod_vx_leg3;
+        let gcross_vy_leg3 = t525 * (t553 - t545 * garm_vy_leg3);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t494;
+        let t627 = t618 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t525 * t511;
+        let t631 = rate_dot_cross_leg3 - t615;
+        let t633 = t614 + t526 * t631;
+        let t637 = t494 * (t560 * (t487 - t490));
+        let rate_dot_rod_leg3 = t525 * t567;
+        let t645 = t618 + rate_dot_rod_leg3;
+        let t647 = t617 + t550;
+        let t650 = s_rod_leg3 * t645 + c_rod_leg3 * (t647 - t560);
+        let t663 = 1.7857142857142858 * t565;
+        let t674 = t603 + s_cross_leg3 * t582;
+        let t676 = t578 + 0.24 * rate_dot_arm_leg3;
+        let t679 = c_rod_leg3 * (t674 + c_cross_leg3 * t676);
+        let t680 = gcross_vx_leg3 * t679;
+        let t682 = s_rod_leg3 * t501;
+        let t687 = t500 * t647 + t682 * t645 - t545 * (t494 * t631);
+        let t692 = s_cross_leg3 * t676 - t521 * t674;
+        let t693 = 1.5464739353293548 * t692;
+        let t696 = gcross_vy_leg3 * t679;
+        let t699 = 0.8928571428571429 * t692;
+        let t703 = gcross_vz_leg3 * t679;
+        let t711 = t500 * (t618 - rate_dot_rod_leg3) + t682 * (t561 - t617)
+            - t545 * t613;
+        let t725 = rate_dot_cross_leg3 * t501 + t545 * t560;
+        let t735 = 0.24 * t676;
         Ok([
             [
-                t73, -(garm_vx_leg1 * t78), -(garm_vx_leg1 * t82), t73,
+                t70, -(garm_vx_leg1 * t75), -(garm_vx_leg1 * t79), t70,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t114, -(minus_gcross_vx_leg1 * t126),
-                -(minus_gcross_vx_leg1 * t142), -(minus_gcross_vx_leg1 * t124),
-                -(minus_gcross_vx_leg1 * t152), 0.0,
-                -(garm_vx_leg1 * t166 + minus_gcross_vx_leg1 * t173),
-                garm_vx_leg1 * t187 + minus_gcross_vx_leg1 * t189,
-                garm_vx_leg1 * t205 - minus_gcross_vx_leg1 * t197, garm_vx_leg1 * t177, t320,
-                -(garm_vx_leg2 * t327), -(garm_vx_leg2 * t331), t320, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1, minus_gcross_vx_leg1 * t110, -(minus_gcross_vx_leg1 * t122),
+                -(minus_gcross_vx_leg1 * t138), -(minus_gcross_vx_leg1 * t120),
+                -(minus_gcross_vx_leg1 * t148), 0.0,
+                garm_vx_leg1 * t162 - minus_gcross_vx_leg1 * t170,
+                garm_vx_leg1 * t184 + minus_gcross_vx_leg1 * t186,
+                garm_vx_leg1 * t202 - minus_gcross_vx_leg1 * t194, garm_vx_leg1 * t174, t316,
+                -(garm_vx_leg2 * t322), -(garm_vx_leg2 * t326), t316, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                gcross_vx_leg2 * t366 - t370, -(gcross_vx_leg2 * t382 + 4.9313582121471775 * t387),
-                gcross_vx_leg2 * t402 + minus_grod_vx_leg2 * t362, gcross_vx_leg2 * t380 + t370,
-                -(gcross_vx_leg2 * t417 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg2 * t359 - t364, -(gcross_vx_leg2 * t377 + 4.9313582121471775 * t381),
+                gcross_vx_leg2 * t394 + minus_grod_vx_leg2 * t356, gcross_vx_leg2 * t374 + t364,
+                -(gcross_vx_leg2 * t407 + 1.5464739353293548 * rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                gcross_vx_leg2 * t432 - garm_vx_leg2 * t442 - minus_grod_vx_leg2 * t448,
-                garm_vx_leg2 * t465 + gcross_vx_leg2 * t467 + 1.5464739353293548 * t447,
-                garm_vx_leg2 * t483 + gcross_vx_leg2 * t447, garm_vx_leg2 * t493, t585,
-                garm_vx_leg3 * t592, garm_vx_leg3 * t596, t585, garm_vx_leg3 * rate_arm_leg3,
+                t424 - garm_vx_leg2 * t432 - t245 * t438, garm_vx_leg2 * t456 + t245 * t424 + t438,
+                garm_vx_leg2 * t470 + gcross_vx_leg2 * t437, garm_vx_leg2 * t480, t571,
+                garm_vx_leg3 * t578, garm_vx_leg3 * t582, t571, garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg3,
-                gcross_vx_leg3 * t631 - t635, gcross_vx_leg3 * t647 + 4.9313582121471775 * t652,
-                gcross_vx_leg3 * t667 + grod_vx_leg3 * t627, gcross_vx_leg3 * t645 + t635,
-                gcross_vx_leg3 * t682 + 1.5464739353293548 * rate_dot_cross_leg3,
-                grod_vx_leg3 * rate_dot_rod_leg3,
-                gcross_vx_leg3 * t697 - garm_vx_leg3 * t707 - grod_vx_leg3 * t713,
-                garm_vx_leg3 * t730 - gcross_vx_leg3 * t732 - 1.5464739353293548 * t712,
-                garm_vx_leg3 * t748 + gcross_vx_leg3 * t712, garm_vx_leg3 * t758, acceleration[0],
+                gcross_vx_leg3 * t615 - t620, gcross_vx_leg3 * t633 + 4.9313582121471775 * t637,
+                gcross_vx_leg3 * t650 + grod_vx_leg3 * t611, gcross_vx_leg3 * t631 + t620,
+                gcross_vx_leg3 * t663 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3, t680 - garm_vx_leg3 * t687 - t526 * t693,
+                garm_vx_leg3 * t711 - t526 * t680 - t693,
+                garm_vx_leg3 * t725 + gcross_vx_leg3 * t692, garm_vx_leg3 * t735, acceleration[0],
             ],
             [
-                t75, -(garm_vy_leg1 * t78), -(garm_vy_leg1 * t82), t75,
+                t72, -(garm_vy_leg1 * t75), -(garm_vy_leg1 * t79), t72,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t114 - t120,
-                -(grod_vy_leg1 * (t130 - (t128 + t63)) + minus_gcross_vy_leg1 * t126),
-                -(minus_gcross_vy_leg1 * t142 + grod_vy_leg1 * t110),
-                t120 - minus_gcross_vy_leg1 * t124,
-                -(minus_gcross_vy_leg1 * t152
+                garm_vy_leg1, minus_gcross_vy_leg1 * t110 - t116,
+                -(grod_vy_leg1 * (t126 - (t125 + t60)) + minus_gcross_vy_leg1 * t122),
+                -(minus_gcross_vy_leg1 * t138 + grod_vy_leg1 * t106),
+                t116 - minus_gcross_vy_leg1 * t120,
+                -(minus_gcross_vy_leg1 * t148
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t166 + 1.7857142857142858 * t178),
-                garm_vy_leg1 * t187 + minus_gcross_vy_leg1 * t189
-                    - 1.7857142857142858 * t197,
-                garm_vy_leg1 * t205 - minus_gcross_vy_leg1 * t197,
-                t178,
-                t324,
-                -(garm_vy_leg2 * t327),
-                -(garm_vy_leg2 * t331),
-                t324,
+                garm_vy_leg1 * t162 - 1.7857142857142858 * t175,
+                garm_vy_leg1 * t184 + minus_gcross_vy_leg1 * t186
+                    - 1.7857142857142858 * t194,
+                garm_vy_leg1 * t202 - minus_gcross_vy_leg1 * t194,
+                t175,
+                t320,
+                -(garm_vy_leg2 * t322),
+                -(garm_vy_leg2 * t326),
+                t320,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t366 + t376),
-                -(2.8471209912536444 * t387 - minus_gcross_vy_leg2 * t382),
-                minus_grod_vy_leg2 * t362 - minus_gcross_vy_leg2 * t402,
-                t376 - minus_gcross_vy_leg2 * t380,
-                minus_gcross_vy_leg2 * t417 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -(minus_gcross_vy_leg2 * t359 + t370),
+                -(2.8471209912536444 * t381 - minus_gcross_vy_leg2 * t377),
+                minus_grod_vy_leg2 * t356 - minus_gcross_vy_leg2 * t394,
+                t370 - minus_gcross_vy_leg2 * t374,
+                minus_gcross_vy_leg2 * t407 - 0.8928571428571429 * rate_dot_cross_leg2,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(garm_vy_leg2 * t442 + minus_gcross_vy_leg2 * t432
-                    + minus_grod_vy_leg2 * t448),
-                garm_vy_leg2 * t465 - minus_gcross_vy_leg2 * t467
-                    + 0.8928571428571429 * t447,
-                garm_vy_leg2 * t483 - minus_gcross_vy_leg2 * t447,
-                garm_vy_leg2 * t493,
-                t589,
-                garm_vy_leg3 * t592,
-                garm_vy_leg3 * t596,
-                t589,
+                -(garm_vy_leg2 * t432 + t442 + t245 * t444),
+                garm_vy_leg2 * t456 - t245 * t442 + t444,
+                garm_vy_leg2 * t470 - minus_gcross_vy_leg2 * t437,
+                garm_vy_leg2 * t480,
+                t575,
+                garm_vy_leg3 * t578,
+                garm_vy_leg3 * t582,
+                t575,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t631 + t641,
-                gcross_vy_leg3 * t647 - 2.8471209912536444 * t652,
-                gcross_vy_leg3 * t667 - minus_grod_vy_leg3 * t627,
-                gcross_vy_leg3 * t645 - t641,
-                gcross_vy_leg3 * t682 - 0.8928571428571429 * rate_dot_cross_leg3,
+                gcross_vy_leg3 * t615 + t627,
+                gcross_vy_leg3 * t633 - 2.8471209912536444 * t637,
+                gcross_vy_leg3 * t650 - minus_grod_vy_leg3 * t611,
+                gcross_vy_leg3 * t631 - t627,
+                gcross_vy_leg3 * t663 - 0.8928571428571429 * rate_dot_cross_leg3,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                gcross_vy_leg3 * t697 - garm_vy_leg3 * t707 + minus_grod_vy_leg3 * t713,
-                garm_vy_leg3 * t730 - gcross_vy_leg3 * t732 + 0.8928571428571429 * t712,
-                garm_vy_leg3 * t748 + gcross_vy_leg3 * t712,
-                garm_vy_leg3 * t758,
+                t696 - garm_vy_leg3 * t687 + t526 * t699,
+                garm_vy_leg3 * t711 - t526 * t696 + t699,
+                garm_vy_leg3 * t725 + gcross_vy_leg3 * t692,
+                garm_vy_leg3 * t735,
                 acceleration[1],
             ],
             [
-                -t77, minus_garm_vz_leg1 * t78, minus_garm_vz_leg1 * t82, -t77,
+                -t74, minus_garm_vz_leg1 * t75, minus_garm_vz_leg1 * t79, -t74,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t114, -(minus_gcross_vz_leg1 * t126),
-                -(minus_gcross_vz_leg1 * t142), -(minus_gcross_vz_leg1 * t124),
-                -(minus_gcross_vz_leg1 * t152), 0.0,
-                -(minus_gcross_vz_leg1 * t173 - minus_garm_vz_leg1 * t166),
-                minus_gcross_vz_leg1 * t189 - minus_garm_vz_leg1 * t187,
-                -(minus_garm_vz_leg1 * t205 + minus_gcross_vz_leg1 * t197),
-                -(minus_garm_vz_leg1 * t177), -t326, minus_garm_vz_leg2 * t327,
-                minus_garm_vz_leg2 * t331, -t326, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                minus_gcross_vz_leg1 * t110, -(minus_gcross_vz_leg1 * t122),
+                -(minus_gcross_vz_leg1 * t138), -(minus_gcross_vz_leg1 * t120),
+                -(minus_gcross_vz_leg1 * t148), 0.0,
+                -(minus_garm_vz_leg1 * t162 + minus_gcross_vz_leg1 * t170),
+                minus_gcross_vz_leg1 * t186 - minus_garm_vz_leg1 * t184,
+                -(minus_garm_vz_leg1 * t202 + minus_gcross_vz_leg1 * t194),
+                -(minus_garm_vz_leg1 * t174), -t321, minus_garm_vz_leg2 * t322,
+                minus_garm_vz_leg2 * t326, -t321, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t366), minus_gcross_vz_leg2 * t382,
-                -(minus_gcross_vz_leg2 * t402), -(minus_gcross_vz_leg2 * t380),
-                minus_gcross_vz_leg2 * t417, 0.0,
-                minus_garm_vz_leg2 * t442 - minus_gcross_vz_leg2 * t432,
-                -(minus_gcross_vz_leg2 * t467 + minus_garm_vz_leg2 * t465),
-                -(minus_gcross_vz_leg2 * t447 + minus_garm_vz_leg2 * t483),
-                -(minus_garm_vz_leg2 * t493), -t591, -(minus_garm_vz_leg3 * t592),
-                -(minus_garm_vz_leg3 * t596), -t591, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -(minus_gcross_vz_leg2 * t359), minus_gcross_vz_leg2 * t377,
+                -(minus_gcross_vz_leg2 * t394), -(minus_gcross_vz_leg2 * t374),
+                minus_gcross_vz_leg2 * t407, 0.0, minus_garm_vz_leg2 * t432 - t448,
+                -(t245 * t448 + minus_garm_vz_leg2 * t456),
+                -(minus_gcross_vz_leg2 * t437 + minus_garm_vz_leg2 * t470),
+                -(minus_garm_vz_leg2 * t480), -t577, -(minus_garm_vz_leg3 * t578),
+                -(minus_garm_vz_leg3 * t582), -t577, -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t631, gcross_vz_leg3 * t647, gcross_vz_leg3 * t667,
-                gcross_vz_leg3 * t645, gcross_vz_leg3 * t682, 0.0,
-                minus_garm_vz_leg3 * t707 + gcross_vz_leg3 * t697,
-                -(minus_garm_vz_leg3 * t730 + gcross_vz_leg3 * t732),
-                gcross_vz_leg3 * t712 - minus_garm_vz_leg3 * t748, -(minus_garm_vz_leg3 * t758),
+                gcross_vz_leg3 * t615, gcross_vz_leg3 * t633, gcross_vz_leg3 * t650,
+                gcross_vz_leg3 * t631, gcross_vz_leg3 * t663, 0.0, minus_garm_vz_leg3 * t687 + t703,
+                -(minus_garm_vz_leg3 * t711 + t526 * t703),
+                gcross_vz_leg3 * t692 - minus_garm_vz_leg3 * t725, -(minus_garm_vz_leg3 * t735),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2093,7 +2082,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 653 operations (192 additions, 455 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 539 intermediates.
+    /// 636 operations (194 additions, 420 multiplications, 22 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 522 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2118,368 +2107,349 @@ impl Delta {
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t10 = 1.0 / s_cross_leg1;
-        let t11 = 4.166666666666667 * t10;
-        let garm_vx_leg1 = c_armcross_leg1 * t11;
-        let t16 = 0.24 * c_cross_leg1;
-        let t22 = 1.0 / c_rod_leg1;
-        let t23 = s_rod_leg1 * t22;
-        let t24 = t23 * twist[1];
-        let rate_arm_leg1 = t11
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24);
-        let t27 = rate_arm_leg1 * rate_arm_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t22;
-        let t35 = t16 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
-        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t10 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t10;
+        let t20 = s_rod_leg1 / c_rod_leg1;
+        let t21 = t20 * twist[1];
+        let t22 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t21;
+        let rate_arm_leg1 = t10 * t22;
+        let t24 = 0.24 * c_cross_leg1;
+        let t25 = t24 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t32 = t25 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t32;
+        let t34 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t39 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = acceleration[1] + t24 * rate_rod_leg1;
-        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t16 * t27 + 0.56 * c_rod_leg1 * (t37 + t39) + t23 * t45;
-        let rate_dot_arm_leg1 = t11 * t47;
-        let t49 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t11 * t23;
-        let t51 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t53 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t54 = 9.81 * c_arm_leg1;
-        let t58 = 9.81 * s_arm_leg1;
-        let t68 = t10 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t68;
-        let t70 = 1.7857142857142858 * t35;
-        let t71 = rate_rod_leg1 * t70;
-        let t72 = 0.24 * s_cross_leg1;
-        let t74 = 0.24 * rate_dot_arm_leg1;
-        let t80 = t72 * t27 + c_cross_leg1 * t74 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2];
-        let t81 = t24 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t80 + t81 + t81);
-        let t85 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t87 = t71 + t85 + t71;
-        let t88 = s_rod_leg1 * t87;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t93 = t70 * t70;
-        let t94 = t23 * t93;
-        let t95 = grod_vy_leg1 * t94;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t68;
-        let t99 = t88 - minus_rate_dot_cross_leg1;
-        let t102 = t23 * t99 - c_rod_leg1 * t87;
-        let t104 = t23 * t94;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t111 = t94 + rate_dot_rod_leg1;
-        let t115 = s_rod_leg1 * t111 + c_rod_leg1 * (t39 - t104);
-        let t125 = 1.7857142857142858 * acceleration[1];
-        let t134 = c_rod_leg1 * t72;
-        let t137 = t72 * s_rod_leg1;
-        let t140 = 0.42857142857142855 * (c_cross_leg1 * t80) + t134 * (t93 + t39)
-            + t137 * t111;
-        let t143 = t58 + 0.24 * t27;
-        let t145 = t74 - t54;
-        let t147 = s_cross_leg1 * t143 + c_cross_leg1 * t145;
-        let t148 = c_rod_leg1 * t147;
-        let t152 = 0.24 * t145;
-        let t153 = garm_vy_leg1 * t152;
-        let t165 = t134 * (t94 - rate_dot_rod_leg1) + t137 * (t104 + t39) + t16 * t87;
-        let t167 = s_rod_leg1 * t147;
-        let t175 = s_cross_leg1 * t145 - c_cross_leg1 * t143;
-        let t183 = t16 * t37 - t72 * minus_rate_dot_cross_leg1;
-        let t197 = 1.0 / s_cross_leg2;
-        let t198 = 4.166666666666667 * t197;
+        let t36 = rate_rod_leg1 * rate_rod_leg1;
+        let t37 = t34 + t36;
+        let t42 = acceleration[1] + t21 * rate_rod_leg1;
+        let t44 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + rate_arm_leg1 * t25 + 0.56 * c_rod_leg1 * t37 + t20 * t42;
+        let rate_dot_arm_leg1 = t10 * t44;
+        let t46 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t10 * t20;
+        let t48 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t10;
+        let t50 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t51 = 9.81 * c_arm_leg1;
+        let t55 = 9.81 * s_arm_leg1;
+        let t65 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t65;
+        let t67 = 1.7857142857142858 * t32;
+        let t68 = rate_rod_leg1 * t67;
+        let t73 = t22 * rate_arm_leg1;
+        let t74 = t21 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (t24 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t73 + t74 + t74);
+        let t80 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t82 = t68 + t80 + t68;
+        let t83 = c_rod_leg1 * t82;
+        let t84 = t20 * t83;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t24 * garm_vy_leg1);
+        let t89 = t67 * t67;
+        let t90 = t20 * t89;
+        let t91 = grod_vy_leg1 * t90;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t65;
+        let t95 = t84 - minus_rate_dot_cross_leg1;
+        let t96 = t95 / c_rod_leg1;
+        let t98 = s_rod_leg1 * t96 - t83;
+        let t100 = t89 + t36;
+        let t101 = t37 - t89;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t42;
+        let t108 = t90 + rate_dot_rod_leg1;
+        let t112 = s_rod_leg1 * t108 + c_rod_leg1 * (t100 - t34);
+        let t122 = 1.7857142857142858 * acceleration[1];
+        let t130 = 0.24 * s_cross_leg1;
+        let t131 = c_rod_leg1 * t130;
+        let t133 = t130 * s_rod_leg1;
+        let t136 = t24 * t96 - (t131 * t100 + t133 * t108);
+        let t139 = t55 + t73 / s_cross_leg1;
+        let t142 = 0.24 * rate_dot_arm_leg1 - t51;
+        let t144 = s_cross_leg1 * t139 + c_cross_leg1 * t142;
+        let t145 = c_rod_leg1 * t144;
+        let t149 = 0.24 * t142;
+        let t150 = garm_vy_leg1 * t149;
+        let t161 = t131 * (t90 - rate_dot_rod_leg1) + t133 * t101 + t24 * t82;
+        let t163 = s_rod_leg1 * t144;
+        let t171 = s_cross_leg1 * t142 - c_cross_leg1 * t139;
+        let t179 = t24 * t34 - t130 * minus_rate_dot_cross_leg1;
+        let t193 = 4.166666666666667 / s_cross_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t207 = 0.5 * c_armcross_leg2;
-        let t210 = 1.0 / c_rod_leg2;
-        let t211 = s_rod_leg2 * t210;
-        let minus_garm_vx_leg2 = t198 * (t207 + 0.8660254037844387 * t211);
-        let t215 = 0.8660254037844387 * c_armcross_leg2;
-        let t221 = 0.24 * c_cross_leg2;
-        let t227 = 0.8660254037844387 * twist[0];
-        let t228 = 0.5 * twist[1];
-        let t229 = t227 + t228;
-        let t230 = t211 * t229;
-        let rate_arm_leg2 = t198
-            * (t215 * twist[1] - t207 * twist[0] - s_armcross_leg2 * twist[2] - t230);
-        let t233 = rate_arm_leg2 * rate_arm_leg2;
-        let t236 = 1.7857142857142858 * t210;
-        let minus_rate_rod_leg2 = t236 * t229;
-        let t238 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t239 = 0.5 * s_armcross_leg2;
-        let t241 = 0.8660254037844387 * s_armcross_leg2;
-        let t247 = t239 * twist[0] - t241 * twist[1] - c_armcross_leg2 * twist[2]
-            - t221 * rate_arm_leg2;
-        let rate_cross_leg2 = t236 * t247;
-        let t249 = rate_cross_leg2 * rate_cross_leg2;
-        let t253 = t215 * acceleration[1] - t207 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t221 * t233
-            + 0.56 * c_rod_leg2 * (t238 + t249);
-        let t254 = 0.8660254037844387 * acceleration[0];
-        let t255 = 0.5 * acceleration[1];
-        let t256 = t254 + t255;
-        let t258 = t256 - t230 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t198 * (t253 - t211 * t258);
-        let t262 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t198 * (t215 - 0.5 * t211);
-        let t266 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t198;
-        let t268 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t269 = 9.81 * c_arm_leg2;
-        let t273 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = t236 * (t239 + minus_garm_vx_leg2 * t221);
-        let t291 = 0.24 * s_cross_leg2;
-        let t293 = t230 * rate_cross_leg2;
-        let t297 = 0.24 * rate_dot_arm_leg2;
-        let t299 = t239 * acceleration[0] - t241 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t291 * t233 + t293 + t293)
-            - c_cross_leg2 * t297;
-        let rate_dot_cross_leg2 = t236 * t299;
-        let t301 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t303 = minus_rate_rod_leg2 * (1.7857142857142858 * t247);
-        let t305 = t301 - t303 - t303;
-        let t306 = s_rod_leg2 * t305;
-        let t308 = t211 * t247;
-        let t309 = rate_cross_leg2 * t308;
-        let t310 = 2.76156059880242 * t309;
-        let minus_gcross_vy_leg2 = t236 * (t241 + t221 * garm_vy_leg2);
-        let t316 = 1.594387755102041 * t309;
-        let gcross_vz_leg2 = t236 * (t197 * s_arm_leg2);
-        let t321 = rate_dot_cross_leg2 - t306;
-        let t324 = t211 * t321 + c_rod_leg2 * t305;
-        let t326 = t308 * t308;
-        let t327 = t247 * t247;
-        let t329 = t210 * (t326 - t327);
-        let t336 = 3.188775510204082 * t327;
-        let t337 = t211 * t336;
-        let minus_rate_dot_rod_leg2 = t236 * t258;
-        let t339 = t337 - minus_rate_dot_rod_leg2;
-        let t341 = 3.188775510204082 * t326;
-        let t344 = s_rod_leg2 * t339 + c_rod_leg2 * (t238 - t341);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t210;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t210;
-        let t359 = 1.7857142857142858 * t256;
-        let t370 = t273 + 0.24 * t233;
-        let t372 = t297 - t269;
-        let t374 = s_cross_leg2 * t370 + c_cross_leg2 * t372;
-        let t375 = c_rod_leg2 * t374;
-        let t379 = c_rod_leg2 * t291;
-        let t382 = t291 * s_rod_leg2;
-        let t385 = t221 * (t210 * t321) - (t379 * (t336 + t238) + t382 * t339);
-        let t390 = s_cross_leg2 * t372 - c_cross_leg2 * t370;
-        let t391 = s_rod_leg2 * t390;
-        let t409 = t379 * (t337 + minus_rate_dot_rod_leg2) + t382 * (t341 + t238)
-            - t221 * t305;
-        let t411 = s_rod_leg2 * t374;
-        let t426 = t291 * rate_dot_cross_leg2 + t221 * t249;
-        let t435 = 0.24 * t372;
-        let t441 = 1.0 / s_cross_leg3;
-        let t442 = 4.166666666666667 * t441;
-        let t445 = 1.0 / c_rod_leg3;
-        let t446 = s_rod_leg3 * t445;
+        let t202 = 0.5 * c_armcross_leg2;
+        let t205 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t193 * (t202 + 0.8660254037844387 * t205);
+        let t209 = 0.8660254037844387 * c_armcross_leg2;
+        let t220 = 0.8660254037844387 * twist[0];
+        let t221 = 0.5 * twist[1];
+        let t222 = t220 + t221;
+        let t223 = t205 * t222;
+        let t224 = t209 * twist[1] - t202 * twist[0] - s_armcross_leg2 * twist[2] - t223;
+        let rate_arm_leg2 = t193 * t224;
+        let t226 = 0.24 * c_cross_leg2;
+        let t227 = t226 * rate_arm_leg2;
+        let t230 = 0.5 * s_armcross_leg2;
+        let t232 = 0.8660254037844387 * s_armcross_leg2;
+        let t237 = t230 * twist[0] - t232 * twist[1] - c_armcross_leg2 * twist[2] - t227;
+        let t238 = t237 * t237;
+        let t239 = 3.188775510204082 * t238;
+        let t240 = t205 * t237;
+        let t241 = t240 * t240;
+        let t242 = 3.188775510204082 * t241;
+        let t243 = 1.7857142857142858 / c_rod_leg2;
+        let minus_rate_rod_leg2 = t243 * t222;
+        let t245 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t246 = t242 + t245;
+        let t247 = t239 + t246;
+        let t250 = t209 * acceleration[1] - t202 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t227
+            + 0.56 * c_rod_leg2 * t247;
+        let t251 = 0.8660254037844387 * acceleration[0];
+        let t252 = 0.5 * acceleration[1];
+        let t253 = t251 + t252;
+        let t255 = t253 - t223 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t193 * (t250 - t205 * t255);
+        let t259 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t193 * (t209 - 0.5 * t205);
+        let t263 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t193;
+        let t265 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t266 = 9.81 * c_arm_leg2;
+        let t270 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t243 * (t230 + minus_garm_vx_leg2 * t226);
+        let t288 = t224 * rate_arm_leg2;
+        let t289 = minus_rate_rod_leg2 * t240;
+        let t293 = 0.24 * rate_dot_arm_leg2;
+        let t295 = t230 * acceleration[0] - t232 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t288 + t289 + t289)
+            - c_cross_leg2 * t293;
+        let rate_dot_cross_leg2 = t243 * t295;
+        let t297 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t299 = minus_rate_rod_leg2 * (1.7857142857142858 * t237);
+        let t301 = t297 - t299 - t299;
+        let t302 = s_rod_leg2 * t301;
+        let t304 = t205 * t239;
+        let minus_grod_vx_leg2 = 1.5464739353293548 / c_rod_leg2;
+        let t306 = t304 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t243 * (t232 + t226 * garm_vy_leg2);
+        let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
+        let t313 = t304 * minus_grod_vy_leg2;
+        let gcross_vz_leg2 = t243 * (s_arm_leg2 / s_cross_leg2);
+        let t318 = rate_dot_cross_leg2 - t302;
+        let t321 = t205 * t318 + c_rod_leg2 * t301;
+        let t324 = (t241 - t238) / c_rod_leg2;
+        let minus_rate_dot_rod_leg2 = t243 * t255;
+        let t332 = t304 - minus_rate_dot_rod_leg2;
+        let t336 = s_rod_leg2 * t332 + c_rod_leg2 * (t245 - t242);
+        let t349 = 1.7857142857142858 * t253;
+        let t360 = t270 + t288 / s_cross_leg2;
+        let t362 = t293 - t266;
+        let t365 = c_rod_leg2 * (s_cross_leg2 * t360 + c_cross_leg2 * t362);
+        let t366 = gcross_vx_leg2 * t365;
+        let t369 = 0.24 * s_cross_leg2;
+        let t370 = c_rod_leg2 * t369;
+        let t373 = t369 * s_rod_leg2;
+        let t376 = t226 * (t318 / c_rod_leg2) - (t370 * (t239 + t245) + t373 * t332);
+        let t381 = s_cross_leg2 * t362 - c_cross_leg2 * t360;
+        let t382 = 1.5464739353293548 * t381;
+        let t386 = minus_gcross_vy_leg2 * t365;
+        let t388 = 0.8928571428571429 * t381;
+        let t391 = gcross_vz_leg2 * t365;
+        let t399 = t370 * (t304 + minus_rate_dot_rod_leg2) + t373 * t246 - t226 * t301;
+        let t415 = t369 * rate_dot_cross_leg2 + t226 * (t247 - t245);
+        let t424 = 0.24 * t362;
+        let t430 = 4.166666666666667 / s_cross_leg3;
+        let t433 = s_rod_leg3 / c_rod_leg3;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t456 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t442 * (0.8660254037844387 * t446 - t456);
-        let t459 = 0.24 * c_cross_leg3;
-        let t460 = t227 - t228;
-        let t461 = t446 * t460;
-        let t463 = 0.8660254037844387 * c_armcross_leg3;
-        let rate_arm_leg3 = t442
-            * (t461 - (t456 * twist[0] + t463 * twist[1] + s_armcross_leg3 * twist[2]));
-        let t470 = rate_arm_leg3 * rate_arm_leg3;
-        let t473 = 1.7857142857142858 * t445;
-        let rate_rod_leg3 = t473 * t460;
-        let t475 = rate_rod_leg3 * rate_rod_leg3;
-        let t476 = 0.5 * s_armcross_leg3;
-        let t478 = 0.8660254037844387 * s_armcross_leg3;
-        let t484 = t476 * twist[0] + t478 * twist[1] - c_armcross_leg3 * twist[2]
-            - t459 * rate_arm_leg3;
-        let rate_cross_leg3 = t473 * t484;
-        let t486 = rate_cross_leg3 * rate_cross_leg3;
-        let t495 = t459 * t470 + 0.56 * c_rod_leg3 * (t475 + t486)
-            - (t456 * acceleration[0] + t463 * acceleration[1]
+        let t443 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t430 * (0.8660254037844387 * t433 - t443);
+        let t446 = t220 - t221;
+        let t447 = t433 * t446;
+        let t449 = 0.8660254037844387 * c_armcross_leg3;
+        let t454 = t447
+            - (t443 * twist[0] + t449 * twist[1] + s_armcross_leg3 * twist[2]);
+        let rate_arm_leg3 = t430 * t454;
+        let t456 = t454 * rate_arm_leg3;
+        let t457 = t456 / s_cross_leg3;
+        let t460 = 1.7857142857142858 / c_rod_leg3;
+        let rate_rod_leg3 = t460 * t446;
+        let t462 = rate_rod_leg3 * rate_rod_leg3;
+        let t463 = 0.5 * s_armcross_leg3;
+        let t465 = 0.8660254037844387 * s_armcross_leg3;
+        let t470 = 0.24 * c_cross_leg3;
+        let t472 = t463 * twist[0] + t465 * twist[1] - c_armcross_leg3 * twist[2]
+            - t470 * rate_arm_leg3;
+        let rate_cross_leg3 = t460 * t472;
+        let t474 = rate_cross_leg3 * rate_cross_leg3;
+        let t475 = t462 + t474;
+        let t483 = c_cross_leg3 * t457 + 0.56 * c_rod_leg3 * t475
+            - (t443 * acceleration[0] + t449 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t496 = t254 - t255;
-        let t498 = t496 + t461 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t442 * (t495 + t446 * t498);
-        let t502 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t442 * (t463 + 0.5 * t446);
-        let t506 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t442;
-        let t508 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t509 = 9.81 * c_arm_leg3;
-        let t513 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t473 * (t476 - garm_vx_leg3 * t459);
-        let t527 = rate_rod_leg3 * (1.7857142857142858 * t484);
-        let t528 = 0.24 * s_cross_leg3;
-        let t535 = 0.24 * rate_dot_arm_leg3;
-        let t538 = t528 * t470
-            - (t476 * acceleration[0] + t478 * acceleration[1]
-                - c_armcross_leg3 * acceleration[2] - c_cross_leg3 * t535);
-        let t539 = t461 * rate_cross_leg3;
-        let rate_dot_cross_leg3 = t473 * (t539 + t539 - t538);
-        let t543 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t545 = t527 + t543 + t527;
-        let t546 = s_rod_leg3 * t545;
-        let t548 = t446 * t484;
-        let t549 = rate_cross_leg3 * t548;
-        let t550 = 2.76156059880242 * t549;
-        let gcross_vy_leg3 = t473 * (t478 + t459 * minus_garm_vy_leg3);
-        let t556 = 1.594387755102041 * t549;
-        let gcross_vz_leg3 = t473 * (t441 * s_arm_leg3);
-        let t562 = 1.7857142857142858 * t538;
-        let t563 = c_rod_leg3 * t562;
-        let t565 = c_rod_leg3 * t545 - t446 * t563;
-        let t567 = t548 * t548;
-        let t568 = t484 * t484;
-        let t570 = t445 * (t567 - t568);
-        let t577 = 3.188775510204082 * t568;
-        let t578 = t446 * t577;
-        let rate_dot_rod_leg3 = t473 * t498;
-        let t580 = t578 + rate_dot_rod_leg3;
-        let t582 = 3.188775510204082 * t567;
-        let t585 = s_rod_leg3 * t580 + c_rod_leg3 * (t475 - t582);
-        let grod_vx_leg3 = 1.5464739353293548 * t445;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t445;
-        let t600 = 1.7857142857142858 * t496;
-        let t611 = t513 + 0.24 * t470;
-        let t613 = t535 - t509;
-        let t615 = s_cross_leg3 * t611 + c_cross_leg3 * t613;
-        let t616 = c_rod_leg3 * t615;
-        let t618 = c_rod_leg3 * t528;
-        let t621 = t528 * s_rod_leg3;
-        let t625 = t618 * (t577 + t475) + t621 * t580 + t459 * t562;
-        let t630 = s_cross_leg3 * t613 - c_cross_leg3 * t611;
-        let t631 = s_rod_leg3 * t630;
-        let t648 = t618 * (t578 - rate_dot_rod_leg3) + t621 * (t582 + t475)
-            - t459 * t545;
-        let t650 = s_rod_leg3 * t615;
-        let t665 = t528 * rate_dot_cross_leg3 + t459 * t486;
-        let t675 = 0.24 * t613;
+        let t484 = t251 - t252;
+        let t486 = t484 + t447 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t430 * (t483 + t433 * t486);
+        let t490 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t430 * (t449 + 0.5 * t433);
+        let t494 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t430;
+        let t496 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t497 = 9.81 * c_arm_leg3;
+        let t501 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t460 * (t463 - garm_vx_leg3 * t470);
+        let t515 = rate_rod_leg3 * (1.7857142857142858 * t472);
+        let t521 = t433 * t472;
+        let t522 = rate_rod_leg3 * t521;
+        let t523 = t522 + t522;
+        let t527 = t463 * acceleration[0] + t465 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t456 - t523)
+            - t470 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = t460 * t527;
+        let t529 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t531 = t515 + t529 + t515;
+        let t532 = s_rod_leg3 * t531;
+        let t534 = t472 * t472;
+        let t535 = 3.188775510204082 * t534;
+        let t536 = t433 * t535;
+        let grod_vx_leg3 = 1.5464739353293548 / c_rod_leg3;
+        let t538 = t536 * grod_vx_leg3;
+        let gcross_vy_leg3 = t460 * (t465 + t470 * minus_garm_vy_leg3);
+        let minus_grod_vy_leg3 = 0.5 * t460;
+        let t545 = t536 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t460 * (s_arm_leg3 / s_cross_leg3);
+        let t552 = 1.7857142857142858 * (t523 - t527);
+        let t553 = c_rod_leg3 * t552;
+        let t555 = c_rod_leg3 * t531 - t433 * t553;
+        let t559 = (t521 * t521 - t534) / c_rod_leg3;
+        let rate_dot_rod_leg3 = t460 * t486;
+        let t567 = t536 + rate_dot_rod_leg3;
+        let t569 = t535 + t462;
+        let t572 = s_rod_leg3 * t567 + c_rod_leg3 * (t569 - t474);
+        let t585 = 1.7857142857142858 * t484;
+        let t595 = t501 + t457;
+        let t598 = 0.24 * rate_dot_arm_leg3 - t497;
+        let t601 = c_rod_leg3 * (s_cross_leg3 * t595 + c_cross_leg3 * t598);
+        let t602 = gcross_vx_leg3 * t601;
+        let t603 = 0.24 * s_cross_leg3;
+        let t604 = c_rod_leg3 * t603;
+        let t606 = t603 * s_rod_leg3;
+        let t610 = t604 * t569 + t606 * t567 + t470 * t552;
+        let t615 = s_cross_leg3 * t598 - c_cross_leg3 * t595;
+        let t616 = 1.5464739353293548 * t615;
+        let t620 = gcross_vy_leg3 * t601;
+        let t622 = 0.8928571428571429 * t615;
+        let t626 = gcross_vz_leg3 * t601;
+        let t634 = t604 * (t536 - rate_dot_rod_leg3) + t606 * (t475 - t535)
+            - t470 * t531;
+        let t648 = t603 * rate_dot_cross_leg3 + t470 * t474;
+        let t658 = 0.24 * t598;
         Ok([
             [
-                t49, -(garm_vx_leg1 * t54), garm_vx_leg1 * t58, t49, garm_vx_leg1 * rate_arm_leg1,
+                t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t102),
-                -(minus_gcross_vx_leg1 * t115), -(minus_gcross_vx_leg1 * t99),
-                -(minus_gcross_vx_leg1 * t125), 0.0,
-                -(garm_vx_leg1 * t140 + minus_gcross_vx_leg1 * t148),
-                garm_vx_leg1 * t165 + minus_gcross_vx_leg1 * t167,
-                garm_vx_leg1 * t183 - minus_gcross_vx_leg1 * t175, garm_vx_leg1 * t152, -t262,
-                minus_garm_vx_leg2 * t269, -(minus_garm_vx_leg2 * t273), -t262,
+                minus_gcross_vx_leg1 * t84, -(minus_gcross_vx_leg1 * t98),
+                -(minus_gcross_vx_leg1 * t112), -(minus_gcross_vx_leg1 * t95),
+                -(minus_gcross_vx_leg1 * t122), 0.0,
+                garm_vx_leg1 * t136 - minus_gcross_vx_leg1 * t145,
+                garm_vx_leg1 * t161 + minus_gcross_vx_leg1 * t163,
+                garm_vx_leg1 * t179 - minus_gcross_vx_leg1 * t171, garm_vx_leg1 * t149, -t259,
+                minus_garm_vx_leg2 * t266, -(minus_garm_vx_leg2 * t270), -t259,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t306 + t310, gcross_vx_leg2 * t324 - 4.9313582121471775 * t329,
-                gcross_vx_leg2 * t344 - minus_grod_vx_leg2 * t301, gcross_vx_leg2 * t321 - t310,
-                -(gcross_vx_leg2 * t359 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg2 * t302 + t306, gcross_vx_leg2 * t321 - 4.9313582121471775 * t324,
+                gcross_vx_leg2 * t336 - minus_grod_vx_leg2 * t297, gcross_vx_leg2 * t318 - t306,
+                -(gcross_vx_leg2 * t349 + 1.5464739353293548 * rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                gcross_vx_leg2 * t375 - minus_garm_vx_leg2 * t385
-                    + minus_grod_vx_leg2 * t391,
-                1.5464739353293548 * t390
-                    - (minus_garm_vx_leg2 * t409 + gcross_vx_leg2 * t411),
-                gcross_vx_leg2 * t390 - minus_garm_vx_leg2 * t426,
-                -(minus_garm_vx_leg2 * t435),
-                t502,
-                -(garm_vx_leg3 * t509),
-                garm_vx_leg3 * t513,
-                t502,
-                garm_vx_leg3 * rate_arm_leg3,
-                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
-                garm_vx_leg3,
-                gcross_vx_leg3 * t546 - t550,
-                gcross_vx_leg3 * t565 + 4.9313582121471775 * t570,
-                gcross_vx_leg3 * t585 + grod_vx_leg3 * t543,
-                t550 - gcross_vx_leg3 * t563,
-                gcross_vx_leg3 * t600 + 1.5464739353293548 * rate_dot_cross_leg3,
-                grod_vx_leg3 * rate_dot_rod_leg3,
-                gcross_vx_leg3 * t616 - garm_vx_leg3 * t625 - grod_vx_leg3 * t631,
-                garm_vx_leg3 * t648 - gcross_vx_leg3 * t650 - 1.5464739353293548 * t630,
-                garm_vx_leg3 * t665 + gcross_vx_leg3 * t630,
-                garm_vx_leg3 * t675,
-                acceleration[0],
+                t366 - minus_garm_vx_leg2 * t376 + t205 * t382,
+                t382 - (minus_garm_vx_leg2 * t399 + t205 * t366),
+                gcross_vx_leg2 * t381 - minus_garm_vx_leg2 * t415, -(minus_garm_vx_leg2 * t424),
+                t490, -(garm_vx_leg3 * t497), garm_vx_leg3 * t501, t490,
+                garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                garm_vx_leg3, gcross_vx_leg3 * t532 - t538,
+                gcross_vx_leg3 * t555 + 4.9313582121471775 * t559,
+                gcross_vx_leg3 * t572 + grod_vx_leg3 * t529, t538 - gcross_vx_leg3 * t553,
+                gcross_vx_leg3 * t585 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3, t602 - garm_vx_leg3 * t610 - t433 * t616,
+                garm_vx_leg3 * t634 - t433 * t602 - t616,
+                garm_vx_leg3 * t648 + gcross_vx_leg3 * t615, garm_vx_leg3 * t658, acceleration[0],
             ],
             [
-                t51, -(garm_vy_leg1 * t54), garm_vy_leg1 * t58, t51, garm_vy_leg1 * rate_arm_leg1,
+                t48, -(garm_vy_leg1 * t51), garm_vy_leg1 * t55, t48, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t88 - t95,
-                grod_vy_leg1 * (t104 - t93) - minus_gcross_vy_leg1 * t102,
-                -(minus_gcross_vy_leg1 * t115 + grod_vy_leg1 * t85),
-                t95 - minus_gcross_vy_leg1 * t99,
-                -(minus_gcross_vy_leg1 * t125
+                minus_gcross_vy_leg1 * t84 - t91,
+                grod_vy_leg1 * (t101 - t100) - minus_gcross_vy_leg1 * t98,
+                -(minus_gcross_vy_leg1 * t112 + grod_vy_leg1 * t80),
+                t91 - minus_gcross_vy_leg1 * t95,
+                -(minus_gcross_vy_leg1 * t122
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t140 + 1.7857142857142858 * t153),
-                garm_vy_leg1 * t165 + minus_gcross_vy_leg1 * t167
-                    - 1.7857142857142858 * t175,
-                garm_vy_leg1 * t183 - minus_gcross_vy_leg1 * t175,
-                t153,
-                t266,
-                -(garm_vy_leg2 * t269),
-                garm_vy_leg2 * t273,
-                t266,
+                garm_vy_leg1 * t136 - 1.7857142857142858 * t150,
+                garm_vy_leg1 * t161 + minus_gcross_vy_leg1 * t163
+                    - 1.7857142857142858 * t171,
+                garm_vy_leg1 * t179 - minus_gcross_vy_leg1 * t171,
+                t150,
+                t263,
+                -(garm_vy_leg2 * t266),
+                garm_vy_leg2 * t270,
+                t263,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                t316 - minus_gcross_vy_leg2 * t306,
-                -(minus_gcross_vy_leg2 * t324 + 2.8471209912536444 * t329),
-                -(minus_gcross_vy_leg2 * t344 + minus_grod_vy_leg2 * t301),
-                -(minus_gcross_vy_leg2 * t321 + t316),
+                t313 - minus_gcross_vy_leg2 * t302,
+                -(minus_gcross_vy_leg2 * t321 + 2.8471209912536444 * t324),
+                -(minus_gcross_vy_leg2 * t336 + minus_grod_vy_leg2 * t297),
+                -(minus_gcross_vy_leg2 * t318 + t313),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t359),
+                    - minus_gcross_vy_leg2 * t349),
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                garm_vy_leg2 * t385 - minus_gcross_vy_leg2 * t375
-                    + minus_grod_vy_leg2 * t391,
-                garm_vy_leg2 * t409 + minus_gcross_vy_leg2 * t411
-                    + 0.8928571428571429 * t390,
-                garm_vy_leg2 * t426 - minus_gcross_vy_leg2 * t390,
-                garm_vy_leg2 * t435,
-                -t506,
-                minus_garm_vy_leg3 * t509,
-                -(minus_garm_vy_leg3 * t513),
-                -t506,
+                garm_vy_leg2 * t376 - t386 + t205 * t388,
+                garm_vy_leg2 * t399 + t205 * t386 + t388,
+                garm_vy_leg2 * t415 - minus_gcross_vy_leg2 * t381,
+                garm_vy_leg2 * t424,
+                -t494,
+                minus_garm_vy_leg3 * t497,
+                -(minus_garm_vy_leg3 * t501),
+                -t494,
                 -(minus_garm_vy_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t546 + t556,
-                gcross_vy_leg3 * t565 - 2.8471209912536444 * t570,
-                gcross_vy_leg3 * t585 - minus_grod_vy_leg3 * t543,
-                -(gcross_vy_leg3 * t563 + t556),
-                gcross_vy_leg3 * t600 - 0.8928571428571429 * rate_dot_cross_leg3,
+                gcross_vy_leg3 * t532 + t545,
+                gcross_vy_leg3 * t555 - 2.8471209912536444 * t559,
+                gcross_vy_leg3 * t572 - minus_grod_vy_leg3 * t529,
+                -(gcross_vy_leg3 * t553 + t545),
+                gcross_vy_leg3 * t585 - 0.8928571428571429 * rate_dot_cross_leg3,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                minus_garm_vy_leg3 * t625 + gcross_vy_leg3 * t616
-                    + minus_grod_vy_leg3 * t631,
-                0.8928571428571429 * t630
-                    - (minus_garm_vy_leg3 * t648 + gcross_vy_leg3 * t650),
-                gcross_vy_leg3 * t630 - minus_garm_vy_leg3 * t665,
-                -(minus_garm_vy_leg3 * t675),
+                minus_garm_vy_leg3 * t610 + t620 + t433 * t622,
+                t622 - (minus_garm_vy_leg3 * t634 + t433 * t620),
+                gcross_vy_leg3 * t615 - minus_garm_vy_leg3 * t648,
+                -(minus_garm_vy_leg3 * t658),
                 acceleration[1],
             ],
             [
-                -t53, minus_garm_vz_leg1 * t54, -(minus_garm_vz_leg1 * t58), -t53,
+                -t50, minus_garm_vz_leg1 * t51, -(minus_garm_vz_leg1 * t55), -t50,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t102,
-                minus_minus_gcross_vz_leg1 * t115, minus_minus_gcross_vz_leg1 * t99,
-                minus_minus_gcross_vz_leg1 * t125, 0.0,
-                minus_garm_vz_leg1 * t140 + minus_minus_gcross_vz_leg1 * t148,
-                -(minus_minus_gcross_vz_leg1 * t167 + minus_garm_vz_leg1 * t165),
-                -(minus_garm_vz_leg1 * t183 - minus_minus_gcross_vz_leg1 * t175),
-                -(minus_garm_vz_leg1 * t152), -t268, minus_garm_vz_leg2 * t269,
-                -(minus_garm_vz_leg2 * t273), -t268, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t84), minus_minus_gcross_vz_leg1 * t98,
+                minus_minus_gcross_vz_leg1 * t112, minus_minus_gcross_vz_leg1 * t95,
+                minus_minus_gcross_vz_leg1 * t122, 0.0,
+                -(minus_garm_vz_leg1 * t136 - minus_minus_gcross_vz_leg1 * t145),
+                -(minus_minus_gcross_vz_leg1 * t163 + minus_garm_vz_leg1 * t161),
+                -(minus_garm_vz_leg1 * t179 - minus_minus_gcross_vz_leg1 * t171),
+                -(minus_garm_vz_leg1 * t149), -t265, minus_garm_vz_leg2 * t266,
+                -(minus_garm_vz_leg2 * t270), -t265, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t306, gcross_vz_leg2 * t324, gcross_vz_leg2 * t344,
-                gcross_vz_leg2 * t321, -(gcross_vz_leg2 * t359), 0.0,
-                gcross_vz_leg2 * t375 - minus_garm_vz_leg2 * t385,
-                -(minus_garm_vz_leg2 * t409 + gcross_vz_leg2 * t411),
-                gcross_vz_leg2 * t390 - minus_garm_vz_leg2 * t426, -(minus_garm_vz_leg2 * t435),
-                -t508, minus_garm_vz_leg3 * t509, -(minus_garm_vz_leg3 * t513), -t508,
+                gcross_vz_leg2 * t302, gcross_vz_leg2 * t321, gcross_vz_leg2 * t336,
+                gcross_vz_leg2 * t318, -(gcross_vz_leg2 * t349), 0.0,
+                t391 - minus_garm_vz_leg2 * t376, -(minus_garm_vz_leg2 * t399 + t205 * t391),
+                gcross_vz_leg2 * t381 - minus_garm_vz_leg2 * t415, -(minus_garm_vz_leg2 * t424),
+                -t496, minus_garm_vz_leg3 * t497, -(minus_garm_vz_leg3 * t501), -t496,
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t546, gcross_vz_leg3 * t565, gcross_vz_leg3 * t585,
-                -(gcross_vz_leg3 * t563), gcross_vz_leg3 * t600, 0.0,
-                minus_garm_vz_leg3 * t625 + gcross_vz_leg3 * t616,
-                -(minus_garm_vz_leg3 * t648 + gcross_vz_leg3 * t650),
-                gcross_vz_leg3 * t630 - minus_garm_vz_leg3 * t665, -(minus_garm_vz_leg3 * t675),
+                gcross_vz_leg3 * t532, gcross_vz_leg3 * t555, gcross_vz_leg3 * t572,
+                -(gcross_vz_leg3 * t553), gcross_vz_leg3 * t585, 0.0,
+                minus_garm_vz_leg3 * t610 + t626, -(minus_garm_vz_leg3 * t634 + t433 * t626),
+                gcross_vz_leg3 * t615 - minus_garm_vz_leg3 * t648, -(minus_garm_vz_leg3 * t658),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2495,7 +2465,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 811 operations (260 additions, 533 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 684 intermediates.
+    /// 779 operations (256 additions, 489 multiplications, 34 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 652 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2508,528 +2478,451 @@ impl Delta {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.2304 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t9 = pose[1] * pose[1] + -0.3136;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.0576;
-        let t13 = 0.48 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
-        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.0576) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t2 = 0.48 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t7 = pose[1] * pose[1] + -0.3136;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.0576;
+        let t11 = 0.48 * pose[2];
+        let t12 = 0.2304 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
+        let t23 = 0.56 * c_rod_leg1;
+        let t24 = 0.48 * t23;
+        let c_cross_leg1 = (t8 + -0.0576) / t24;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let s_cross_leg1 = t15 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 4.166666666666667 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t37 = garm_vx_leg1 * actuator_accelerations[0];
-        let t38 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t38;
-        let t40 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t40;
-        let t42 = garm_vy_leg1 * actuator_accelerations[0];
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t36 = garm_vx_leg1 * actuator_accelerations[0];
+        let grod_vy_leg1 = 0.48 / t24;
+        let t38 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t34 * t38;
+        let t40 = garm_vy_leg1 * actuator_accelerations[0];
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
-        let t47 = minus_garm_vz_leg1 * actuator_accelerations[0];
-        let t48 = 9.81 * c_arm_leg1;
-        let t52 = 9.81 * minus_s_arm_leg1;
-        let t56 = garm_vx_leg1 * actuator_velocities[0];
-        let t57 = garm_vy_leg1 * actuator_velocities[0];
-        let t58 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t62 = t34 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t62;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t66 = t0 + 0.025;
-        let t67 = t66 * t66;
-        let t69 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t73 = t67 + t69 * t69 + t3 + -0.3136;
-        let t76 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t78 = 0.8660254037844387 * t66 - 0.5 * t76;
-        let t79 = pose[1] + t78;
-        let t81 = 0.3136 - t79 * t79;
-        let t83 = 0.2304 * (t73 + t81);
-        let t84 = t73 + 0.0576;
-        let t86 = t83 - t84 * t84;
-        ::overact::guard::reach(t86, "leg2")?;
-        let t87 = ::overact::math::sqrt(t86);
-        let t88 = 3.188775510204082 * t81;
-        ::overact::guard::reach(t88, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t88);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
+        let t45 = minus_garm_vz_leg1 * actuator_accelerations[0];
+        let t46 = 9.81 * c_arm_leg1;
+        let t50 = 9.81 * minus_s_arm_leg1;
+        let t54 = garm_vx_leg1 * actuator_velocities[0];
+        let t55 = garm_vy_leg1 * actuator_velocities[0];
+        let t56 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t60 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t60;
+        let t65 = t0 + 0.025;
+        let t66 = 0.5 * t65;
+        let t67 = 0.8660254037844387
+            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t66;
+        let t69 = t4 + t67 * t67;
+        let t70 = 0.2304 * t69;
+        let t73 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t75 = 0.8660254037844387 * t65 - 0.5 * t73;
+        let t76 = pose[1] + t75;
+        let t77 = t76 * t76;
+        let t78 = 0.3136 - t77;
+        let t79 = t69 - t78;
+        let t80 = t79 + 0.0576;
+        let t82 = t70 - t80 * t80;
+        ::overact::guard::reach(t82, "leg2")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let t84 = 0.8928571428571429 * t83;
+        let t85 = 3.188775510204082 * t78;
+        ::overact::guard::reach(t85, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t85);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t90 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t87 / t90;
+        let t87 = t84 / c_rod_leg2;
+        let s_cross_leg2 = 4.166666666666667 * t87;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t92 = 1.0 / s_cross_leg2;
-        let t93 = 4.166666666666667 * t92;
-        let t94 = 1.0 / t83;
-        let t97 = 0.5 * t66;
-        let t99 = 0.48 * (0.8660254037844387 * t69 - t97);
-        let minus_s_arm_leg2 = t94 * (t13 * t84 + t99 * t87);
-        let t103 = t92 * minus_s_arm_leg2;
-        let c_arm_leg2 = t94 * (t99 * t84 - t13 * t87);
-        let c_cross_leg2 = (-0.0576 + t73) / t90;
+        let t89 = 4.166666666666667 / s_cross_leg2;
+        let t91 = 0.48 * t67;
+        let minus_s_arm_leg2 = (t11 * t80 + t91 * t83) / t70;
+        let t95 = minus_s_arm_leg2 / s_cross_leg2;
+        let c_arm_leg2 = (t91 * t80 - t11 * t83) / t70;
+        let t102 = 1.7857142857142858 / c_rod_leg2;
+        let minus_grod_vy_leg2 = 0.5 * t102;
+        let t104 = (-0.0576 + t79) * minus_grod_vy_leg2;
+        let c_cross_leg2 = 4.166666666666667 * t104;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t113 = c_cross_leg2 * t92;
-        let c_armcross_leg2 = t103 + s_armcross_leg2 * t113;
-        let t117 = 1.0 / c_rod_leg2;
-        let t118 = 1.7857142857142858 * t117;
-        let t119 = t79 * t118;
-        let t121 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t119;
-        let garm_vy_leg2 = t93 * t121;
-        let t128 = t67 + t76 * t76 + t3 + -0.3136;
-        let t130 = 0.3136 - t78 * t78;
-        let t132 = 0.2304 * (t128 + t130);
-        let t133 = t128 + 0.0576;
-        let t135 = t132 - t133 * t133;
-        ::overact::guard::reach(t135, "leg3")?;
-        let t136 = ::overact::math::sqrt(t135);
-        let t137 = 3.188775510204082 * t130;
-        ::overact::guard::reach(t137, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t137);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t89;
+        let c_armcross_leg2 = t95 + minus_garm_vz_leg2 * t104;
+        let t112 = t76 * t102;
+        let t114 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t112;
+        let garm_vy_leg2 = t89 * t114;
+        let t116 = garm_vy_leg2 * actuator_velocities[1];
+        let t119 = t66 + 0.8660254037844387 * t73;
+        let t121 = t4 + t119 * t119;
+        let t122 = 0.2304 * t121;
+        let t123 = t75 * t75;
+        let t124 = 0.3136 - t123;
+        let t125 = t121 - t124;
+        let t126 = t125 + 0.0576;
+        let t128 = t122 - t126 * t126;
+        ::overact::guard::reach(t128, "leg3")?;
+        let t129 = ::overact::math::sqrt(t128);
+        let t130 = 3.188775510204082 * t124;
+        ::overact::guard::reach(t130, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t130);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t139 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t136 / t139;
+        let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
+        let t133 = t129 * minus_grod_vy_leg3;
+        let s_cross_leg3 = 4.166666666666667 * t133;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t141 = 1.0 / s_cross_leg3;
-        let t142 = 4.166666666666667 * t141;
-        let t143 = 1.0 / t132;
-        let t146 = 0.48 * (t97 + 0.8660254037844387 * t76);
-        let s_arm_leg3 = t143 * (t146 * t136 - t13 * t133);
-        let t151 = t141 * s_arm_leg3;
-        let c_cross_leg3 = (-0.0576 + t128) / t139;
-        let minus_c_arm_leg3 = t143 * (t146 * t133 + t13 * t136);
+        let t135 = 4.166666666666667 / s_cross_leg3;
+        let t136 = 0.48 * t119;
+        let s_arm_leg3 = (t136 * t129 - t11 * t126) / t122;
+        let t141 = s_arm_leg3 / s_cross_leg3;
+        let t143 = (-0.0576 + t125) * minus_grod_vy_leg3;
+        let c_cross_leg3 = 4.166666666666667 * t143;
+        let minus_c_arm_leg3 = (t136 * t126 + t11 * t129) / t122;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t161 = c_cross_leg3 * t141;
-        let minus_c_armcross_leg3 = t151 - s_armcross_leg3 * t161;
-        let t165 = 1.0 / c_rod_leg3;
-        let t166 = 1.7857142857142858 * t165;
-        let t167 = t78 * t166;
-        let t169 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t167;
-        let garm_vy_leg3 = t142 * t169;
-        let t176 = 0.8660254037844387 * t119 - 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t93 * t176;
-        let t182 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t167;
-        let garm_vx_leg3 = t142 * t182;
-        let t185 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t135;
+        let minus_c_armcross_leg3 = t141 - minus_garm_vz_leg3 * t143;
+        let t156 = minus_grod_vy_leg3 + minus_grod_vy_leg3;
+        let t157 = t75 * t156;
+        let garm_vy_leg3 = t135
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t157);
+        let t161 = garm_vy_leg3 * actuator_velocities[2];
+        let t165 = 0.8660254037844387 * t112 - 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t89 * t165;
+        let t167 = garm_vx_leg2 * actuator_velocities[1];
+        let garm_vx_leg3 = t135
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t157);
+        let t173 = garm_vx_leg3 * actuator_velocities[2];
+        let t174 = t54 + t167 + t173;
+        let t179 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t190 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t184 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t190, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t190, 14.869730172882841, "actuators")?;
-        let t191 = 1.0 / t190;
-        let t192 = t185 * t191;
+        ::overact::guard::platform(t184, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t184, 14.869730172882841, "actuators")?;
+        let t185 = t179 / t184;
+        let t187 = t55 + t116 + t161 - t174 * t185;
         let t194 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t185 * t192;
+            + garm_vy_leg3 * garm_vy_leg3 - t179 * t185;
         ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
         ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
-        let t195 = 1.0 / t194;
-        let t196 = garm_vy_leg2 * actuator_velocities[1];
-        let t198 = garm_vy_leg3 * actuator_velocities[2];
-        let t200 = garm_vx_leg2 * actuator_velocities[1];
-        let t202 = garm_vx_leg3 * actuator_velocities[2];
-        let t203 = t56 + t200 + t202;
-        let t205 = t57 + t196 + t198 - t203 * t192;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t93;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t142;
-        let t213 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t200 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t214 = t213 * t191;
-        let t221 = t185 * t214
+        let t201 = t200 / t184;
+        let t208 = t179 * t201
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t222 = t221 * t195;
-        let t231 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t209 = t208 / t194;
+        let t211 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t213 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t226 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t213 * t214 - t221 * t222;
-        ::overact::guard::platform(t231, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t231, 34.855350201355726, "actuators")?;
-        let t232 = 1.0 / t231;
-        let t234 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t236 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t241 = t232 * (t203 * t214 - (t58 + t234 + t236) - t222 * t205);
-        let t243 = t195 * t205 - t222 * t241;
-        let rate_rod_leg1 = grod_vy_leg1 * t243;
-        let t245 = 0.24 * c_cross_leg1;
-        let t251 = t203 * t191 - t192 * t243 + t214 * t241;
-        let t255 = actuator_velocities[0] * t245 + s_armcross_leg1 * t251
-            + c_armcross_leg1 * t241;
-        let t257 = rate_rod_leg1 * (1.7857142857142858 * t255);
-        let t258 = 0.24 * actuator_accelerations[0];
-        let t260 = actuator_velocities[0] * actuator_velocities[0];
-        let t262 = 0.56 * c_rod_leg1;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t255;
-        let t264 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t265 = rate_rod_leg1 * rate_rod_leg1;
-        let t269 = pose[1] * t265;
-        let rate_dot_arm_leg1 = t35 * (t245 * t260 + t262 * (t264 + t265) + t40 * t269);
-        let t273 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t275 = 0.24 * c_cross_leg2;
-        let t276 = actuator_velocities[1] * actuator_velocities[1];
-        let t279 = 0.8660254037844387 * t251;
-        let t280 = 0.5 * t243;
-        let minus_rate_rod_leg2 = t118 * (t279 + t280);
-        let t283 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t284 = 0.5 * s_armcross_leg2;
-        let t286 = 0.8660254037844387 * s_armcross_leg2;
-        let t292 = t284 * t251 - t286 * t243 - c_armcross_leg2 * t241
-            - actuator_velocities[1] * t275;
-        let rate_cross_leg2 = t118 * t292;
-        let t294 = rate_cross_leg2 * rate_cross_leg2;
-        let t298 = t79 * t283;
-        let rate_dot_arm_leg2 = t93
-            * (t275 * t276 + 0.56 * c_rod_leg2 * (t283 + t294) + t119 * t298);
-        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t305 = 0.24 * c_cross_leg3;
-        let t306 = actuator_velocities[2] * actuator_velocities[2];
-        let rate_rod_leg3 = t166 * (t279 - t280);
-        let t311 = rate_rod_leg3 * rate_rod_leg3;
-        let t312 = 0.5 * s_armcross_leg3;
-        let t314 = 0.8660254037844387 * s_armcross_leg3;
-        let t320 = t312 * t251 + t314 * t243 + minus_c_armcross_leg3 * t241
-            - actuator_velocities[2] * t305;
-        let rate_cross_leg3 = t166 * t320;
-        let t322 = rate_cross_leg3 * rate_cross_leg3;
-        let t326 = t78 * t311;
-        let rate_dot_arm_leg3 = t142
-            * (t305 * t306 + 0.56 * c_rod_leg3 * (t311 + t322) + t167 * t326);
-        let t330 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t332 = garm_vx_leg1 * t273 + garm_vx_leg2 * t302 + garm_vx_leg3 * t330;
-        let t340 = garm_vy_leg1 * t273 + garm_vy_leg2 * t302 + garm_vy_leg3 * t330
-            - t192 * t332;
-        let t351 = t232
-            * (t214 * t332
-                - (minus_garm_vz_leg1 * t273 + minus_garm_vz_leg2 * t302
-                    + minus_garm_vz_leg3 * t330) - t222 * t340);
-        let t353 = t195 * t340 - t222 * t351;
-        let t357 = t191 * t332 - t192 * t353 + t214 * t351;
-        let t361 = 0.24 * t260;
-        let t363 = pose[1] * minus_rate_cross_leg1;
-        let t364 = rate_rod_leg1 * t363;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t200 * t201 - t208 * t209;
+        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
+        let t227 = (t174 * t201 - (t56 + t211 + t213) - t209 * t187) / t226;
+        let t229 = t187 / t194 - t209 * t227;
+        let t230 = 0.24 * c_cross_leg1;
+        let t236 = t174 / t184 - t185 * t229 + t201 * t227;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (actuator_velocities[0] * t230 + s_armcross_leg1 * t236
+                + c_armcross_leg1 * t227);
+        let t242 = t229 * minus_rate_cross_leg1;
+        let t243 = 1.7857142857142858 * t242;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t245 = 0.24 * actuator_accelerations[0];
+        let t247 = actuator_velocities[0] * actuator_velocities[0];
+        let t249 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t229;
+        let t251 = rate_rod_leg1 * rate_rod_leg1;
+        let t255 = pose[1] * t251;
+        let rate_dot_arm_leg1 = t34 * (t230 * t247 + t23 * (t249 + t251) + t38 * t255);
+        let t259 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t261 = actuator_velocities[1] * actuator_velocities[1];
+        let t264 = 0.8660254037844387 * t236;
+        let t265 = 0.5 * t229;
+        let minus_rate_rod_leg2 = t102 * (t264 + t265);
+        let t268 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t269 = 0.5 * s_armcross_leg2;
+        let t271 = 0.8660254037844387 * s_armcross_leg2;
+        let t277 = t269 * t236 - t271 * t229 - c_armcross_leg2 * t227
+            - actuator_velocities[1] * t104;
+        let rate_cross_leg2 = t102 * t277;
+        let t279 = rate_cross_leg2 * rate_cross_leg2;
+        let t280 = t268 + t279;
+        let t283 = t76 * t268;
+        let rate_dot_arm_leg2 = t89
+            * (t104 * t261 + 0.56 * c_rod_leg2 * t280 + t112 * t283);
+        let t287 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t290 = actuator_velocities[2] * actuator_velocities[2];
+        let t293 = t264 - t265;
+        let rate_rod_leg3 = t156 * t293;
+        let t295 = rate_rod_leg3 * rate_rod_leg3;
+        let t296 = 0.5 * s_armcross_leg3;
+        let t298 = 0.8660254037844387 * s_armcross_leg3;
+        let rate_cross_leg3 = t156
+            * (t296 * t236 + t298 * t229 + minus_c_armcross_leg3 * t227
+                - actuator_velocities[2] * t143);
+        let t306 = rate_cross_leg3 * rate_cross_leg3;
+        let t307 = t295 + t306;
+        let t310 = t75 * t295;
+        let rate_dot_arm_leg3 = t135
+            * (t143 * t290 + 0.56 * c_rod_leg3 * t307 + t157 * t310);
+        let t314 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t316 = garm_vx_leg1 * t259 + garm_vx_leg2 * t287 + garm_vx_leg3 * t314;
+        let t324 = garm_vy_leg1 * t259 + garm_vy_leg2 * t287 + garm_vy_leg3 * t314
+            - t185 * t316;
+        let t335 = (t201 * t316
+            - (minus_garm_vz_leg1 * t259 + minus_garm_vz_leg2 * t287
+                + minus_garm_vz_leg3 * t314) - t209 * t324) / t226;
+        let t337 = t324 / t194 - t209 * t335;
+        let t341 = t316 / t184 - t185 * t337 + t201 * t335;
+        let t345 = 0.24 * t247;
+        let t347 = t38 * t242;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t258 + s_armcross_leg1 * t357 + c_armcross_leg1 * t351
-                + s_cross_leg1 * t361 + t364 + t364);
-        let t370 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t372 = t257 + t370 + t257;
-        let t373 = s_rod_leg1 * t372;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t245 * garm_vy_leg1);
-        let t379 = 3.188775510204082 * (minus_rate_cross_leg1 * t363);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t62;
-        let t383 = t373 - minus_rate_dot_cross_leg1;
-        let t386 = t40 * t383 - c_rod_leg1 * t372;
-        let t388 = t363 * t363;
-        let t396 = t262 * t379;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t353 + t269);
-        let t401 = 3.188775510204082 * t388;
-        let t404 = s_rod_leg1 * (t396 + rate_dot_rod_leg1) + c_rod_leg1 * (t265 - t401);
-        let t410 = minus_gcross_vx_leg1 * t383;
-        let t412 = t379 - minus_gcross_vy_leg1 * t383;
-        let t413 = minus_gcross_vz_leg1 * t383;
-        let t414 = 1.7857142857142858 * t353;
-        let t420 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t421 = 1.7857142857142858 * t357;
-        let t422 = t258 - t48;
-        let t423 = 0.24 * t422;
-        let t424 = garm_vx_leg1 * t423;
-        let t430 = garm_vy_leg1 * t423;
-        let t438 = t351 + 9.81;
-        let t439 = 1.7857142857142858 * t438;
-        let t440 = minus_garm_vz_leg1 * t423;
-        let t446 = 0.8928571428571429 * t16;
-        let t454 = t446 * (t396 - rate_dot_rod_leg1) + t40 * t446 * (t401 + t265)
-            + t245 * t372;
-        let t457 = t52 - t361;
-        let t460 = s_rod_leg1 * (c_cross_leg1 * t422 - s_cross_leg1 * t457);
-        let t468 = c_cross_leg1 * t457 + s_cross_leg1 * t422;
-        let t477 = t245 * t264 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
-        let t487 = garm_vx_leg2 * actuator_accelerations[1];
-        let t488 = garm_vy_leg2 * actuator_accelerations[1];
-        let t489 = minus_garm_vz_leg2 * actuator_accelerations[1];
-        let t490 = 9.81 * c_arm_leg2;
-        let t494 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t118 * (t284 - t176 * t113);
-        let t505 = minus_rate_rod_leg2 * (1.7857142857142858 * t292);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t79;
-        let t512 = 0.24 * t276;
-        let t514 = t79 * rate_cross_leg2;
-        let t515 = minus_rate_rod_leg2 * t514;
-        let t519 = 0.24 * actuator_accelerations[1];
-        let t521 = t284 * t357 - t286 * t353 - c_armcross_leg2 * t351
-            - (s_cross_leg2 * t512 - t515 - t515) - c_cross_leg2 * t519;
-        let rate_dot_cross_leg2 = t118 * t521;
-        let t523 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t525 = t505 + t523 + t505;
-        let t526 = c_rod_leg2 * t525;
-        let t527 = t119 * t526;
-        let t529 = rate_cross_leg2 * t514;
-        let t530 = 2.76156059880242 * t529;
-        let minus_gcross_vy_leg2 = t118 * (t286 + t121 * t113);
-        let t536 = 1.594387755102041 * t529;
-        let minus_gcross_vz_leg2 = t118 * t103;
-        let t540 = rate_dot_cross_leg2 - t527;
-        let t542 = t119 * t540 + t526;
-        let t544 = t514 * t514;
-        let t547 = t117 * (t544 - t292 * t292);
-        let t555 = 3.188775510204082 * (t292 * t514);
-        let t556 = 0.8660254037844387 * t357;
-        let t557 = 0.5 * t353;
-        let t558 = t556 + t557;
-        let minus_rate_dot_rod_leg2 = t118 * (t558 + t298);
-        let t563 = 3.188775510204082 * t544;
-        let t566 = minus_s_rod_leg2 * (t555 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t283 - t563);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t117;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t117;
-        let t577 = gcross_vx_leg2 * t540 + t530;
-        let t579 = t536 - minus_gcross_vy_leg2 * t540;
-        let t580 = minus_gcross_vz_leg2 * t540;
-        let t581 = 1.7857142857142858 * t558;
-        let t589 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t590 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t591 = t519 - t490;
-        let t592 = 0.24 * t591;
-        let t593 = garm_vx_leg2 * t592;
-        let t601 = garm_vy_leg2 * t592;
-        let t610 = minus_garm_vz_leg2 * t592;
-        let t615 = 0.8928571428571429 * t87;
-        let t623 = t615 * (minus_rate_dot_rod_leg2 - t555) - t119 * t615 * (t563 + t283)
-            + t275 * t525;
-        let t626 = t494 - t512;
-        let t629 = minus_s_rod_leg2 * (c_cross_leg2 * t591 - s_cross_leg2 * t626);
-        let t634 = c_cross_leg2 * t626 + s_cross_leg2 * t591;
-        let t648 = rate_dot_cross_leg2 * (t87 * minus_grod_vy_leg2) + t275 * t294;
-        let t658 = garm_vx_leg3 * actuator_accelerations[2];
-        let t659 = garm_vy_leg3 * actuator_accelerations[2];
-        let t660 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t661 = 9.81 * minus_c_arm_leg3;
-        let t665 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t166 * (t312 - t182 * t161);
-        let t676 = rate_rod_leg3 * (1.7857142857142858 * t320);
-        let s_rod_leg3 = 1.7857142857142858 * t78;
-        let t683 = 0.24 * t306;
-        let t685 = t78 * rate_cross_leg3;
-        let t686 = rate_rod_leg3 * t685;
-        let t690 = 0.24 * actuator_accelerations[2];
-        let t692 = t312 * t357 + t314 * t353 + minus_c_armcross_leg3 * t351
-            - (s_cross_leg3 * t683 - t686 - t686) - c_cross_leg3 * t690;
-        let rate_dot_cross_leg3 = t166 * t692;
-        let t694 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t696 = t676 + t694 + t676;
-        let t697 = c_rod_leg3 * t696;
-        let t698 = t167 * t697;
-        let t700 = rate_cross_leg3 * t685;
-        let t701 = 2.76156059880242 * t700;
-        let gcross_vy_leg3 = t166 * (t314 - t169 * t161);
-        let t707 = 1.594387755102041 * t700;
-        let gcross_vz_leg3 = t166 * t151;
-        let t711 = rate_dot_cross_leg3 - t698;
-        let t713 = t697 + t167 * t711;
-        let t715 = t685 * t685;
-        let t718 = t165 * (t715 - t320 * t320);
-        let t726 = 3.188775510204082 * (t320 * t685);
-        let t727 = t556 - t557;
-        let rate_dot_rod_leg3 = t166 * (t727 + t326);
-        let t732 = 3.188775510204082 * t715;
-        let t735 = s_rod_leg3 * (t726 + rate_dot_rod_leg3) + c_rod_leg3 * (t311 - t732);
-        let grod_vx_leg3 = 1.5464739353293548 * t165;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t165;
-        let t746 = gcross_vx_leg3 * t711 + t701;
-        let t748 = gcross_vy_leg3 * t711 - t707;
-        let t749 = gcross_vz_leg3 * t711;
-        let t750 = 1.7857142857142858 * t727;
-        let t758 = grod_vx_leg3 * rate_dot_rod_leg3;
-        let t759 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t760 = t661 + t690;
-        let t761 = 0.24 * t760;
-        let t762 = garm_vx_leg3 * t761;
-        let t770 = garm_vy_leg3 * t761;
-        let t779 = minus_garm_vz_leg3 * t761;
-        let t784 = 0.8928571428571429 * t136;
-        let t792 = t784 * (t726 - rate_dot_rod_leg3) + t167 * t784 * (t732 + t311)
-            - t305 * t696;
-        let t794 = t665 + t683;
-        let t798 = s_rod_leg3 * (s_cross_leg3 * t794 + c_cross_leg3 * t760);
-        let t803 = s_cross_leg3 * t760 - c_cross_leg3 * t794;
-        let t817 = rate_dot_cross_leg3 * (t136 * minus_grod_vy_leg3) + t305 * t322;
+            * (c_cross_leg1 * t245 + s_armcross_leg1 * t341 + c_armcross_leg1 * t335
+                + s_cross_leg1 * t345 + t347 + t347);
+        let t353 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t355 = t243 + t353 + t243;
+        let t356 = c_rod_leg1 * t355;
+        let t357 = t38 * t356;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t230 * garm_vy_leg1);
+        let t363 = 3.188775510204082 * (pose[1] * t249);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t60;
+        let t367 = t357 - minus_rate_dot_cross_leg1;
+        let t369 = t38 * t367 - t356;
+        let t371 = pose[1] * t363;
+        let t372 = t251 - t371;
+        let t373 = t249 + t372;
+        let t374 = t371 + t251;
+        let t380 = t23 * t363;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t337 + t255);
+        let t383 = t380 + rate_dot_rod_leg1;
+        let t386 = s_rod_leg1 * t383 + c_rod_leg1 * t372;
+        let t396 = 1.7857142857142858 * t337;
+        let t406 = 0.8928571428571429 * t15;
+        let t408 = t38 * t406;
+        let t411 = t230 * (0.56 * grod_vy_leg1 * t367) - (t406 * t373 + t408 * t383);
+        let t413 = t245 - t46;
+        let t415 = t50 - t345;
+        let t417 = c_cross_leg1 * t413 - s_cross_leg1 * t415;
+        let t418 = c_rod_leg1 * t417;
+        let t422 = 0.24 * t413;
+        let t423 = garm_vy_leg1 * t422;
+        let t434 = t406 * (t380 - rate_dot_rod_leg1) + t408 * t374 + t230 * t355;
+        let t436 = s_rod_leg1 * t417;
+        let t444 = c_cross_leg1 * t415 + s_cross_leg1 * t413;
+        let t453 = t230 * t249 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
+        let t465 = garm_vx_leg2 * actuator_accelerations[1];
+        let t466 = garm_vy_leg2 * actuator_accelerations[1];
+        let t467 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t468 = 9.81 * c_arm_leg2;
+        let t472 = 9.81 * minus_s_arm_leg2;
+        let t479 = c_cross_leg2 / s_cross_leg2;
+        let gcross_vx_leg2 = t102 * (t269 - t165 * t479);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t76;
+        let t484 = minus_rate_rod_leg2 * t277;
+        let t485 = 1.7857142857142858 * t484;
+        let t491 = t261 * t87;
+        let t492 = t112 * t484;
+        let t497 = t269 * t341 - t271 * t337 - c_armcross_leg2 * t335
+            - (t491 - (t492 + t492)) - actuator_accelerations[1] * t104;
+        let rate_dot_cross_leg2 = t102 * t497;
+        let t499 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t501 = t485 + t499 + t485;
+        let t502 = minus_s_rod_leg2 * t501;
+        let t504 = t85 * t279;
+        let t505 = t112 * t504;
+        let minus_grod_vx_leg2 = 0.8660254037844387 * t102;
+        let t507 = t505 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t102 * (t271 + t114 * t479);
+        let t513 = t505 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t102 * t95;
+        let t517 = rate_dot_cross_leg2 - t502;
+        let t520 = t112 * t517 + c_rod_leg2 * t501;
+        let t524 = t279 * (t77 - t78) / c_rod_leg2;
+        let t531 = 0.8660254037844387 * t341;
+        let t532 = 0.5 * t337;
+        let t533 = t531 + t532;
+        let minus_rate_dot_rod_leg2 = t102 * (t533 + t283);
+        let t536 = t505 + minus_rate_dot_rod_leg2;
+        let t538 = t504 + t268;
+        let t541 = minus_s_rod_leg2 * t536 + c_rod_leg2 * (t538 - t279);
+        let t554 = 1.7857142857142858 * t533;
+        let t565 = 0.24 * actuator_accelerations[1] - t468;
+        let t568 = s_cross_leg2 * t472 - t491;
+        let t570 = c_rod_leg2 * (c_cross_leg2 * t565 - t568);
+        let t571 = gcross_vx_leg2 * t570;
+        let t573 = t112 * t84;
+        let t578 = t84 * t538 + t573 * t536 - t104 * (t517 / c_rod_leg2);
+        let t583 = t479 * t568 + s_cross_leg2 * t565;
+        let t584 = 1.5464739353293548 * t583;
+        let t588 = minus_gcross_vy_leg2 * t570;
+        let t590 = 0.8928571428571429 * t583;
+        let t594 = minus_gcross_vz_leg2 * t570;
+        let t602 = t84 * (minus_rate_dot_rod_leg2 - t505) - t573 * (t280 - t504)
+            + t104 * t501;
+        let t616 = rate_dot_cross_leg2 * t87 + t104 * t279;
+        let t626 = 0.24 * t565;
+        let t630 = garm_vx_leg3 * actuator_accelerations[2];
+        let t631 = garm_vy_leg3 * actuator_accelerations[2];
+        let t632 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t633 = 9.81 * minus_c_arm_leg3;
+        let t637 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t156 * (t296 - garm_vx_leg3 * t143);
+        let t647 = t293 * rate_cross_leg3;
+        let t648 = 1.7857142857142858 * t647;
+        let s_rod_leg3 = 1.7857142857142858 * t75;
+        let t655 = t290 * t133;
+        let t656 = t157 * t647;
+        let t661 = t296 * t341 + t298 * t337 + minus_c_armcross_leg3 * t335
+            - (t655 - (t656 + t656)) - actuator_accelerations[2] * t143;
+        let rate_dot_cross_leg3 = t156 * t661;
+        let t663 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t665 = t648 + t663 + t648;
+        let t666 = c_rod_leg3 * t665;
+        let t667 = t157 * t666;
+        let t669 = t130 * t306;
+        let t670 = t157 * t669;
+        let grod_vx_leg3 = 1.5464739353293548 / c_rod_leg3;
+        let t672 = t670 * grod_vx_leg3;
+        let gcross_vy_leg3 = t156 * (t298 - garm_vy_leg3 * t143);
+        let t678 = t670 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t156 * t141;
+        let t682 = rate_dot_cross_leg3 - t667;
+        let t683 = t682 / c_rod_leg3;
+        let t685 = t666 + s_rod_leg3 * t683;
+        let t689 = t306 * (t123 - t124) / c_rod_leg3;
+        let t696 = t531 - t532;
+        let rate_dot_rod_leg3 = t156 * (t696 + t310);
+        let t699 = t670 + rate_dot_rod_leg3;
+        let t701 = t669 + t295;
+        let t704 = s_rod_leg3 * t699 + c_rod_leg3 * (t701 - t306);
+        let t717 = 1.7857142857142858 * t696;
+        let t728 = t655 + s_cross_leg3 * t637;
+        let t730 = t633 + 0.24 * actuator_accelerations[2];
+        let t733 = c_rod_leg3 * (t728 + c_cross_leg3 * t730);
+        let t734 = gcross_vx_leg3 * t733;
+        let t735 = 0.8928571428571429 * t129;
+        let t737 = t157 * t735;
+        let t741 = t735 * t701 + t737 * t699 - t143 * t683;
+        let t747 = s_cross_leg3 * t730 - c_cross_leg3 / s_cross_leg3 * t728;
+        let t748 = 1.5464739353293548 * t747;
+        let t751 = gcross_vy_leg3 * t733;
+        let t754 = 0.8928571428571429 * t747;
+        let t758 = gcross_vz_leg3 * t733;
+        let t766 = t735 * (t670 - rate_dot_rod_leg3) + t737 * (t307 - t669)
+            - t143 * t665;
+        let t780 = rate_dot_cross_leg3 * t133 + t143 * t306;
+        let t790 = 0.24 * t730;
         Ok([
             [
-                t37, -(garm_vx_leg1 * t48), -(garm_vx_leg1 * t52), t37, t56,
+                t36, -(garm_vx_leg1 * t46), -(garm_vx_leg1 * t50), t36, t54,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t373, -(minus_gcross_vx_leg1 * t386),
-                -(minus_gcross_vx_leg1 * t404), -t410, -(minus_gcross_vx_leg1 * t414), 0.0,
-                t421
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t424 - 5.444444444444445 * t410),
-                garm_vx_leg1 * t454 + minus_gcross_vx_leg1 * t460,
-                garm_vx_leg1 * t477 - minus_gcross_vx_leg1 * t468,
-                t424,
-                t487,
-                -(garm_vx_leg2 * t490),
-                -(garm_vx_leg2 * t494),
-                t487,
-                t200,
-                ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
-                garm_vx_leg2,
-                gcross_vx_leg2 * t527 - t530,
-                -(gcross_vx_leg2 * t542 + 4.9313582121471775 * t547),
-                gcross_vx_leg2 * t566 + minus_grod_vx_leg2 * t523,
-                t577,
-                -(gcross_vx_leg2 * t581 + 1.5464739353293548 * rate_dot_cross_leg2),
-                t589,
-                t421
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t593 + 5.444444444444445 * t577
-                            + 5.444444444444445 * t589),
-                garm_vx_leg2 * t623 + gcross_vx_leg2 * t629 + 1.5464739353293548 * t634,
-                garm_vx_leg2 * t648 + gcross_vx_leg2 * t634,
-                t593,
-                t658,
-                garm_vx_leg3 * t661,
-                garm_vx_leg3 * t665,
-                t658,
-                t202,
-                ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
-                garm_vx_leg3,
-                gcross_vx_leg3 * t698 - t701,
-                gcross_vx_leg3 * t713 + 4.9313582121471775 * t718,
-                gcross_vx_leg3 * t735 + grod_vx_leg3 * t694,
-                t746,
-                gcross_vx_leg3 * t750 + 1.5464739353293548 * rate_dot_cross_leg3,
-                t758,
-                t421
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t762 + 5.444444444444445 * t746
-                            + 5.444444444444445 * t758),
-                garm_vx_leg3 * t792 - gcross_vx_leg3 * t798 - 1.5464739353293548 * t803,
-                garm_vx_leg3 * t817 + gcross_vx_leg3 * t803,
-                t762,
-                t357,
+                minus_gcross_vx_leg1 * t357, -(minus_gcross_vx_leg1 * t369),
+                -(minus_gcross_vx_leg1 * t386), -(minus_gcross_vx_leg1 * t367),
+                -(minus_gcross_vx_leg1 * t396), 0.0,
+                garm_vx_leg1 * t411 - minus_gcross_vx_leg1 * t418,
+                garm_vx_leg1 * t434 + minus_gcross_vx_leg1 * t436,
+                garm_vx_leg1 * t453 - minus_gcross_vx_leg1 * t444, garm_vx_leg1 * t422, t465,
+                -(garm_vx_leg2 * t468), -(garm_vx_leg2 * t472), t465, t167,
+                ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]), garm_vx_leg2,
+                gcross_vx_leg2 * t502 - t507, -(gcross_vx_leg2 * t520 + 4.9313582121471775 * t524),
+                gcross_vx_leg2 * t541 + minus_grod_vx_leg2 * t499, gcross_vx_leg2 * t517 + t507,
+                -(gcross_vx_leg2 * t554 + 1.5464739353293548 * rate_dot_cross_leg2),
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                t571 - garm_vx_leg2 * t578 - t112 * t584, garm_vx_leg2 * t602 + t112 * t571 + t584,
+                garm_vx_leg2 * t616 + gcross_vx_leg2 * t583, garm_vx_leg2 * t626, t630,
+                garm_vx_leg3 * t633, garm_vx_leg3 * t637, t630, t173,
+                ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg3,
+                gcross_vx_leg3 * t667 - t672, gcross_vx_leg3 * t685 + 4.9313582121471775 * t689,
+                gcross_vx_leg3 * t704 + grod_vx_leg3 * t663, gcross_vx_leg3 * t682 + t672,
+                gcross_vx_leg3 * t717 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3, t734 - garm_vx_leg3 * t741 - t157 * t748,
+                garm_vx_leg3 * t766 - t157 * t734 - t748,
+                garm_vx_leg3 * t780 + gcross_vx_leg3 * t747, garm_vx_leg3 * t790, t341,
             ],
             [
-                t42, -(garm_vy_leg1 * t48), -(garm_vy_leg1 * t52), t42, t57,
+                t40, -(garm_vy_leg1 * t46), -(garm_vy_leg1 * t50), t40, t55,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t373 - t379,
-                5.694241982507289 * (t38 * (t388 - t255 * t255))
-                    - minus_gcross_vy_leg1 * t386,
-                -(minus_gcross_vy_leg1 * t404 + grod_vy_leg1 * t370),
-                t412,
-                -(minus_gcross_vy_leg1 * t414
+                minus_gcross_vy_leg1 * t357 - t363,
+                -(grod_vy_leg1 * (t373 - t374) + minus_gcross_vy_leg1 * t369),
+                -(minus_gcross_vy_leg1 * t386 + grod_vy_leg1 * t353),
+                t363 - minus_gcross_vy_leg1 * t367,
+                -(minus_gcross_vy_leg1 * t396
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                t420,
-                t414
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t430 + 5.444444444444445 * t412
-                            + 5.444444444444445 * t420),
-                garm_vy_leg1 * t454 + minus_gcross_vy_leg1 * t460
-                    - 1.7857142857142858 * t468,
-                garm_vy_leg1 * t477 - minus_gcross_vy_leg1 * t468,
-                t430,
-                t488,
-                -(garm_vy_leg2 * t490),
-                -(garm_vy_leg2 * t494),
-                t488,
-                t196,
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                garm_vy_leg1 * t411 - 1.7857142857142858 * t423,
+                garm_vy_leg1 * t434 + minus_gcross_vy_leg1 * t436
+                    - 1.7857142857142858 * t444,
+                garm_vy_leg1 * t453 - minus_gcross_vy_leg1 * t444,
+                t423,
+                t466,
+                -(garm_vy_leg2 * t468),
+                -(garm_vy_leg2 * t472),
+                t466,
+                t116,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t527 + t536),
-                -(2.8471209912536444 * t547 - minus_gcross_vy_leg2 * t542),
-                minus_grod_vy_leg2 * t523 - minus_gcross_vy_leg2 * t566,
-                t579,
-                minus_gcross_vy_leg2 * t581 - 0.8928571428571429 * rate_dot_cross_leg2,
-                t590,
-                t414
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t601 + 5.444444444444445 * t579
-                            + 5.444444444444445 * t590),
-                garm_vy_leg2 * t623 - minus_gcross_vy_leg2 * t629
-                    + 0.8928571428571429 * t634,
-                garm_vy_leg2 * t648 - minus_gcross_vy_leg2 * t634,
-                t601,
-                t659,
-                garm_vy_leg3 * t661,
-                garm_vy_leg3 * t665,
-                t659,
-                t198,
+                -(minus_gcross_vy_leg2 * t502 + t513),
+                -(2.8471209912536444 * t524 - minus_gcross_vy_leg2 * t520),
+                minus_grod_vy_leg2 * t499 - minus_gcross_vy_leg2 * t541,
+                t513 - minus_gcross_vy_leg2 * t517,
+                minus_gcross_vy_leg2 * t554 - 0.8928571428571429 * rate_dot_cross_leg2,
+                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
+                -(garm_vy_leg2 * t578 + t588 + t112 * t590),
+                garm_vy_leg2 * t602 - t112 * t588 + t590,
+                garm_vy_leg2 * t616 - minus_gcross_vy_leg2 * t583,
+                garm_vy_leg2 * t626,
+                t631,
+                garm_vy_leg3 * t633,
+                garm_vy_leg3 * t637,
+                t631,
+                t161,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t698 + t707,
-                gcross_vy_leg3 * t713 - 2.8471209912536444 * t718,
-                gcross_vy_leg3 * t735 - minus_grod_vy_leg3 * t694,
-                t748,
-                gcross_vy_leg3 * t750 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -t759,
-                t414
-                    - 0.10285714285714286
-                        * (17.36111111111111 * t770 + 5.444444444444445 * t748
-                            - 5.444444444444445 * t759),
-                garm_vy_leg3 * t792 - gcross_vy_leg3 * t798 + 0.8928571428571429 * t803,
-                garm_vy_leg3 * t817 + gcross_vy_leg3 * t803,
-                t770,
-                t353,
+                gcross_vy_leg3 * t667 + t678,
+                gcross_vy_leg3 * t685 - 2.8471209912536444 * t689,
+                gcross_vy_leg3 * t704 - minus_grod_vy_leg3 * t663,
+                gcross_vy_leg3 * t682 - t678,
+                gcross_vy_leg3 * t717 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                t751 - garm_vy_leg3 * t741 + t157 * t754,
+                garm_vy_leg3 * t766 - t157 * t751 + t754,
+                garm_vy_leg3 * t780 + gcross_vy_leg3 * t747,
+                garm_vy_leg3 * t790,
+                t337,
             ],
             [
-                -t47, minus_garm_vz_leg1 * t48, minus_garm_vz_leg1 * t52, -t47, -t58,
+                -t45, minus_garm_vz_leg1 * t46, minus_garm_vz_leg1 * t50, -t45, -t56,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t373, -(minus_gcross_vz_leg1 * t386),
-                -(minus_gcross_vz_leg1 * t404), -t413, -(minus_gcross_vz_leg1 * t414), 0.0,
-                t439
-                    + 0.10285714285714286
-                        * (17.36111111111111 * t440 + 5.444444444444445 * t413),
-                minus_gcross_vz_leg1 * t460 - minus_garm_vz_leg1 * t454,
-                -(minus_garm_vz_leg1 * t477 + minus_gcross_vz_leg1 * t468),
-                -t440,
-                -t489,
-                minus_garm_vz_leg2 * t490,
-                minus_garm_vz_leg2 * t494,
-                -t489,
-                -t234,
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t357, -(minus_gcross_vz_leg1 * t369),
+                -(minus_gcross_vz_leg1 * t386), -(minus_gcross_vz_leg1 * t367),
+                -(minus_gcross_vz_leg1 * t396), 0.0,
+                -(minus_garm_vz_leg1 * t411 + minus_gcross_vz_leg1 * t418),
+                minus_gcross_vz_leg1 * t436 - minus_garm_vz_leg1 * t434,
+                -(minus_garm_vz_leg1 * t453 + minus_gcross_vz_leg1 * t444),
+                -(minus_garm_vz_leg1 * t422), -t467, minus_garm_vz_leg2 * t468,
+                minus_garm_vz_leg2 * t472, -t467, -t211,
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
-                -minus_garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t527),
-                minus_gcross_vz_leg2 * t542,
-                -(minus_gcross_vz_leg2 * t566),
-                -t580,
-                minus_gcross_vz_leg2 * t581,
-                0.0,
-                t439
-                    + 0.10285714285714286
-                        * (5.444444444444445 * t580 + 17.36111111111111 * t610),
-                -(minus_gcross_vz_leg2 * t629 + minus_garm_vz_leg2 * t623),
-                -(minus_gcross_vz_leg2 * t634 + minus_garm_vz_leg2 * t648),
-                -t610,
-                -t660,
-                -(minus_garm_vz_leg3 * t661),
-                -(minus_garm_vz_leg3 * t665),
-                -t660,
-                -t236,
+                -minus_garm_vz_leg2, -(minus_gcross_vz_leg2 * t502), minus_gcross_vz_leg2 * t520,
+                -(minus_gcross_vz_leg2 * t541), -(minus_gcross_vz_leg2 * t517),
+                minus_gcross_vz_leg2 * t554, 0.0, minus_garm_vz_leg2 * t578 - t594,
+                -(t112 * t594 + minus_garm_vz_leg2 * t602),
+                -(minus_gcross_vz_leg2 * t583 + minus_garm_vz_leg2 * t616),
+                -(minus_garm_vz_leg2 * t626), -t632, -(minus_garm_vz_leg3 * t633),
+                -(minus_garm_vz_leg3 * t637), -t632, -t213,
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t698,
-                gcross_vz_leg3 * t713,
-                gcross_vz_leg3 * t735,
-                t749,
-                gcross_vz_leg3 * t750,
-                0.0,
-                t439
-                    - 0.10285714285714286
-                        * (5.444444444444445 * t749 - 17.36111111111111 * t779),
-                -(minus_garm_vz_leg3 * t792 + gcross_vz_leg3 * t798),
-                gcross_vz_leg3 * t803 - minus_garm_vz_leg3 * t817,
-                -t779,
-                t438,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t667, gcross_vz_leg3 * t685,
+                gcross_vz_leg3 * t704, gcross_vz_leg3 * t682, gcross_vz_leg3 * t717, 0.0,
+                minus_garm_vz_leg3 * t741 + t758, -(minus_garm_vz_leg3 * t766 + t157 * t758),
+                gcross_vz_leg3 * t747 - minus_garm_vz_leg3 * t780, -(minus_garm_vz_leg3 * t790),
+                t335 + 9.81,
             ],
         ])
     }
@@ -4495,7 +4388,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 682 operations (210 additions, 457 multiplications, 15 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 575 intermediates.
+    /// 664 operations (210 additions, 430 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 557 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4506,381 +4399,366 @@ impl Delta {
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05;
         let t2 = t1 - 0.2;
-        let t4 = pose[2] * pose[2];
-        let t5 = t2 * t2 + t4;
-        let t6 = 0.2304 * t5;
-        let t7 = 1.0 / t6;
-        let t8 = 0.48 * t2;
-        let t10 = pose[1] * pose[1] + -0.3136;
-        let t11 = t5 + t10;
-        let t12 = t11 + 0.0576;
-        let t14 = 0.48 * pose[2];
-        let t16 = t6 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t7 * (t8 * t12 - t14 * t17);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t10));
+        let t3 = 0.48 * t2;
+        let t5 = pose[2] * pose[2];
+        let t6 = t2 * t2 + t5;
+        let t7 = pose[1] * pose[1];
+        let t8 = t7 + -0.3136;
+        let t9 = t6 + t8;
+        let t10 = t9 + 0.0576;
+        let t12 = 0.48 * pose[2];
+        let t13 = 0.2304 * t6;
+        let t15 = t13 - t10 * t10;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = (t3 * t10 - t12 * t16) / t13;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t8));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t25 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t11 + -0.0576) / t25;
-        let minus_s_arm_leg1 = t7 * (t14 * t12 + t8 * t17);
-        let s_cross_leg1 = t17 / t25;
+        let t24 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t9 + -0.0576) / t24;
+        let minus_s_arm_leg1 = (t12 * t10 + t3 * t16) / t13;
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t35 = 1.0 / s_cross_leg1;
-        let t36 = 4.166666666666667 * t35;
-        let garm_vx_leg1 = c_armcross_leg1 * t36;
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t44 = 0.24 * c_cross_leg1;
-        let t48 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t48;
-        let t50 = pose[1] * grod_vy_leg1;
-        let t51 = t50 * twist[1];
-        let rate_arm_leg1 = t36
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t51);
-        let t54 = rate_arm_leg1 * rate_arm_leg1;
-        let t56 = 0.56 * c_rod_leg1;
-        let t61 = t44 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let t42 = 0.24 * c_cross_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t47 = pose[1] * grod_vy_leg1;
+        let t48 = t47 * twist[1];
+        let rate_arm_leg1 = t34
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t48);
+        let t51 = rate_arm_leg1 * rate_arm_leg1;
+        let t53 = 0.56 * c_rod_leg1;
+        let t58 = t42 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t61;
-        let t63 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t58;
+        let t60 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t65 = rate_rod_leg1 * rate_rod_leg1;
-        let t71 = acceleration[1] + pose[1] * t65;
-        let t73 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t44 * t54 + t56 * (t63 + t65) + t50 * t71;
-        let rate_dot_arm_leg1 = t36 * t73;
-        let garm_vy_leg1 = t36 * t50;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
-        let t80 = t1 + 0.025;
-        let t81 = t80 * t80;
-        let t83 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t87 = t81 + t83 * t83 + t4 + -0.3136;
-        let t90 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t92 = 0.8660254037844387 * t80 - 0.5 * t90;
-        let t93 = pose[1] + t92;
-        let t95 = 0.3136 - t93 * t93;
-        let t97 = 0.2304 * (t87 + t95);
-        let t98 = t87 + 0.0576;
-        let t100 = t97 - t98 * t98;
-        ::overact::guard::reach(t100, "leg2")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let t102 = 3.188775510204082 * t95;
+        let t62 = rate_rod_leg1 * rate_rod_leg1;
+        let t68 = acceleration[1] + pose[1] * t62;
+        let t70 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t42 * t51 + t53 * (t60 + t62) + t47 * t68;
+        let rate_dot_arm_leg1 = t34 * t70;
+        let garm_vy_leg1 = t34 * t47;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
+        let t77 = t1 + 0.025;
+        let t78 = t77 * t77;
+        let t80 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t83 = t78 + t80 * t80 + t5;
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t87 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t89 = 0.8660254037844387 * t77 - 0.5 * t87;
+        let s_rod_leg3 = 1.7857142857142858 * t89;
+        let minus_s_rod_leg2 = s_rod_leg1 + s_rod_leg3;
+        let t92 = 0.56 * minus_s_rod_leg2;
+        let t94 = t83 - t92 * t92;
+        let t95 = 0.2304 * t94;
+        let t96 = t83 - 0.3136;
+        let t97 = t96 + 0.0576;
+        let t99 = t95 - t97 * t97;
+        ::overact::guard::reach(t99, "leg2")?;
+        let t100 = ::overact::math::sqrt(t99);
+        let t102 = 3.188775510204082 * (t94 - t96);
         ::overact::guard::reach(t102, "leg2")?;
         let c_rod_leg2 = ::overact::math::sqrt(t102);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
         let t104 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t101 / t104;
+        let t105 = 0.48 / t104;
+        let t106 = 0.56 * t105;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t106;
+        let t108 = t100 * minus_grod_vy_leg2;
+        let s_cross_leg2 = 4.166666666666667 * t108;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t106 = 1.0 / s_cross_leg2;
-        let t107 = 4.166666666666667 * t106;
-        let t108 = 1.0 / c_rod_leg2;
-        let t109 = 1.7857142857142858 * t108;
-        let t110 = t93 * t109;
-        let t112 = 1.0 / t97;
-        let t115 = 0.5 * t80;
-        let t117 = 0.48 * (0.8660254037844387 * t83 - t115);
-        let minus_s_arm_leg2 = t112 * (t14 * t98 + t117 * t101);
-        let t121 = t106 * minus_s_arm_leg2;
-        let c_arm_leg2 = t112 * (t117 * t98 - t14 * t101);
-        let c_cross_leg2 = (-0.0576 + t87) / t104;
+        let t110 = 4.166666666666667 / s_cross_leg2;
+        let t111 = t92 * t105;
+        let t115 = 0.5 * t77;
+        let t117 = 0.48 * (0.8660254037844387 * t80 - t115);
+        let minus_s_arm_leg2 = (t12 * t97 + t117 * t100) / t95;
+        let t121 = minus_s_arm_leg2 / s_cross_leg2;
+        let c_arm_leg2 = (t117 * t97 - t12 * t100) / t95;
+        let c_cross_leg2 = (-0.0576 + t96) / t104;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t131 = c_cross_leg2 * t106;
+        let t131 = c_cross_leg2 / s_cross_leg2;
         let c_armcross_leg2 = t121 + s_armcross_leg2 * t131;
         let t134 = 0.5 * c_armcross_leg2;
-        let t135 = 0.8660254037844387 * t110 - t134;
-        let garm_vx_leg2 = t107 * t135;
+        let t135 = 0.8660254037844387 * t111 - t134;
+        let garm_vx_leg2 = t110 * t135;
         let t137 = 0.8660254037844387 * c_armcross_leg2;
-        let t143 = 0.24 * c_cross_leg2;
-        let t149 = 0.8660254037844387 * twist[0];
-        let t150 = 0.5 * twist[1];
-        let t151 = t149 + t150;
-        let t152 = t110 * t151;
-        let rate_arm_leg2 = t107
-            * (t137 * twist[1] - t134 * twist[0] - s_armcross_leg2 * twist[2] + t152);
-        let t155 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t109 * t151;
+        let t148 = 0.8660254037844387 * twist[0];
+        let t149 = 0.5 * twist[1];
+        let t150 = t148 + t149;
+        let t151 = t111 * t150;
+        let t152 = t137 * twist[1] - t134 * twist[0] - s_armcross_leg2 * twist[2] + t151;
+        let rate_arm_leg2 = t110 * t152;
+        let t154 = 0.24 * c_cross_leg2;
+        let t155 = t154 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t105 * t150;
         let t159 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
         let t160 = 0.5 * s_armcross_leg2;
         let t162 = 0.8660254037844387 * s_armcross_leg2;
-        let t168 = t160 * twist[0] - t162 * twist[1] - c_armcross_leg2 * twist[2]
-            - t143 * rate_arm_leg2;
-        let rate_cross_leg2 = t109 * t168;
-        let t170 = rate_cross_leg2 * rate_cross_leg2;
-        let t174 = t137 * acceleration[1] - t134 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t143 * t155
-            + 0.56 * c_rod_leg2 * (t159 + t170);
-        let t175 = 0.8660254037844387 * acceleration[0];
-        let t176 = 0.5 * acceleration[1];
-        let t177 = t175 + t176;
-        let t179 = t177 + t93 * t159;
-        let rate_dot_arm_leg2 = t107 * (t174 + t110 * t179);
-        let garm_vy_leg2 = t107 * (t137 + 0.5 * t110);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t107;
-        let t193 = t81 + t90 * t90 + t4 + -0.3136;
-        let t195 = 0.3136 - t92 * t92;
-        let t197 = 0.2304 * (t193 + t195);
-        let t198 = t193 + 0.0576;
-        let t200 = t197 - t198 * t198;
-        ::overact::guard::reach(t200, "leg3")?;
-        let t201 = ::overact::math::sqrt(t200);
-        let t202 = 3.188775510204082 * t195;
-        ::overact::guard::reach(t202, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t202);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t204 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t201 / t204;
+        let t167 = t160 * twist[0] - t162 * twist[1] - c_armcross_leg2 * twist[2] - t155;
+        let rate_cross_leg2 = t105 * t167;
+        let t169 = rate_cross_leg2 * rate_cross_leg2;
+        let t173 = t137 * acceleration[1] - t134 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t155
+            + 0.56 * c_rod_leg2 * (t159 + t169);
+        let t174 = 0.8660254037844387 * acceleration[0];
+        let t175 = 0.5 * acceleration[1];
+        let t176 = t174 + t175;
+        let t178 = t176 + t151 * minus_rate_rod_leg2;
+        let t180 = t173 + t111 * t178;
+        let rate_dot_arm_leg2 = t110 * t180;
+        let garm_vy_leg2 = t110 * (t137 + 0.5 * t111);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t110;
+        let t192 = t78 + t87 * t87 + t5 - 0.3136;
+        let t193 = t89 * t89;
+        let t194 = 0.3136 - t193;
+        let t196 = 0.2304 * (t192 + t194);
+        let t197 = t192 + 0.0576;
+        let t199 = t196 - t197 * t197;
+        ::overact::guard::reach(t199, "leg3")?;
+        let t200 = ::overact::math::sqrt(t199);
+        let t201 = 3.188775510204082 * t194;
+        ::overact::guard::reach(t201, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t201);
+        let t203 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t200 / t203;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t206 = 1.0 / s_cross_leg3;
-        let t207 = 4.166666666666667 * t206;
-        let t208 = 1.0 / t197;
-        let t211 = 0.48 * (t115 + 0.8660254037844387 * t90);
-        let s_arm_leg3 = t208 * (t211 * t201 - t14 * t198);
-        let t216 = t206 * s_arm_leg3;
-        let c_cross_leg3 = (-0.0576 + t193) / t204;
-        let minus_c_arm_leg3 = t208 * (t211 * t198 + t14 * t201);
+        let t205 = 4.166666666666667 / s_cross_leg3;
+        let t208 = 0.48 * (t115 + 0.8660254037844387 * t87);
+        let s_arm_leg3 = (t208 * t200 - t12 * t197) / t196;
+        let t213 = s_arm_leg3 / s_cross_leg3;
+        let c_cross_leg3 = (-0.0576 + t192) / t203;
+        let t216 = 0.24 * c_cross_leg3;
+        let minus_c_arm_leg3 = (t208 * t197 + t12 * t200) / t196;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t226 = c_cross_leg3 * t206;
-        let minus_c_armcross_leg3 = t216 - s_armcross_leg3 * t226;
-        let t229 = 0.5 * minus_c_armcross_leg3;
-        let t230 = 1.0 / c_rod_leg3;
-        let t231 = 1.7857142857142858 * t230;
-        let t232 = t92 * t231;
-        let t234 = t229 + 0.8660254037844387 * t232;
-        let garm_vx_leg3 = t207 * t234;
-        let t237 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t242 = 0.24 * c_cross_leg3;
-        let t248 = t149 - t150;
-        let t249 = t232 * t248;
-        let rate_arm_leg3 = t207
-            * (t229 * twist[0] + t237 * twist[1] - s_armcross_leg3 * twist[2] + t249);
-        let t252 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t231 * t248;
-        let t256 = rate_rod_leg3 * rate_rod_leg3;
-        let t257 = 0.5 * s_armcross_leg3;
-        let t259 = 0.8660254037844387 * s_armcross_leg3;
-        let t265 = t257 * twist[0] + t259 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t242 * rate_arm_leg3;
-        let rate_cross_leg3 = t231 * t265;
-        let t267 = rate_cross_leg3 * rate_cross_leg3;
-        let t271 = t229 * acceleration[0] + t237 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t242 * t252
-            + 0.56 * c_rod_leg3 * (t256 + t267);
-        let t272 = t175 - t176;
-        let t274 = t272 + t92 * t256;
-        let rate_dot_arm_leg3 = t207 * (t271 + t232 * t274);
-        let garm_vy_leg3 = t207 * (t237 - 0.5 * t232);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t207;
-        let t285 = 9.81 * c_arm_leg1;
-        let t289 = 9.81 * c_arm_leg2;
-        let t293 = 9.81 * minus_c_arm_leg3;
-        let t297 = 9.81 * minus_s_arm_leg1;
-        let t301 = 9.81 * minus_s_arm_leg2;
-        let t305 = 9.81 * s_arm_leg3;
-        let t327 = t35 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t327;
-        let t330 = rate_rod_leg1 * (1.7857142857142858 * t61);
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t332 = 0.24 * rate_dot_arm_leg1;
-        let t337 = 0.24 * t54;
-        let t339 = t51 * minus_rate_cross_leg1;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t205;
+        let minus_c_armcross_leg3 = t213 - t216 * minus_garm_vz_leg3;
+        let t227 = 0.5 * minus_c_armcross_leg3;
+        let t228 = 0.2688 / t203;
+        let t229 = 1.7857142857142858 * t228;
+        let t230 = t89 * t229;
+        let garm_vx_leg3 = t205 * (t227 + 0.8660254037844387 * t230);
+        let t235 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t240 = c_cross_leg3 / s_cross_leg3;
+        let t246 = t148 - t149;
+        let t247 = t230 * t246;
+        let t248 = t227 * twist[0] + t235 * twist[1] - s_armcross_leg3 * twist[2] + t247;
+        let rate_arm_leg3 = t205 * t248;
+        let t250 = t248 * rate_arm_leg3;
+        let rate_rod_leg3 = t229 * t246;
+        let t254 = rate_rod_leg3 * rate_rod_leg3;
+        let t255 = 0.5 * s_armcross_leg3;
+        let t257 = 0.8660254037844387 * s_armcross_leg3;
+        let t263 = t255 * twist[0] + t257 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t216 * rate_arm_leg3;
+        let rate_cross_leg3 = t229 * t263;
+        let t265 = rate_cross_leg3 * rate_cross_leg3;
+        let t269 = t227 * acceleration[0] + t235 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t240 * t250
+            + 0.56 * c_rod_leg3 * (t254 + t265);
+        let t270 = t174 - t175;
+        let t272 = t270 + t89 * t254;
+        let rate_dot_arm_leg3 = t205 * (t269 + t230 * t272);
+        let garm_vy_leg3 = t205 * (t235 - 0.5 * t230);
+        let t282 = 9.81 * c_arm_leg1;
+        let t286 = 9.81 * c_arm_leg2;
+        let t290 = 9.81 * minus_c_arm_leg3;
+        let t294 = 9.81 * minus_s_arm_leg1;
+        let t298 = 9.81 * minus_s_arm_leg2;
+        let t302 = 9.81 * s_arm_leg3;
+        let t324 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t324;
+        let t327 = rate_rod_leg1 * (1.7857142857142858 * t58);
+        let t332 = 0.24 * t51;
+        let t334 = t48 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t332 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t337 + t339 + t339);
-        let t345 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t347 = t330 + t345 + t330;
-        let t348 = c_rod_leg1 * t347;
-        let t349 = t50 * t348;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t44 * garm_vy_leg1);
-        let t354 = pose[1] * minus_rate_cross_leg1;
-        let t356 = 3.188775510204082 * (minus_rate_cross_leg1 * t354);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t327;
-        let gcross_vx_leg2 = t109 * (t160 - t135 * t131);
-        let t364 = minus_rate_rod_leg2 * (1.7857142857142858 * t168);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t93;
-        let t371 = 0.24 * t155;
-        let t373 = t152 * rate_cross_leg2;
-        let t377 = 0.24 * rate_dot_arm_leg2;
-        let t379 = t160 * acceleration[0] - t162 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t371 - t373 - t373)
-            - c_cross_leg2 * t377;
-        let rate_dot_cross_leg2 = t109 * t379;
-        let t381 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t383 = t364 + t381 + t364;
-        let t384 = c_rod_leg2 * t383;
-        let t385 = t110 * t384;
-        let t387 = t93 * rate_cross_leg2;
-        let t388 = rate_cross_leg2 * t387;
-        let t389 = 2.76156059880242 * t388;
-        let minus_gcross_vy_leg2 = t109 * (t162 + t143 * garm_vy_leg2);
-        let t395 = 1.594387755102041 * t388;
-        let minus_gcross_vz_leg2 = t109 * t121;
-        let gcross_vx_leg3 = t231 * (t257 - t234 * t226);
-        let t403 = rate_rod_leg3 * (1.7857142857142858 * t265);
-        let s_rod_leg3 = 1.7857142857142858 * t92;
-        let t410 = 0.24 * t252;
-        let t412 = t249 * rate_cross_leg3;
-        let t416 = 0.24 * rate_dot_arm_leg3;
-        let t418 = t257 * acceleration[0] + t259 * acceleration[1]
-            + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t410 - t412 - t412) - c_cross_leg3 * t416;
-        let rate_dot_cross_leg3 = t231 * t418;
-        let t420 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t422 = t403 + t420 + t403;
-        let t423 = c_rod_leg3 * t422;
-        let t424 = t232 * t423;
-        let t426 = t92 * rate_cross_leg3;
-        let t427 = rate_cross_leg3 * t426;
-        let t428 = 2.76156059880242 * t427;
-        let gcross_vy_leg3 = t231 * (t259 - t242 * garm_vy_leg3);
-        let t434 = 1.594387755102041 * t427;
-        let gcross_vz_leg3 = t231 * t216;
-        let t438 = t349 - minus_rate_dot_cross_leg1;
-        let t440 = t50 * t438 - t348;
-        let t442 = t354 * t354;
-        let t450 = rate_dot_cross_leg2 - t385;
-        let t452 = t110 * t450 + t384;
-        let t454 = t387 * t387;
-        let t457 = t108 * (t454 - t168 * t168);
-        let t464 = rate_dot_cross_leg3 - t424;
-        let t466 = t423 + t232 * t464;
-        let t468 = t426 * t426;
-        let t471 = t230 * (t468 - t265 * t265);
-        let t478 = t56 * t356;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t71;
-        let t482 = 3.188775510204082 * t442;
-        let t485 = s_rod_leg1 * (t478 + rate_dot_rod_leg1) + c_rod_leg1 * (t65 - t482);
-        let t492 = 3.188775510204082 * (t168 * t387);
-        let minus_rate_dot_rod_leg2 = t109 * t179;
-        let t496 = 3.188775510204082 * t454;
-        let t499 = minus_s_rod_leg2 * (t492 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t159 - t496);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t108;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t108;
-        let t510 = 3.188775510204082 * (t265 * t426);
-        let rate_dot_rod_leg3 = t231 * t274;
-        let t514 = 3.188775510204082 * t468;
-        let t517 = s_rod_leg3 * (t510 + rate_dot_rod_leg3) + c_rod_leg3 * (t256 - t514);
-        let grod_vx_leg3 = 1.5464739353293548 * t230;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t230;
-        let t541 = 1.7857142857142858 * acceleration[1];
-        let t547 = 1.7857142857142858 * t177;
-        let t555 = 1.7857142857142858 * t272;
-        let t568 = 0.8928571428571429 * t17;
-        let t576 = t568 * (t478 - rate_dot_rod_leg1) + t50 * t568 * (t482 + t65)
-            + t44 * t347;
-        let t578 = t332 - t285;
-        let t580 = t297 - t337;
-        let t583 = s_rod_leg1 * (c_cross_leg1 * t578 - s_cross_leg1 * t580);
-        let t591 = c_cross_leg1 * t580 + s_cross_leg1 * t578;
-        let t597 = 0.8928571428571429 * t101;
-        let t605 = t597 * (minus_rate_dot_rod_leg2 - t492) - t110 * t597 * (t496 + t159)
-            + t143 * t383;
-        let t607 = t377 - t289;
-        let t609 = t301 - t371;
-        let t612 = minus_s_rod_leg2 * (c_cross_leg2 * t607 - s_cross_leg2 * t609);
-        let t617 = c_cross_leg2 * t609 + s_cross_leg2 * t607;
-        let t628 = 0.8928571428571429 * t201;
-        let t636 = t628 * (t510 - rate_dot_rod_leg3) + t232 * t628 * (t514 + t256)
-            - t242 * t422;
-        let t638 = t305 + t410;
-        let t640 = t293 + t416;
-        let t643 = s_rod_leg3 * (s_cross_leg3 * t638 + c_cross_leg3 * t640);
-        let t648 = s_cross_leg3 * t640 - c_cross_leg3 * t638;
-        let t662 = t44 * t63 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
-        let t675 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t143 * t170;
-        let t688 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t242 * t267;
+            * (t42 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t332 + t334 + t334);
+        let t340 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t342 = t327 + t340 + t327;
+        let t343 = s_rod_leg1 * t342;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t42 * garm_vy_leg1);
+        let t349 = 3.188775510204082 * (pose[1] * t60);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t324;
+        let gcross_vx_leg2 = t105 * (t160 - t135 * t131);
+        let t357 = minus_rate_rod_leg2 * (1.7857142857142858 * t167);
+        let t363 = t152 * rate_arm_leg2;
+        let t364 = t151 * rate_cross_leg2;
+        let t369 = t160 * acceleration[0] - t162 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t363 - t364 - t364)
+            - t154 * rate_dot_arm_leg2;
+        let rate_dot_cross_leg2 = t105 * t369;
+        let t371 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t373 = t357 + t371 + t357;
+        let t374 = c_rod_leg2 * t373;
+        let t375 = t111 * t374;
+        let t377 = t167 * t167;
+        let t378 = t111 * t377;
+        let t379 = 3.188775510204082 * t378;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t106;
+        let t381 = t379 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t105 * (t162 + t154 * garm_vy_leg2);
+        let t387 = t379 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t105 * t121;
+        let gcross_vx_leg3 = t229 * (t255 - garm_vx_leg3 * t216);
+        let t395 = rate_rod_leg3 * (1.7857142857142858 * t263);
+        let t401 = t247 * rate_cross_leg3;
+        let t406 = t255 * acceleration[0] + t257 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2] - (t250 - t401 - t401)
+            - t216 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = t229 * t406;
+        let t408 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t410 = t395 + t408 + t395;
+        let t411 = s_rod_leg3 * t410;
+        let t413 = t263 * t263;
+        let t415 = 3.188775510204082 * (t230 * t413);
+        let grod_vx_leg3 = 1.5464739353293548 * t228;
+        let t417 = t415 * grod_vx_leg3;
+        let gcross_vy_leg3 = t229 * (t257 - t216 * garm_vy_leg3);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t228;
+        let t424 = t415 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t229 * t213;
+        let t428 = t343 - minus_rate_dot_cross_leg1;
+        let t431 = t47 * t428 - c_rod_leg1 * t342;
+        let t440 = rate_dot_cross_leg2 - t375;
+        let t442 = t111 * t440 + t374;
+        let t444 = t111 * t378;
+        let t446 = t106 * (t444 - t377);
+        let t454 = rate_dot_cross_leg3 - t411;
+        let t456 = c_rod_leg3 * t410 + t230 * t454;
+        let t458 = t193 * t265;
+        let t460 = t228 * (t458 - t413);
+        let t467 = t53 * t349;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t68;
+        let t471 = pose[1] * t349;
+        let t474 = s_rod_leg1 * (t467 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t471);
+        let minus_rate_dot_rod_leg2 = t105 * t178;
+        let t483 = 3.188775510204082 * t444;
+        let t486 = minus_s_rod_leg2 * (t379 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t159 - t483);
+        let rate_dot_rod_leg3 = t229 * t272;
+        let t497 = 3.188775510204082 * t458;
+        let t500 = s_rod_leg3 * (t415 + rate_dot_rod_leg3) + c_rod_leg3 * (t254 - t497);
+        let t522 = 1.7857142857142858 * acceleration[1];
+        let t528 = 1.7857142857142858 * t176;
+        let t536 = 1.7857142857142858 * t270;
+        let t549 = 0.8928571428571429 * t16;
+        let t552 = t549 / c_rod_leg1;
+        let t558 = t549 * (t467 - rate_dot_rod_leg1) + s_rod_leg1 * t552 * (t471 + t62)
+            + t42 * t342;
+        let t561 = 0.24 * rate_dot_arm_leg1 - t282;
+        let t563 = t294 - t332;
+        let t566 = s_rod_leg1 * (c_cross_leg1 * t561 - s_cross_leg1 * t563);
+        let t574 = c_cross_leg1 * t563 + s_cross_leg1 * t561;
+        let t588 = 0.8928571428571429 * t100 * (minus_rate_dot_rod_leg2 - t379)
+            - minus_s_rod_leg2 * t108 * (t483 + t159) + t154 * t373;
+        let t591 = t180 - s_cross_leg2 * t286;
+        let t594 = s_cross_leg2 * t298 - t363;
+        let t596 = minus_s_rod_leg2 * (t131 * t591 - t594);
+        let t600 = t131 * t594 + t591;
+        let t611 = 0.8928571428571429 * t200;
+        let t619 = t611 * (t415 - rate_dot_rod_leg3) + t230 * t611 * (t497 + t254)
+            - t216 * t410;
+        let t622 = t250 + s_cross_leg3 * t302;
+        let t624 = t290 + 0.24 * rate_dot_arm_leg3;
+        let t627 = s_rod_leg3 * (t622 + c_cross_leg3 * t624);
+        let t632 = s_cross_leg3 * t624 - t240 * t622;
+        let t645 = t42 * t60 - minus_rate_dot_cross_leg1 * t552;
+        let t657 = rate_dot_cross_leg2 * t108 + t154 * t169;
+        let t670 = rate_dot_cross_leg3 * (t200 * minus_grod_vy_leg3) + t216 * t265;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t285), -(garm_vx_leg2 * t289),
-                garm_vx_leg3 * t293, -(garm_vx_leg1 * t297), -(garm_vx_leg2 * t301),
-                garm_vx_leg3 * t305, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t282), -(garm_vx_leg2 * t286),
+                garm_vx_leg3 * t290, -(garm_vx_leg1 * t294), -(garm_vx_leg2 * t298),
+                garm_vx_leg3 * t302, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, minus_gcross_vx_leg1 * t349, gcross_vx_leg2 * t385 - t389,
-                gcross_vx_leg3 * t424 - t428, -(minus_gcross_vx_leg1 * t440),
-                -(gcross_vx_leg2 * t452 + 4.9313582121471775 * t457),
-                gcross_vx_leg3 * t466 + 4.9313582121471775 * t471, -(minus_gcross_vx_leg1 * t485),
-                gcross_vx_leg2 * t499 + minus_grod_vx_leg2 * t381,
-                gcross_vx_leg3 * t517 + grod_vx_leg3 * t420, -(minus_gcross_vx_leg1 * t438),
-                gcross_vx_leg2 * t450 + t389, gcross_vx_leg3 * t464 + t428,
-                -(minus_gcross_vx_leg1 * t541),
-                -(gcross_vx_leg2 * t547 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t555 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                garm_vx_leg3, minus_gcross_vx_leg1 * t343, gcross_vx_leg2 * t375 - t381,
+                gcross_vx_leg3 * t411 - t417, -(minus_gcross_vx_leg1 * t431),
+                -(gcross_vx_leg2 * t442 + 4.9313582121471775 * t446),
+                gcross_vx_leg3 * t456 + 4.9313582121471775 * t460, -(minus_gcross_vx_leg1 * t474),
+                gcross_vx_leg2 * t486 + minus_grod_vx_leg2 * t371,
+                gcross_vx_leg3 * t500 + grod_vx_leg3 * t408, -(minus_gcross_vx_leg1 * t428),
+                gcross_vx_leg2 * t440 + t381, gcross_vx_leg3 * t454 + t417,
+                -(minus_gcross_vx_leg1 * t522),
+                -(gcross_vx_leg2 * t528 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t536 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t576 + minus_gcross_vx_leg1 * t583,
-                garm_vx_leg2 * t605 + gcross_vx_leg2 * t612 + 1.5464739353293548 * t617,
-                garm_vx_leg3 * t636 - gcross_vx_leg3 * t643 - 1.5464739353293548 * t648,
-                garm_vx_leg1 * t662 - minus_gcross_vx_leg1 * t591,
-                garm_vx_leg2 * t675 + gcross_vx_leg2 * t617,
-                garm_vx_leg3 * t688 + gcross_vx_leg3 * t648,
+                garm_vx_leg1 * t558 + minus_gcross_vx_leg1 * t566,
+                garm_vx_leg2 * t588 + gcross_vx_leg2 * t596 + 1.5464739353293548 * t600,
+                garm_vx_leg3 * t619 - gcross_vx_leg3 * t627 - 1.5464739353293548 * t632,
+                garm_vx_leg1 * t645 - minus_gcross_vx_leg1 * t574,
+                garm_vx_leg2 * t657 + gcross_vx_leg2 * t600,
+                garm_vx_leg3 * t670 + gcross_vx_leg3 * t632,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t285), -(garm_vy_leg2 * t289),
-                garm_vy_leg3 * t293, -(garm_vy_leg1 * t297), -(garm_vy_leg2 * t301),
-                garm_vy_leg3 * t305, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t282), -(garm_vy_leg2 * t286),
+                garm_vy_leg3 * t290, -(garm_vy_leg1 * t294), -(garm_vy_leg2 * t298),
+                garm_vy_leg3 * t302, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, minus_gcross_vy_leg1 * t349 - t356,
-                -(minus_gcross_vy_leg2 * t385 + t395), gcross_vy_leg3 * t424 + t434,
-                5.694241982507289 * (t48 * (t442 - t61 * t61))
-                    - minus_gcross_vy_leg1 * t440,
-                -(2.8471209912536444 * t457 - minus_gcross_vy_leg2 * t452),
-                gcross_vy_leg3 * t466 - 2.8471209912536444 * t471,
-                -(minus_gcross_vy_leg1 * t485 + grod_vy_leg1 * t345),
-                minus_grod_vy_leg2 * t381 - minus_gcross_vy_leg2 * t499,
-                gcross_vy_leg3 * t517 - minus_grod_vy_leg3 * t420,
-                t356 - minus_gcross_vy_leg1 * t438,
-                t395 - minus_gcross_vy_leg2 * t450,
-                gcross_vy_leg3 * t464 - t434,
-                -(minus_gcross_vy_leg1 * t541
+                garm_vy_leg3, minus_gcross_vy_leg1 * t343 - t349,
+                -(minus_gcross_vy_leg2 * t375 + t387), gcross_vy_leg3 * t411 + t424,
+                5.694241982507289 * (t60 * (t7 + t8) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t431,
+                -(2.8471209912536444 * t446 - minus_gcross_vy_leg2 * t442),
+                gcross_vy_leg3 * t456 - 2.8471209912536444 * t460,
+                -(minus_gcross_vy_leg1 * t474 + grod_vy_leg1 * t340),
+                minus_grod_vy_leg2 * t371 - minus_gcross_vy_leg2 * t486,
+                gcross_vy_leg3 * t500 - minus_grod_vy_leg3 * t408,
+                t349 - minus_gcross_vy_leg1 * t428,
+                t387 - minus_gcross_vy_leg2 * t440,
+                gcross_vy_leg3 * t454 - t424,
+                -(minus_gcross_vy_leg1 * t522
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t547 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t555 - 0.8928571428571429 * rate_dot_cross_leg3,
+                minus_gcross_vy_leg2 * t528 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t536 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t576 + minus_gcross_vy_leg1 * t583
-                    - 1.7857142857142858 * t591,
-                garm_vy_leg2 * t605 - minus_gcross_vy_leg2 * t612
-                    + 0.8928571428571429 * t617,
-                garm_vy_leg3 * t636 - gcross_vy_leg3 * t643 + 0.8928571428571429 * t648,
-                garm_vy_leg1 * t662 - minus_gcross_vy_leg1 * t591,
-                garm_vy_leg2 * t675 - minus_gcross_vy_leg2 * t617,
-                garm_vy_leg3 * t688 + gcross_vy_leg3 * t648,
+                garm_vy_leg1 * t558 + minus_gcross_vy_leg1 * t566
+                    - 1.7857142857142858 * t574,
+                garm_vy_leg2 * t588 - minus_gcross_vy_leg2 * t596
+                    + 0.8928571428571429 * t600,
+                garm_vy_leg3 * t619 - gcross_vy_leg3 * t627 + 0.8928571428571429 * t632,
+                garm_vy_leg1 * t645 - minus_gcross_vy_leg1 * t574,
+                garm_vy_leg2 * t657 - minus_gcross_vy_leg2 * t600,
+                garm_vy_leg3 * t670 + gcross_vy_leg3 * t632,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t285,
-                minus_garm_vz_leg2 * t289, -(minus_garm_vz_leg3 * t293), minus_garm_vz_leg1 * t297,
-                minus_garm_vz_leg2 * t301, -(minus_garm_vz_leg3 * t305),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t282,
+                minus_garm_vz_leg2 * t286, -(minus_garm_vz_leg3 * t290), minus_garm_vz_leg1 * t294,
+                minus_garm_vz_leg2 * t298, -(minus_garm_vz_leg3 * t302),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t349,
-                -(minus_gcross_vz_leg2 * t385), gcross_vz_leg3 * t424,
-                -(minus_gcross_vz_leg1 * t440), minus_gcross_vz_leg2 * t452, gcross_vz_leg3 * t466,
-                -(minus_gcross_vz_leg1 * t485), -(minus_gcross_vz_leg2 * t499),
-                gcross_vz_leg3 * t517, -(minus_gcross_vz_leg1 * t438),
-                -(minus_gcross_vz_leg2 * t450), gcross_vz_leg3 * t464,
-                -(minus_gcross_vz_leg1 * t541), minus_gcross_vz_leg2 * t547, gcross_vz_leg3 * t555,
-                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t583 - minus_garm_vz_leg1 * t576,
-                -(minus_gcross_vz_leg2 * t612 + minus_garm_vz_leg2 * t605),
-                -(minus_garm_vz_leg3 * t636 + gcross_vz_leg3 * t643),
-                -(minus_garm_vz_leg1 * t662 + minus_gcross_vz_leg1 * t591),
-                -(minus_gcross_vz_leg2 * t617 + minus_garm_vz_leg2 * t675),
-                gcross_vz_leg3 * t648 - minus_garm_vz_leg3 * t688,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t343,
+                -(minus_gcross_vz_leg2 * t375), gcross_vz_leg3 * t411,
+                -(minus_gcross_vz_leg1 * t431), minus_gcross_vz_leg2 * t442, gcross_vz_leg3 * t456,
+                -(minus_gcross_vz_leg1 * t474), -(minus_gcross_vz_leg2 * t486),
+                gcross_vz_leg3 * t500, -(minus_gcross_vz_leg1 * t428),
+                -(minus_gcross_vz_leg2 * t440), gcross_vz_leg3 * t454,
+                -(minus_gcross_vz_leg1 * t522), minus_gcross_vz_leg2 * t528, gcross_vz_leg3 * t536,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t566 - minus_garm_vz_leg1 * t558,
+                -(minus_gcross_vz_leg2 * t596 + minus_garm_vz_leg2 * t588),
+                -(minus_garm_vz_leg3 * t619 + gcross_vz_leg3 * t627),
+                -(minus_garm_vz_leg1 * t645 + minus_gcross_vz_leg1 * t574),
+                -(minus_gcross_vz_leg2 * t600 + minus_garm_vz_leg2 * t657),
+                gcross_vz_leg3 * t632 - minus_garm_vz_leg3 * t670,
             ],
         ])
     }
@@ -4895,7 +4773,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 588 operations (171 additions, 411 multiplications, 6 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 492 intermediates.
+    /// 565 operations (172 additions, 375 multiplications, 18 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 469 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4920,301 +4798,291 @@ impl Delta {
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t11 = 1.0 / s_cross_leg1;
-        let t12 = 4.166666666666667 * t11;
-        let garm_vx_leg1 = c_armcross_leg1 * t12;
-        let t17 = 0.24 * c_cross_leg1;
-        let t23 = 1.0 / c_rod_leg1;
-        let t24 = s_rod_leg1 * t23;
-        let t25 = t24 * twist[1];
-        let rate_arm_leg1 = t12
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t25);
-        let t28 = rate_arm_leg1 * rate_arm_leg1;
-        let t30 = 0.56 * c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t23;
-        let t36 = t17 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let t11 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t11;
+        let t21 = s_rod_leg1 / c_rod_leg1;
+        let t22 = t21 * twist[1];
+        let t23 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t22;
+        let rate_arm_leg1 = t11 * t23;
+        let t25 = t23 * rate_arm_leg1;
+        let t26 = t25 / s_cross_leg1;
+        let t28 = 0.56 * c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
+        let t30 = 0.24 * c_cross_leg1;
+        let t35 = t30 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t36;
-        let t38 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
+        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = rate_rod_leg1 * rate_rod_leg1;
-        let t46 = acceleration[1] + t25 * rate_rod_leg1;
-        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t17 * t28 + t30 * (t38 + t40) + t24 * t46;
-        let rate_dot_arm_leg1 = t12 * t48;
-        let garm_vy_leg1 = t12 * t24;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t12;
-        let t57 = 1.0 / s_cross_leg2;
-        let t58 = 4.166666666666667 * t57;
+        let t39 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = acceleration[1] + t22 * rate_rod_leg1;
+        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t26 + t28 * (t37 + t39) + t21 * t45;
+        let rate_dot_arm_leg1 = t11 * t47;
+        let garm_vy_leg1 = t11 * t21;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
+        let t56 = 4.166666666666667 / s_cross_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t67 = 0.5 * c_armcross_leg2;
-        let t70 = 1.0 / c_rod_leg2;
-        let t71 = s_rod_leg2 * t70;
-        let minus_garm_vx_leg2 = t58 * (t67 + 0.8660254037844387 * t71);
-        let t75 = 0.8660254037844387 * c_armcross_leg2;
-        let t81 = 0.24 * c_cross_leg2;
-        let t87 = 0.8660254037844387 * twist[0];
-        let t88 = 0.5 * twist[1];
-        let t89 = t87 + t88;
-        let t90 = t71 * t89;
-        let rate_arm_leg2 = t58
-            * (t75 * twist[1] - t67 * twist[0] - s_armcross_leg2 * twist[2] - t90);
-        let t93 = rate_arm_leg2 * rate_arm_leg2;
-        let t96 = 1.7857142857142858 * t70;
-        let minus_rate_rod_leg2 = t96 * t89;
-        let t98 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t99 = 0.5 * s_armcross_leg2;
-        let t101 = 0.8660254037844387 * s_armcross_leg2;
-        let t107 = t99 * twist[0] - t101 * twist[1] - c_armcross_leg2 * twist[2]
-            - t81 * rate_arm_leg2;
-        let rate_cross_leg2 = t96 * t107;
-        let t109 = rate_cross_leg2 * rate_cross_leg2;
-        let t113 = t75 * acceleration[1] - t67 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t81 * t93
-            + 0.56 * c_rod_leg2 * (t98 + t109);
-        let t114 = 0.8660254037844387 * acceleration[0];
-        let t115 = 0.5 * acceleration[1];
-        let t116 = t114 + t115;
-        let t118 = t116 - t90 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t58 * (t113 - t71 * t118);
-        let garm_vy_leg2 = t58 * (t75 - 0.5 * t71);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t58;
-        let t131 = 1.0 / s_cross_leg3;
-        let t132 = 4.166666666666667 * t131;
-        let t135 = 1.0 / c_rod_leg3;
-        let t136 = s_rod_leg3 * t135;
+        let t65 = 0.5 * c_armcross_leg2;
+        let t68 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t56 * (t65 + 0.8660254037844387 * t68);
+        let t72 = 0.8660254037844387 * c_armcross_leg2;
+        let t83 = 0.8660254037844387 * twist[0];
+        let t84 = 0.5 * twist[1];
+        let t85 = t83 + t84;
+        let t86 = t68 * t85;
+        let t87 = t72 * twist[1] - t65 * twist[0] - s_armcross_leg2 * twist[2] - t86;
+        let rate_arm_leg2 = t56 * t87;
+        let t89 = 0.24 * c_cross_leg2;
+        let t90 = t89 * rate_arm_leg2;
+        let t92 = 0.56 * c_rod_leg2;
+        let t93 = 1.7857142857142858 / c_rod_leg2;
+        let minus_rate_rod_leg2 = t93 * t85;
+        let t95 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t96 = 0.5 * s_armcross_leg2;
+        let t98 = 0.8660254037844387 * s_armcross_leg2;
+        let t103 = t96 * twist[0] - t98 * twist[1] - c_armcross_leg2 * twist[2] - t90;
+        let rate_cross_leg2 = t93 * t103;
+        let t105 = rate_cross_leg2 * rate_cross_leg2;
+        let t109 = t72 * acceleration[1] - t65 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t90
+            + t92 * (t95 + t105);
+        let t110 = 0.8660254037844387 * acceleration[0];
+        let t111 = 0.5 * acceleration[1];
+        let t112 = t110 + t111;
+        let t114 = t112 - t86 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t56 * (t109 - t68 * t114);
+        let garm_vy_leg2 = t56 * (t72 - 0.5 * t68);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
+        let t127 = 4.166666666666667 / s_cross_leg3;
+        let t130 = s_rod_leg3 / c_rod_leg3;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t146 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t132 * (0.8660254037844387 * t136 - t146);
-        let t149 = 0.24 * c_cross_leg3;
-        let t150 = t87 - t88;
-        let t151 = t136 * t150;
-        let t153 = 0.8660254037844387 * c_armcross_leg3;
-        let rate_arm_leg3 = t132
-            * (t151 - (t146 * twist[0] + t153 * twist[1] + s_armcross_leg3 * twist[2]));
-        let t160 = rate_arm_leg3 * rate_arm_leg3;
-        let t163 = 1.7857142857142858 * t135;
-        let rate_rod_leg3 = t163 * t150;
-        let t165 = rate_rod_leg3 * rate_rod_leg3;
-        let t166 = 0.5 * s_armcross_leg3;
-        let t168 = 0.8660254037844387 * s_armcross_leg3;
-        let t174 = t166 * twist[0] + t168 * twist[1] - c_armcross_leg3 * twist[2]
-            - t149 * rate_arm_leg3;
-        let rate_cross_leg3 = t163 * t174;
-        let t176 = rate_cross_leg3 * rate_cross_leg3;
-        let t185 = t149 * t160 + 0.56 * c_rod_leg3 * (t165 + t176)
-            - (t146 * acceleration[0] + t153 * acceleration[1]
+        let t140 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t127 * (0.8660254037844387 * t130 - t140);
+        let t143 = t83 - t84;
+        let t144 = t130 * t143;
+        let t146 = 0.8660254037844387 * c_armcross_leg3;
+        let t151 = t144
+            - (t140 * twist[0] + t146 * twist[1] + s_armcross_leg3 * twist[2]);
+        let rate_arm_leg3 = t127 * t151;
+        let t153 = 0.24 * c_cross_leg3;
+        let t154 = t153 * rate_arm_leg3;
+        let t157 = 1.7857142857142858 / c_rod_leg3;
+        let rate_rod_leg3 = t157 * t143;
+        let t159 = rate_rod_leg3 * rate_rod_leg3;
+        let t160 = 0.5 * s_armcross_leg3;
+        let t162 = 0.8660254037844387 * s_armcross_leg3;
+        let t167 = t160 * twist[0] + t162 * twist[1] - c_armcross_leg3 * twist[2] - t154;
+        let t168 = 1.7857142857142858 * t167;
+        let t169 = t168 * t168;
+        let t170 = t130 * t169;
+        let t171 = t130 * t170;
+        let t172 = t171 + t169;
+        let t181 = rate_arm_leg3 * t154 + 0.56 * c_rod_leg3 * (t159 + t172)
+            - (t140 * acceleration[0] + t146 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t186 = t114 - t115;
-        let t188 = t186 + t151 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t132 * (t185 + t136 * t188);
-        let minus_garm_vy_leg3 = t132 * (t153 + 0.5 * t136);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
-        let t199 = 9.81 * c_arm_leg1;
-        let t203 = 9.81 * c_arm_leg2;
-        let t207 = 9.81 * c_arm_leg3;
-        let t211 = 9.81 * s_arm_leg1;
-        let t215 = 9.81 * s_arm_leg2;
-        let t219 = 9.81 * s_arm_leg3;
-        let t241 = t11 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t241;
-        let t244 = rate_rod_leg1 * (1.7857142857142858 * t36);
-        let t245 = 0.24 * rate_dot_arm_leg1;
-        let t250 = 0.24 * s_cross_leg1;
-        let t252 = t25 * minus_rate_cross_leg1;
-        let t256 = c_cross_leg1 * t245 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t250 * t28 + t252 + t252;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t256;
-        let t258 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t260 = t244 + t258 + t244;
-        let t261 = s_rod_leg1 * t260;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t17 * garm_vy_leg1);
-        let t266 = t24 * t36;
-        let t268 = 3.188775510204082 * (minus_rate_cross_leg1 * t266);
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t241;
-        let gcross_vx_leg2 = t96 * (t99 + minus_garm_vx_leg2 * t81);
-        let t275 = 0.24 * s_cross_leg2;
-        let t282 = 0.24 * rate_dot_arm_leg2;
-        let t285 = t99 * acceleration[0] - t101 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - c_cross_leg2 * t282 - t275 * t93;
-        let t286 = t90 * rate_cross_leg2;
-        let rate_dot_cross_leg2 = t96 * (t285 - (t286 + t286));
-        let t290 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t292 = minus_rate_rod_leg2 * (1.7857142857142858 * t107);
-        let t294 = t290 - t292 - t292;
-        let t295 = s_rod_leg2 * t294;
-        let t297 = t71 * t107;
-        let t298 = rate_cross_leg2 * t297;
-        let t299 = 2.76156059880242 * t298;
-        let minus_gcross_vy_leg2 = t96 * (t101 + t81 * garm_vy_leg2);
-        let t305 = 1.594387755102041 * t298;
-        let gcross_vz_leg2 = t96 * (t57 * s_arm_leg2);
-        let gcross_vx_leg3 = t163 * (t166 - garm_vx_leg3 * t149);
-        let t313 = 1.7857142857142858 * t174;
-        let t314 = rate_rod_leg3 * t313;
-        let t320 = 0.24 * s_cross_leg3;
-        let t322 = t151 * rate_cross_leg3;
-        let t326 = 0.24 * rate_dot_arm_leg3;
-        let t328 = t166 * acceleration[0] + t168 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t320 * t160 - t322 - t322)
-            - c_cross_leg3 * t326;
-        let rate_dot_cross_leg3 = t163 * t328;
-        let t330 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t332 = t314 + t330 + t314;
-        let t333 = s_rod_leg3 * t332;
-        let t335 = s_rod_leg3 * rate_cross_leg3;
-        let t336 = 0.56 * t335;
-        let t337 = rate_cross_leg3 * t336;
-        let t338 = 2.76156059880242 * t337;
-        let gcross_vy_leg3 = t163 * (t168 + t149 * minus_garm_vy_leg3);
-        let t344 = 1.594387755102041 * t337;
-        let gcross_vz_leg3 = t163 * (t131 * s_arm_leg3);
-        let t353 = s_rod_leg1 * t244 + c_rod_leg1 * (1.7857142857142858 * (t252 - t256));
-        let t356 = t24 * t353 - c_rod_leg1 * t260;
-        let t358 = t266 * t266;
-        let t366 = 1.7857142857142858 * c_rod_leg2;
-        let t367 = t366 * t285;
-        let t370 = t71 * t367 + c_rod_leg2 * t294;
-        let t372 = t297 * t297;
-        let t375 = t70 * (t372 - t107 * t107);
-        let t383 = rate_dot_cross_leg3 - t333;
-        let t385 = c_rod_leg3 * t332 + t136 * t383;
-        let t387 = t336 * t336;
-        let t390 = t135 * (t387 - t174 * t174);
-        let t397 = t30 * t268;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t46;
-        let t401 = 3.188775510204082 * t358;
-        let t404 = s_rod_leg1 * (t397 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t401);
-        let t410 = t298 * t366;
-        let minus_rate_dot_rod_leg2 = t96 * t118;
-        let t414 = 3.188775510204082 * t372;
-        let t417 = s_rod_leg2 * (t410 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t98 - t414);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t70;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t70;
-        let t427 = t313 * t335;
-        let rate_dot_rod_leg3 = t163 * t188;
-        let t431 = 3.188775510204082 * t387;
-        let t434 = s_rod_leg3 * (t427 + rate_dot_rod_leg3) + c_rod_leg3 * (t165 - t431);
-        let grod_vx_leg3 = 1.5464739353293548 * t135;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t135;
-        let t458 = 1.7857142857142858 * acceleration[1];
-        let t464 = 1.7857142857142858 * t116;
-        let t472 = 1.7857142857142858 * t186;
-        let t493 = t250 * (c_rod_leg1 * (t397 - rate_dot_rod_leg1))
-            + t250 * s_rod_leg1 * (t401 + t40) + t17 * t260;
-        let t496 = t211 + 0.24 * t28;
-        let t498 = t245 - t199;
-        let t501 = s_rod_leg1 * (s_cross_leg1 * t496 + c_cross_leg1 * t498);
-        let t509 = s_cross_leg1 * t498 - c_cross_leg1 * t496;
-        let t515 = t282 - t203;
-        let t518 = t215 + 0.24 * t93;
-        let t520 = s_cross_leg2 * t515 - c_cross_leg2 * t518;
-        let t530 = t275 * (c_rod_leg2 * (t410 + minus_rate_dot_rod_leg2))
-            + t275 * s_rod_leg2 * (t414 + t98) - t81 * t294;
-        let t535 = s_rod_leg2 * (s_cross_leg2 * t518 + c_cross_leg2 * t515);
-        let t555 = t320 * (c_rod_leg3 * (t427 - rate_dot_rod_leg3))
-            + t320 * s_rod_leg3 * (t431 + t165) - t149 * t332;
-        let t558 = t219 + 0.24 * t160;
-        let t560 = t326 - t207;
-        let t563 = s_rod_leg3 * (s_cross_leg3 * t558 + c_cross_leg3 * t560);
-        let t568 = s_cross_leg3 * t560 - c_cross_leg3 * t558;
-        let t581 = t17 * t38 - t250 * minus_rate_dot_cross_leg1;
-        let t594 = t275 * rate_dot_cross_leg2 + t81 * t109;
-        let t605 = t320 * rate_dot_cross_leg3 + t149 * t176;
+        let t182 = t110 - t111;
+        let t184 = t182 + t144 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t127 * (t181 + t130 * t184);
+        let minus_garm_vy_leg3 = t127 * (t146 + 0.5 * t130);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t127;
+        let t195 = 9.81 * c_arm_leg1;
+        let t199 = 9.81 * c_arm_leg2;
+        let t203 = 9.81 * c_arm_leg3;
+        let t207 = 9.81 * s_arm_leg1;
+        let t211 = 9.81 * s_arm_leg2;
+        let t215 = 9.81 * s_arm_leg3;
+        let t237 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t237;
+        let t240 = rate_rod_leg1 * (1.7857142857142858 * t35);
+        let t245 = t22 * minus_rate_cross_leg1;
+        let t249 = t30 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t25 + t245 + t245;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t249;
+        let t251 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t253 = t240 + t251 + t240;
+        let t254 = c_rod_leg1 * t253;
+        let t255 = t21 * t254;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t30 * garm_vy_leg1);
+        let t260 = t21 * t35;
+        let t262 = 3.188775510204082 * (minus_rate_cross_leg1 * t260);
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t237;
+        let gcross_vx_leg2 = t93 * (t96 + minus_garm_vx_leg2 * t89);
+        let t274 = t87 * rate_arm_leg2;
+        let t275 = t86 * rate_cross_leg2;
+        let t276 = t275 + t275;
+        let t280 = t96 * acceleration[0] - t98 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t274 + t276)
+            - t89 * rate_dot_arm_leg2;
+        let rate_dot_cross_leg2 = t93 * t280;
+        let t282 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t284 = minus_rate_rod_leg2 * (1.7857142857142858 * t103);
+        let t286 = t282 - t284 - t284;
+        let t287 = c_rod_leg2 * t286;
+        let t288 = t68 * t287;
+        let t290 = s_rod_leg2 * t105;
+        let t291 = 1.5464739353293548 * t290;
+        let minus_gcross_vy_leg2 = t93 * (t98 + t89 * garm_vy_leg2);
+        let t297 = 0.8928571428571429 * t290;
+        let gcross_vz_leg2 = t93 * (s_arm_leg2 / s_cross_leg2);
+        let gcross_vx_leg3 = t157 * (t160 - garm_vx_leg3 * t153);
+        let t305 = rate_rod_leg3 * t168;
+        let t311 = t151 * rate_arm_leg3;
+        let t313 = rate_rod_leg3 * (t130 * t167);
+        let t317 = 0.24 * rate_dot_arm_leg3;
+        let t319 = t160 * acceleration[0] + t162 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t311 - t313 - t313)
+            - c_cross_leg3 * t317;
+        let rate_dot_cross_leg3 = t157 * t319;
+        let t321 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t323 = t305 + t321 + t305;
+        let t324 = s_rod_leg3 * t323;
+        let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
+        let t327 = t170 * minus_grod_vy_leg3;
+        let t328 = 0.8660254037844387 + 0.8660254037844387;
+        let t329 = t327 * t328;
+        let gcross_vy_leg3 = t157 * (t162 + t153 * minus_garm_vy_leg3);
+        let gcross_vz_leg3 = t157 * (s_arm_leg3 / s_cross_leg3);
+        let t343 = s_rod_leg1 * t240 + c_rod_leg1 * (1.7857142857142858 * (t245 - t249));
+        let t345 = t21 * t343 - t254;
+        let t347 = t260 * t260;
+        let t355 = t92 * 3.188775510204082;
+        let t357 = t355 * (t280 + t276);
+        let t359 = t68 * t357 + t287;
+        let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
+        let t363 = t105 * (minus_grod_vy_leg2 - t355);
+        let t370 = rate_dot_cross_leg3 - t324;
+        let t372 = c_rod_leg3 * t323 + t130 * t370;
+        let t375 = minus_grod_vy_leg3 * (t171 - t169);
+        let t381 = t28 * t262;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
+        let t385 = 3.188775510204082 * t347;
+        let t388 = s_rod_leg1 * (t381 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t385);
+        let minus_rate_dot_rod_leg2 = t93 * t114;
+        let t401 = s_rod_leg2 * (c_rod_leg2 * t290 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t95 - s_rod_leg2 * t290);
+        let t403 = 1.5464739353293548 * rate_dot_cross_leg2;
+        let rate_dot_rod_leg3 = t157 * t184;
+        let t415 = s_rod_leg3 * (t170 + rate_dot_rod_leg3) + c_rod_leg3 * (t159 - t171);
+        let t417 = 1.5464739353293548 * rate_dot_cross_leg3;
+        let t438 = 1.7857142857142858 * acceleration[1];
+        let t444 = 1.7857142857142858 * t112;
+        let t451 = 1.7857142857142858 * t182;
+        let t459 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t461 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t463 = 0.24 * s_cross_leg1;
+        let t472 = t463 * (c_rod_leg1 * (t381 - rate_dot_rod_leg1))
+            + t463 * s_rod_leg1 * (t385 + t39) + t30 * t253;
+        let t474 = t207 + t26;
+        let t477 = 0.24 * rate_dot_arm_leg1 - t195;
+        let t480 = s_rod_leg1 * (s_cross_leg1 * t474 + c_cross_leg1 * t477);
+        let t488 = s_cross_leg1 * t477 - c_cross_leg1 * t474;
+        let t495 = 0.24 * rate_dot_arm_leg2 - t199;
+        let t498 = t211 + t274 / s_cross_leg2;
+        let t500 = s_cross_leg2 * t495 - c_cross_leg2 * t498;
+        let t502 = 0.24 * s_cross_leg2;
+        let t506 = t502 * (t444 + t290) - t89 * t286;
+        let t511 = s_rod_leg2 * (s_cross_leg2 * t498 + c_cross_leg2 * t495);
+        let t523 = 0.24 * s_cross_leg3;
+        let t532 = t523 * (c_rod_leg3 * (t170 - rate_dot_rod_leg3))
+            + t523 * s_rod_leg3 * (t171 + t159) - t153 * t323;
+        let t535 = t215 + t311 / s_cross_leg3;
+        let t537 = t317 - t203;
+        let t540 = s_rod_leg3 * (s_cross_leg3 * t535 + c_cross_leg3 * t537);
+        let t545 = s_cross_leg3 * t537 - c_cross_leg3 * t535;
+        let t558 = t30 * t37 - t463 * minus_rate_dot_cross_leg1;
+        let t571 = t502 * rate_dot_cross_leg2 + t89 * t105;
+        let t582 = t523 * rate_dot_cross_leg3 + t153 * t172;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2), garm_vx_leg3 * rate_dot_arm_leg3,
-                -(garm_vx_leg1 * t199), minus_garm_vx_leg2 * t203, -(garm_vx_leg3 * t207),
-                garm_vx_leg1 * t211, -(minus_garm_vx_leg2 * t215), garm_vx_leg3 * t219,
+                -(garm_vx_leg1 * t195), minus_garm_vx_leg2 * t199, -(garm_vx_leg3 * t203),
+                garm_vx_leg1 * t207, -(minus_garm_vx_leg2 * t211), garm_vx_leg3 * t215,
                 garm_vx_leg1 * rate_arm_leg1, -(minus_garm_vx_leg2 * rate_arm_leg2),
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1,
-                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t261,
-                gcross_vx_leg2 * t295 + t299, gcross_vx_leg3 * t333 - t338,
-                -(minus_gcross_vx_leg1 * t356), gcross_vx_leg2 * t370 - 4.9313582121471775 * t375,
-                gcross_vx_leg3 * t385 + 4.9313582121471775 * t390, -(minus_gcross_vx_leg1 * t404),
-                gcross_vx_leg2 * t417 - minus_grod_vx_leg2 * t290,
-                gcross_vx_leg3 * t434 + grod_vx_leg3 * t330, -(minus_gcross_vx_leg1 * t353),
-                gcross_vx_leg2 * t367 - t299, gcross_vx_leg3 * t383 + t338,
-                -(minus_gcross_vx_leg1 * t458),
-                -(gcross_vx_leg2 * t464 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t472 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t493 + minus_gcross_vx_leg1 * t501,
-                1.5464739353293548 * t520
-                    - (minus_garm_vx_leg2 * t530 + gcross_vx_leg2 * t535),
-                garm_vx_leg3 * t555 - gcross_vx_leg3 * t563 - 1.5464739353293548 * t568,
-                garm_vx_leg1 * t581 - minus_gcross_vx_leg1 * t509,
-                gcross_vx_leg2 * t520 - minus_garm_vx_leg2 * t594,
-                garm_vx_leg3 * t605 + gcross_vx_leg3 * t568,
+                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t255,
+                gcross_vx_leg2 * t288 + t291, gcross_vx_leg3 * t324 - t329,
+                -(minus_gcross_vx_leg1 * t345), gcross_vx_leg2 * t359 - t363 * t328,
+                gcross_vx_leg3 * t372 + t375 * t328, -(minus_gcross_vx_leg1 * t388),
+                gcross_vx_leg2 * t401 - t68 * t403, gcross_vx_leg3 * t415 + t130 * t417,
+                -(minus_gcross_vx_leg1 * t343), gcross_vx_leg2 * t357 - t291,
+                gcross_vx_leg3 * t370 + t329, -(minus_gcross_vx_leg1 * t438),
+                -(gcross_vx_leg2 * t444 + t403), gcross_vx_leg3 * t451 + t417, 0.0, t459 * t328,
+                t461 * t328, garm_vx_leg1 * t472 + minus_gcross_vx_leg1 * t480,
+                1.5464739353293548 * t500
+                    - (minus_garm_vx_leg2 * t506 + gcross_vx_leg2 * t511),
+                garm_vx_leg3 * t532 - gcross_vx_leg3 * t540 - 1.5464739353293548 * t545,
+                garm_vx_leg1 * t558 - minus_gcross_vx_leg1 * t488,
+                gcross_vx_leg2 * t500 - minus_garm_vx_leg2 * t571,
+                garm_vx_leg3 * t582 + gcross_vx_leg3 * t545,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t199),
-                -(garm_vy_leg2 * t203), minus_garm_vy_leg3 * t207, garm_vy_leg1 * t211,
-                garm_vy_leg2 * t215, -(minus_garm_vy_leg3 * t219), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t195),
+                -(garm_vy_leg2 * t199), minus_garm_vy_leg3 * t203, garm_vy_leg1 * t207,
+                garm_vy_leg2 * t211, -(minus_garm_vy_leg3 * t215), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, -(minus_garm_vy_leg3 * rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3), garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t261 - t268,
-                t305 - minus_gcross_vy_leg2 * t295, gcross_vy_leg3 * t333 + t344,
-                5.694241982507289 * (t23 * (t358 - t36 * t36))
-                    - minus_gcross_vy_leg1 * t356,
-                -(minus_gcross_vy_leg2 * t370 + 2.8471209912536444 * t375),
-                gcross_vy_leg3 * t385 - 2.8471209912536444 * t390,
-                -(minus_gcross_vy_leg1 * t404 + grod_vy_leg1 * t258),
-                -(minus_gcross_vy_leg2 * t417 + minus_grod_vy_leg2 * t290),
-                gcross_vy_leg3 * t434 - minus_grod_vy_leg3 * t330,
-                t268 - minus_gcross_vy_leg1 * t353,
-                -(minus_gcross_vy_leg2 * t367 + t305),
-                gcross_vy_leg3 * t383 - t344,
-                -(minus_gcross_vy_leg1 * t458
+                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t255 - t262,
+                t297 - minus_gcross_vy_leg2 * t288, gcross_vy_leg3 * t324 + t327,
+                5.694241982507289 * ((t347 - t35 * t35) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t345,
+                -(minus_gcross_vy_leg2 * t359 + t363),
+                gcross_vy_leg3 * t372 - t375,
+                -(minus_gcross_vy_leg1 * t388 + grod_vy_leg1 * t251),
+                -(minus_gcross_vy_leg2 * t401 + minus_grod_vy_leg2 * t282),
+                gcross_vy_leg3 * t415 - minus_grod_vy_leg3 * t321,
+                t262 - minus_gcross_vy_leg1 * t343,
+                -(minus_gcross_vy_leg2 * t357 + t297),
+                gcross_vy_leg3 * t370 - t327,
+                -(minus_gcross_vy_leg1 * t438
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t464),
-                gcross_vy_leg3 * t472 - 0.8928571428571429 * rate_dot_cross_leg3,
+                    - minus_gcross_vy_leg2 * t444),
+                gcross_vy_leg3 * t451 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t493 + minus_gcross_vy_leg1 * t501
-                    - 1.7857142857142858 * t509,
-                garm_vy_leg2 * t530 + minus_gcross_vy_leg2 * t535
-                    + 0.8928571428571429 * t520,
-                0.8928571428571429 * t568
-                    - (minus_garm_vy_leg3 * t555 + gcross_vy_leg3 * t563),
-                garm_vy_leg1 * t581 - minus_gcross_vy_leg1 * t509,
-                garm_vy_leg2 * t594 - minus_gcross_vy_leg2 * t520,
-                gcross_vy_leg3 * t568 - minus_garm_vy_leg3 * t605,
+                t459,
+                -t461,
+                garm_vy_leg1 * t472 + minus_gcross_vy_leg1 * t480
+                    - 1.7857142857142858 * t488,
+                garm_vy_leg2 * t506 + minus_gcross_vy_leg2 * t511
+                    + 0.8928571428571429 * t500,
+                0.8928571428571429 * t545
+                    - (minus_garm_vy_leg3 * t532 + gcross_vy_leg3 * t540),
+                garm_vy_leg1 * t558 - minus_gcross_vy_leg1 * t488,
+                garm_vy_leg2 * t571 - minus_gcross_vy_leg2 * t500,
+                gcross_vy_leg3 * t545 - minus_garm_vy_leg3 * t582,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t199,
-                minus_garm_vz_leg2 * t203, minus_garm_vz_leg3 * t207, -(minus_garm_vz_leg1 * t211),
-                -(minus_garm_vz_leg2 * t215), -(minus_garm_vz_leg3 * t219),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t195,
+                minus_garm_vz_leg2 * t199, minus_garm_vz_leg3 * t203, -(minus_garm_vz_leg1 * t207),
+                -(minus_garm_vz_leg2 * t211), -(minus_garm_vz_leg3 * t215),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t261),
-                gcross_vz_leg2 * t295, gcross_vz_leg3 * t333, minus_minus_gcross_vz_leg1 * t356,
-                gcross_vz_leg2 * t370, gcross_vz_leg3 * t385, minus_minus_gcross_vz_leg1 * t404,
-                gcross_vz_leg2 * t417, gcross_vz_leg3 * t434, minus_minus_gcross_vz_leg1 * t353,
-                gcross_vz_leg2 * t367, gcross_vz_leg3 * t383, minus_minus_gcross_vz_leg1 * t458,
-                -(gcross_vz_leg2 * t464), gcross_vz_leg3 * t472, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t501 + minus_garm_vz_leg1 * t493),
-                -(minus_garm_vz_leg2 * t530 + gcross_vz_leg2 * t535),
-                -(minus_garm_vz_leg3 * t555 + gcross_vz_leg3 * t563),
-                -(minus_garm_vz_leg1 * t581 - minus_minus_gcross_vz_leg1 * t509),
-                gcross_vz_leg2 * t520 - minus_garm_vz_leg2 * t594,
-                gcross_vz_leg3 * t568 - minus_garm_vz_leg3 * t605,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t255),
+                gcross_vz_leg2 * t288, gcross_vz_leg3 * t324, minus_minus_gcross_vz_leg1 * t345,
+                gcross_vz_leg2 * t359, gcross_vz_leg3 * t372, minus_minus_gcross_vz_leg1 * t388,
+                gcross_vz_leg2 * t401, gcross_vz_leg3 * t415, minus_minus_gcross_vz_leg1 * t343,
+                gcross_vz_leg2 * t357, gcross_vz_leg3 * t370, minus_minus_gcross_vz_leg1 * t438,
+                -(gcross_vz_leg2 * t444), gcross_vz_leg3 * t451, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t480 + minus_garm_vz_leg1 * t472),
+                -(minus_garm_vz_leg2 * t506 + gcross_vz_leg2 * t511),
+                -(minus_garm_vz_leg3 * t532 + gcross_vz_leg3 * t540),
+                -(minus_garm_vz_leg1 * t558 - minus_minus_gcross_vz_leg1 * t488),
+                gcross_vz_leg2 * t500 - minus_garm_vz_leg2 * t571,
+                gcross_vz_leg3 * t545 - minus_garm_vz_leg3 * t582,
             ],
         ])
     }
@@ -5229,7 +5097,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 742 operations (237 additions, 487 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 633 intermediates.
+    /// 715 operations (235 additions, 449 multiplications, 31 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 606 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5242,411 +5110,391 @@ impl Delta {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.2304 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.48 * t1;
-        let t9 = pose[1] * pose[1] + -0.3136;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.0576;
-        let t13 = 0.48 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t9));
+        let t2 = 0.48 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t6 = pose[1] * pose[1];
+        let t7 = t6 + -0.3136;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.0576;
+        let t11 = 0.48 * pose[2];
+        let t12 = 0.2304 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.0576) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t23 = 0.56 * c_rod_leg1;
+        let t24 = 0.48 * t23;
+        let c_cross_leg1 = (t8 + -0.0576) / t24;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let s_cross_leg1 = t15 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 4.166666666666667 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t38 = t0 + 0.025;
-        let t39 = t38 * t38;
-        let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t45 = t39 + t41 * t41 + t3 + -0.3136;
-        let t48 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t50 = 0.8660254037844387 * t38 - 0.5 * t48;
-        let t51 = pose[1] + t50;
-        let t53 = 0.3136 - t51 * t51;
-        let t55 = 0.2304 * (t45 + t53);
-        let t56 = t45 + 0.0576;
-        let t58 = t55 - t56 * t56;
-        ::overact::guard::reach(t58, "leg2")?;
-        let t59 = ::overact::math::sqrt(t58);
-        let t60 = 3.188775510204082 * t53;
-        ::overact::guard::reach(t60, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t60);
-        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t62 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t59 / t62;
-        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t64 = 1.0 / s_cross_leg2;
-        let t65 = 4.166666666666667 * t64;
-        let t66 = 1.0 / c_rod_leg2;
-        let t67 = 1.7857142857142858 * t66;
-        let t68 = t51 * t67;
-        let t70 = 1.0 / t55;
-        let t73 = 0.5 * t38;
-        let t75 = 0.48 * (0.8660254037844387 * t41 - t73);
-        let minus_s_arm_leg2 = t70 * (t13 * t56 + t75 * t59);
-        let t79 = t64 * minus_s_arm_leg2;
-        let c_arm_leg2 = t70 * (t75 * t56 - t13 * t59);
-        let c_cross_leg2 = (-0.0576 + t45) / t62;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t89 = c_cross_leg2 * t64;
-        let c_armcross_leg2 = t79 + s_armcross_leg2 * t89;
-        let t93 = 0.8660254037844387 * t68 - 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t65 * t93;
-        let t100 = t39 + t48 * t48 + t3 + -0.3136;
-        let t102 = 0.3136 - t50 * t50;
-        let t104 = 0.2304 * (t100 + t102);
-        let t105 = t100 + 0.0576;
-        let t107 = t104 - t105 * t105;
-        ::overact::guard::reach(t107, "leg3")?;
-        let t108 = ::overact::math::sqrt(t107);
-        let t109 = 3.188775510204082 * t102;
-        ::overact::guard::reach(t109, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t109);
-        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t111 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t108 / t111;
-        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t113 = 1.0 / s_cross_leg3;
-        let t114 = 4.166666666666667 * t113;
-        let t115 = 1.0 / t104;
-        let t118 = 0.48 * (t73 + 0.8660254037844387 * t48);
-        let s_arm_leg3 = t115 * (t118 * t108 - t13 * t105);
-        let t123 = t113 * s_arm_leg3;
-        let c_cross_leg3 = (-0.0576 + t100) / t111;
-        let minus_c_arm_leg3 = t115 * (t118 * t105 + t13 * t108);
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t133 = c_cross_leg3 * t113;
-        let minus_c_armcross_leg3 = t123 - s_armcross_leg3 * t133;
-        let t137 = 1.0 / c_rod_leg3;
-        let t138 = 1.7857142857142858 * t137;
-        let t139 = t50 * t138;
-        let t141 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t139;
-        let garm_vx_leg3 = t114 * t141;
-        let t144 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t144, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t144, 14.869730172882841, "actuators")?;
-        let t145 = 1.0 / t144;
-        let t146 = 0.24 * c_cross_leg1;
-        let t147 = actuator_velocities[0] * actuator_velocities[0];
-        let t149 = 0.56 * c_rod_leg1;
-        let t150 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 * t150;
+        let t34 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t36 = 0.24 * c_cross_leg1;
+        let t37 = actuator_velocities[0] * actuator_velocities[0];
+        let grod_vy_leg1 = 0.48 / t24;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t156 = garm_vx_leg1 * actuator_velocities[0];
-        let t157 = garm_vx_leg2 * actuator_velocities[1];
-        let t159 = garm_vx_leg3 * actuator_velocities[2];
-        let t160 = t156 + t157 + t159;
-        let t162 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t162;
-        let t167 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t68;
-        let garm_vy_leg2 = t65 * t167;
-        let t173 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t139;
-        let garm_vy_leg3 = t114 * t173;
-        let t176 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let t44 = garm_vx_leg1 * actuator_velocities[0];
+        let t48 = t0 + 0.025;
+        let t49 = 0.5 * t48;
+        let t50 = 0.8660254037844387
+            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t49;
+        let t52 = t4 + t50 * t50;
+        let t53 = 0.2304 * t52;
+        let t56 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t58 = 0.8660254037844387 * t48 - 0.5 * t56;
+        let t59 = pose[1] + t58;
+        let t60 = t59 * t59;
+        let t61 = 0.3136 - t60;
+        let t62 = t52 - t61;
+        let t63 = t62 + 0.0576;
+        let t65 = t53 - t63 * t63;
+        ::overact::guard::reach(t65, "leg2")?;
+        let t66 = ::overact::math::sqrt(t65);
+        let t67 = 0.8928571428571429 * t66;
+        let t68 = 3.188775510204082 * t61;
+        ::overact::guard::reach(t68, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t70 = t67 / c_rod_leg2;
+        let s_cross_leg2 = 4.166666666666667 * t70;
+        ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
+        let t72 = 4.166666666666667 / s_cross_leg2;
+        let t73 = 1.7857142857142858 / c_rod_leg2;
+        let t74 = t59 * t73;
+        let t77 = 0.48 * t50;
+        let minus_s_arm_leg2 = (t11 * t63 + t77 * t66) / t53;
+        let t81 = minus_s_arm_leg2 / s_cross_leg2;
+        let c_arm_leg2 = (t77 * t63 - t11 * t66) / t53;
+        let minus_grod_vy_leg2 = 0.5 * t73;
+        let t89 = (-0.0576 + t62) * minus_grod_vy_leg2;
+        let c_cross_leg2 = 4.166666666666667 * t89;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let t93 = t72 * t89;
+        let c_armcross_leg2 = t81 + s_armcross_leg2 * t93;
+        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
+        let t99 = garm_vx_leg2 * actuator_velocities[1];
+        let t102 = t49 + 0.8660254037844387 * t56;
+        let t104 = t4 + t102 * t102;
+        let t105 = 0.2304 * t104;
+        let t106 = t58 * t58;
+        let t107 = 0.3136 - t106;
+        let t108 = t104 - t107;
+        let t109 = t108 + 0.0576;
+        let t111 = t105 - t109 * t109;
+        ::overact::guard::reach(t111, "leg3")?;
+        let t112 = ::overact::math::sqrt(t111);
+        let t113 = 3.188775510204082 * t107;
+        ::overact::guard::reach(t113, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t113);
+        let t115 = 0.56 * c_rod_leg3;
+        let t116 = 0.48 * t115;
+        let s_cross_leg3 = t112 / t116;
+        ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
+        let t118 = 4.166666666666667 / s_cross_leg3;
+        let t119 = 0.48 * t102;
+        let s_arm_leg3 = (t119 * t112 - t11 * t109) / t105;
+        let t124 = s_arm_leg3 / s_cross_leg3;
+        let c_cross_leg3 = (-0.0576 + t108) / t116;
+        let minus_c_arm_leg3 = (t119 * t109 + t11 * t112) / t105;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t118;
+        let t135 = 0.24 * c_cross_leg3;
+        let minus_c_armcross_leg3 = t124 - minus_garm_vz_leg3 * t135;
+        let t139 = 0.48 / t116;
+        let t140 = t58 * t139;
+        let garm_vx_leg3 = t118
+            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t140);
+        let t144 = garm_vx_leg3 * actuator_velocities[2];
+        let t145 = t44 + t99 + t144;
+        let t150 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3;
+        ::overact::guard::platform(t150, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t150, 14.869730172882841, "actuators")?;
+        let t152 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t34 * t152;
+        let t157 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t74;
+        let garm_vy_leg2 = t72 * t157;
+        let garm_vy_leg3 = t118
+            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t140);
+        let t166 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t177 = t176 * t145;
-        let t184 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t176 * t177;
-        ::overact::guard::platform(t184, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t184, 14.869730172882846, "actuators")?;
-        let t185 = 1.0 / t184;
-        let t186 = garm_vy_leg1 * actuator_velocities[0];
-        let t187 = garm_vy_leg2 * actuator_velocities[1];
-        let t189 = garm_vy_leg3 * actuator_velocities[2];
-        let t192 = t186 + t187 + t189 - t160 * t177;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t114;
-        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t167 = t166 / t150;
+        let t168 = garm_vy_leg1 * actuator_velocities[0];
+        let t169 = garm_vy_leg2 * actuator_velocities[1];
+        let t171 = garm_vy_leg3 * actuator_velocities[2];
+        let t174 = t168 + t169 + t171 - t145 * t167;
+        let t181 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t166 * t167;
+        ::overact::guard::platform(t181, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t181, 14.869730172882846, "actuators")?;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
+        let t189 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t202 = t201 * t145;
-        let t209 = t176 * t202
+        let t190 = t189 / t150;
+        let t197 = t166 * t190
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t210 = t209 * t185;
-        let t219 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t198 = t197 / t181;
+        let t200 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t201 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t203 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t216 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t201 * t202 - t209 * t210;
-        ::overact::guard::platform(t219, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t219, 34.855350201355726, "actuators")?;
-        let t220 = 1.0 / t219;
-        let t222 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t223 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t225 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t230 = t220 * (t160 * t202 - (t222 + t223 + t225) - t210 * t192);
-        let t232 = t185 * t192 - t210 * t230;
-        let t236 = t160 * t145 - t177 * t232 + t202 * t230;
-        let t240 = t146 * actuator_velocities[0] + s_armcross_leg1 * t236
-            + c_armcross_leg1 * t230;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t240;
-        let t242 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t232;
-        let t244 = rate_rod_leg1 * rate_rod_leg1;
-        let t248 = pose[1] * t244;
-        let rate_dot_arm_leg1 = t35 * (t146 * t147 + t149 * (t242 + t244) + t162 * t248);
-        let t252 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t254 = 0.24 * c_cross_leg2;
-        let t255 = actuator_velocities[1] * actuator_velocities[1];
-        let t258 = 0.8660254037844387 * t236;
-        let t259 = 0.5 * t232;
-        let minus_rate_rod_leg2 = t67 * (t258 + t259);
-        let t262 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t263 = 0.5 * s_armcross_leg2;
-        let t265 = 0.8660254037844387 * s_armcross_leg2;
-        let t271 = t263 * t236 - t265 * t232 - c_armcross_leg2 * t230
-            - actuator_velocities[1] * t254;
-        let rate_cross_leg2 = t67 * t271;
-        let t273 = rate_cross_leg2 * rate_cross_leg2;
-        let t277 = t51 * t262;
-        let rate_dot_arm_leg2 = t65
-            * (t254 * t255 + 0.56 * c_rod_leg2 * (t262 + t273) + t68 * t277);
-        let t281 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t284 = 0.24 * c_cross_leg3;
-        let t285 = actuator_velocities[2] * actuator_velocities[2];
-        let rate_rod_leg3 = t138 * (t258 - t259);
-        let t290 = rate_rod_leg3 * rate_rod_leg3;
-        let t291 = 0.5 * s_armcross_leg3;
-        let t293 = 0.8660254037844387 * s_armcross_leg3;
-        let t299 = t291 * t236 + t293 * t232 + minus_c_armcross_leg3 * t230
-            - actuator_velocities[2] * t284;
-        let rate_cross_leg3 = t138 * t299;
-        let t301 = rate_cross_leg3 * rate_cross_leg3;
-        let t305 = t50 * t290;
-        let rate_dot_arm_leg3 = t114
-            * (t284 * t285 + 0.56 * c_rod_leg3 * (t290 + t301) + t139 * t305);
-        let t309 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t311 = garm_vx_leg1 * t252 + garm_vx_leg2 * t281 + garm_vx_leg3 * t309;
-        let t319 = garm_vy_leg1 * t252 + garm_vy_leg2 * t281 + garm_vy_leg3 * t309
-            - t177 * t311;
-        let t330 = t220
-            * (t202 * t311
-                - (minus_garm_vz_leg1 * t252 + minus_garm_vz_leg2 * t281
-                    + minus_garm_vz_leg3 * t309) - t210 * t319);
-        let t332 = t185 * t319 - t210 * t330;
-        let t336 = t145 * t311 - t177 * t332 + t202 * t330;
-        let t347 = 9.81 * c_arm_leg1;
-        let t351 = 9.81 * c_arm_leg2;
-        let t355 = 9.81 * minus_c_arm_leg3;
-        let t359 = 9.81 * minus_s_arm_leg1;
-        let t363 = 9.81 * minus_s_arm_leg2;
-        let t367 = 9.81 * s_arm_leg3;
-        let t380 = t34 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t380;
-        let t383 = rate_rod_leg1 * (1.7857142857142858 * t240);
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t189 * t190 - t197 * t198;
+        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
+        let t217 = (t145 * t190 - (t200 + t201 + t203) - t198 * t174) / t216;
+        let t219 = t174 / t181 - t198 * t217;
+        let t223 = t145 / t150 - t167 * t219 + t190 * t217;
+        let minus_rate_cross_leg1 = grod_vy_leg1
+            * (t36 * actuator_velocities[0] + s_armcross_leg1 * t223
+                + c_armcross_leg1 * t217);
+        let t229 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t219;
+        let t231 = rate_rod_leg1 * rate_rod_leg1;
+        let t235 = pose[1] * t231;
+        let rate_dot_arm_leg1 = t34 * (t36 * t37 + t23 * (t229 + t231) + t152 * t235);
+        let t239 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t241 = actuator_velocities[1] * actuator_velocities[1];
+        let t244 = 0.8660254037844387 * t223;
+        let t245 = 0.5 * t219;
+        let minus_rate_rod_leg2 = t73 * (t244 + t245);
+        let t248 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t249 = 0.5 * s_armcross_leg2;
+        let t251 = 0.8660254037844387 * s_armcross_leg2;
+        let t257 = t249 * t223 - t251 * t219 - c_armcross_leg2 * t217
+            - actuator_velocities[1] * t89;
+        let t258 = 1.7857142857142858 * t257;
+        let t259 = t258 * t258;
+        let t260 = t74 * t259;
+        let t261 = t74 * t260;
+        let t262 = t261 + t259;
+        let t266 = t59 * t248;
+        let rate_dot_arm_leg2 = t72
+            * (t89 * t241 + 0.56 * c_rod_leg2 * (t248 + t262) + t74 * t266);
+        let t270 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t273 = actuator_velocities[2] * actuator_velocities[2];
+        let rate_rod_leg3 = t139 * (t244 - t245);
+        let t277 = rate_rod_leg3 * rate_rod_leg3;
+        let t278 = 0.5 * s_armcross_leg3;
+        let t280 = 0.8660254037844387 * s_armcross_leg3;
+        let t286 = t278 * t223 + t280 * t219 + minus_c_armcross_leg3 * t217
+            - actuator_velocities[2] * t135;
+        let t287 = 1.7857142857142858 * t286;
+        let t288 = t287 * t287;
+        let t289 = t140 * t288;
+        let t290 = t140 * t289;
+        let t291 = t290 + t288;
+        let t295 = t58 * t277;
+        let rate_dot_arm_leg3 = t118
+            * (t135 * t273 + t115 * (t277 + t291) + t140 * t295);
+        let t299 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t301 = garm_vx_leg1 * t239 + garm_vx_leg2 * t270 + garm_vx_leg3 * t299;
+        let t309 = garm_vy_leg1 * t239 + garm_vy_leg2 * t270 + garm_vy_leg3 * t299
+            - t167 * t301;
+        let t320 = (t190 * t301
+            - (minus_garm_vz_leg1 * t239 + minus_garm_vz_leg2 * t270
+                + minus_garm_vz_leg3 * t299) - t198 * t309) / t216;
+        let t322 = t309 / t181 - t198 * t320;
+        let t326 = t301 / t150 - t167 * t322 + t190 * t320;
+        let t337 = 9.81 * c_arm_leg1;
+        let t341 = 9.81 * c_arm_leg2;
+        let t345 = 9.81 * minus_c_arm_leg3;
+        let t349 = 9.81 * minus_s_arm_leg1;
+        let t353 = 9.81 * minus_s_arm_leg2;
+        let t357 = 9.81 * s_arm_leg3;
+        let t370 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t370;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t385 = 0.24 * actuator_accelerations[0];
-        let t390 = 0.24 * t147;
-        let t392 = pose[1] * minus_rate_cross_leg1;
-        let t393 = rate_rod_leg1 * t392;
+        let t373 = t219 * minus_rate_cross_leg1;
+        let t374 = 1.7857142857142858 * t373;
+        let t379 = 0.24 * t37;
+        let t381 = t152 * t373;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t385 + s_armcross_leg1 * t336 + c_armcross_leg1 * t330
-                + s_cross_leg1 * t390 + t393 + t393);
-        let t399 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t401 = t383 + t399 + t383;
-        let t402 = c_rod_leg1 * t401;
-        let t403 = t162 * t402;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t146 * garm_vy_leg1);
-        let t409 = 3.188775510204082 * (minus_rate_cross_leg1 * t392);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t380;
-        let gcross_vx_leg2 = t67 * (t263 - t93 * t89);
-        let t417 = minus_rate_rod_leg2 * (1.7857142857142858 * t271);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t51;
-        let t424 = 0.24 * t255;
-        let t426 = t51 * rate_cross_leg2;
-        let t427 = minus_rate_rod_leg2 * t426;
-        let t431 = 0.24 * actuator_accelerations[1];
-        let t433 = t263 * t336 - t265 * t332 - c_armcross_leg2 * t330
-            - (s_cross_leg2 * t424 - t427 - t427) - c_cross_leg2 * t431;
-        let rate_dot_cross_leg2 = t67 * t433;
-        let t435 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t437 = t417 + t435 + t417;
-        let t438 = c_rod_leg2 * t437;
-        let t439 = t68 * t438;
-        let t441 = rate_cross_leg2 * t426;
-        let t442 = 2.76156059880242 * t441;
-        let minus_gcross_vy_leg2 = t67 * (t265 + t167 * t89);
-        let t448 = 1.594387755102041 * t441;
-        let minus_gcross_vz_leg2 = t67 * t79;
-        let gcross_vx_leg3 = t138 * (t291 - t141 * t133);
-        let t456 = rate_rod_leg3 * (1.7857142857142858 * t299);
-        let s_rod_leg3 = 1.7857142857142858 * t50;
-        let t463 = 0.24 * t285;
-        let t465 = t50 * rate_cross_leg3;
-        let t466 = rate_rod_leg3 * t465;
-        let t470 = 0.24 * actuator_accelerations[2];
-        let t472 = t291 * t336 + t293 * t332 + minus_c_armcross_leg3 * t330
-            - (s_cross_leg3 * t463 - t466 - t466) - c_cross_leg3 * t470;
-        let rate_dot_cross_leg3 = t138 * t472;
-        let t474 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t476 = t456 + t474 + t456;
-        let t477 = c_rod_leg3 * t476;
-        let t478 = t139 * t477;
-        let t480 = rate_cross_leg3 * t465;
-        let t481 = 2.76156059880242 * t480;
-        let gcross_vy_leg3 = t138 * (t293 - t173 * t133);
-        let t487 = 1.594387755102041 * t480;
-        let gcross_vz_leg3 = t138 * t123;
-        let t491 = t403 - minus_rate_dot_cross_leg1;
-        let t493 = t162 * t491 - t402;
-        let t495 = t392 * t392;
-        let t503 = rate_dot_cross_leg2 - t439;
-        let t505 = t68 * t503 + t438;
-        let t507 = t426 * t426;
-        let t510 = t66 * (t507 - t271 * t271);
-        let t517 = rate_dot_cross_leg3 - t478;
-        let t519 = t477 + t139 * t517;
-        let t521 = t465 * t465;
-        let t524 = t137 * (t521 - t299 * t299);
-        let t531 = t149 * t409;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t332 + t248);
-        let t536 = 3.188775510204082 * t495;
-        let t539 = s_rod_leg1 * (t531 + rate_dot_rod_leg1) + c_rod_leg1 * (t244 - t536);
-        let t546 = 3.188775510204082 * (t271 * t426);
-        let t547 = 0.8660254037844387 * t336;
-        let t548 = 0.5 * t332;
-        let t549 = t547 + t548;
-        let minus_rate_dot_rod_leg2 = t67 * (t549 + t277);
-        let t554 = 3.188775510204082 * t507;
-        let t557 = minus_s_rod_leg2 * (t546 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t262 - t554);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t66;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t66;
-        let t568 = 3.188775510204082 * (t299 * t465);
-        let t569 = t547 - t548;
-        let rate_dot_rod_leg3 = t138 * (t569 + t305);
-        let t574 = 3.188775510204082 * t521;
-        let t577 = s_rod_leg3 * (t568 + rate_dot_rod_leg3) + c_rod_leg3 * (t290 - t574);
-        let grod_vx_leg3 = 1.5464739353293548 * t137;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t137;
-        let t601 = 1.7857142857142858 * t332;
-        let t607 = 1.7857142857142858 * t549;
-        let t615 = 1.7857142857142858 * t569;
-        let t628 = 0.8928571428571429 * t16;
-        let t636 = t628 * (t531 - rate_dot_rod_leg1) + t162 * t628 * (t536 + t244)
-            + t146 * t401;
-        let t638 = t385 - t347;
-        let t640 = t359 - t390;
-        let t643 = s_rod_leg1 * (c_cross_leg1 * t638 - s_cross_leg1 * t640);
-        let t651 = c_cross_leg1 * t640 + s_cross_leg1 * t638;
-        let t657 = 0.8928571428571429 * t59;
-        let t665 = t657 * (minus_rate_dot_rod_leg2 - t546) - t68 * t657 * (t554 + t262)
-            + t254 * t437;
-        let t667 = t431 - t351;
-        let t669 = t363 - t424;
-        let t672 = minus_s_rod_leg2 * (c_cross_leg2 * t667 - s_cross_leg2 * t669);
-        let t677 = c_cross_leg2 * t669 + s_cross_leg2 * t667;
-        let t688 = 0.8928571428571429 * t108;
-        let t696 = t688 * (t568 - rate_dot_rod_leg3) + t139 * t688 * (t574 + t290)
-            - t284 * t476;
-        let t698 = t367 + t463;
-        let t700 = t355 + t470;
-        let t703 = s_rod_leg3 * (s_cross_leg3 * t698 + c_cross_leg3 * t700);
-        let t708 = s_cross_leg3 * t700 - c_cross_leg3 * t698;
-        let t722 = t146 * t242 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
-        let t735 = rate_dot_cross_leg2 * (t59 * minus_grod_vy_leg2) + t254 * t273;
-        let t748 = rate_dot_cross_leg3 * (t108 * minus_grod_vy_leg3) + t284 * t301;
+            * (actuator_accelerations[0] * t36 + s_armcross_leg1 * t326
+                + c_armcross_leg1 * t320 + s_cross_leg1 * t379 + t381 + t381);
+        let t387 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t389 = t374 + t387 + t374;
+        let t390 = s_rod_leg1 * t389;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t36 * garm_vy_leg1);
+        let t396 = 3.188775510204082 * (pose[1] * t229);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t370;
+        let gcross_vx_leg2 = t73 * (t249 - garm_vx_leg2 * t89);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t59;
+        let t404 = minus_rate_rod_leg2 * t258;
+        let t410 = t241 * t70;
+        let t412 = minus_rate_rod_leg2 * (t74 * t257);
+        let t417 = t249 * t326 - t251 * t322 - c_armcross_leg2 * t320
+            - (t410 - t412 - t412) - actuator_accelerations[1] * t89;
+        let rate_dot_cross_leg2 = t73 * t417;
+        let t419 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t421 = t404 + t419 + t404;
+        let t422 = minus_s_rod_leg2 * t421;
+        let minus_grod_vx_leg2 = 0.8660254037844387 * t73;
+        let t425 = t260 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t73 * (t251 + t157 * t93);
+        let t431 = t260 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t73 * t81;
+        let gcross_vx_leg3 = t139 * (t278 - garm_vx_leg3 * t135);
+        let s_rod_leg3 = 1.7857142857142858 * t58;
+        let t439 = rate_rod_leg3 * t287;
+        let t445 = s_cross_leg3 * 0.24;
+        let t448 = rate_rod_leg3 * (t140 * t286);
+        let t452 = 0.24 * actuator_accelerations[2];
+        let t454 = t278 * t326 + t280 * t322 + minus_c_armcross_leg3 * t320
+            - (t273 * t445 - t448 - t448) - c_cross_leg3 * t452;
+        let rate_dot_cross_leg3 = t139 * t454;
+        let t458 = t439 + s_rod_leg3 * rate_dot_cross_leg3 + t439;
+        let t459 = s_rod_leg3 * t458;
+        let t461 = t58 * t291;
+        let t462 = 2.76156059880242 * t461;
+        let gcross_vy_leg3 = t139 * (t280 - garm_vy_leg3 * t135);
+        let t468 = 1.594387755102041 * t461;
+        let gcross_vz_leg3 = t139 * t124;
+        let t472 = t390 - minus_rate_dot_cross_leg1;
+        let t475 = t152 * t472 - c_rod_leg1 * t389;
+        let t484 = rate_dot_cross_leg2 - t422;
+        let t487 = t74 * t484 + c_rod_leg2 * t421;
+        let t491 = t262 * (t60 - t61) / c_rod_leg2;
+        let t499 = rate_dot_cross_leg3 - t459;
+        let t501 = c_rod_leg3 * t458 + t140 * t499;
+        let t506 = 0.56 * t139 * (t291 * (t106 - t107));
+        let t513 = t23 * t396;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t322 + t235);
+        let t518 = t152 * t513;
+        let t521 = s_rod_leg1 * (t513 + rate_dot_rod_leg1) + c_rod_leg1 * (t231 - t518);
+        let t527 = 0.8660254037844387 * t326;
+        let t528 = 0.5 * t322;
+        let t529 = t527 + t528;
+        let minus_rate_dot_rod_leg2 = t73 * (t529 + t266);
+        let t536 = minus_s_rod_leg2 * (t260 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t248 - t261);
+        let t544 = t527 - t528;
+        let rate_dot_rod_leg3 = t139 * (t544 + t295);
+        let t551 = s_rod_leg3 * (t289 + rate_dot_rod_leg3) + c_rod_leg3 * (t277 - t290);
+        let t553 = 1.5464739353293548 * rate_dot_cross_leg3;
+        let t557 = 0.8928571428571429 * rate_dot_cross_leg3;
+        let t575 = 1.7857142857142858 * t322;
+        let t581 = 1.7857142857142858 * t529;
+        let t589 = 1.7857142857142858 * t544;
+        let t598 = t139 * rate_dot_rod_leg3;
+        let t601 = 0.8928571428571429 * t15;
+        let t609 = t601 * (t513 - rate_dot_rod_leg1) + t152 * t601 * (t518 + t231)
+            + t36 * t389;
+        let t612 = 0.24 * actuator_accelerations[0] - t337;
+        let t614 = t349 - t379;
+        let t617 = s_rod_leg1 * (c_cross_leg1 * t612 - s_cross_leg1 * t614);
+        let t625 = c_cross_leg1 * t614 + s_cross_leg1 * t612;
+        let t638 = t67 * (minus_rate_dot_rod_leg2 - t260)
+            - minus_s_rod_leg2 * t70 * (t261 + t248) + t89 * t421;
+        let t641 = 0.24 * actuator_accelerations[1] - t341;
+        let t644 = s_cross_leg2 * t353 - t410;
+        let t646 = minus_s_rod_leg2 * (c_cross_leg2 * t641 - t644);
+        let t651 = t93 * t644 + s_cross_leg2 * t641;
+        let t670 = 0.8928571428571429 * t112 * (t289 - rate_dot_rod_leg3)
+            + s_rod_leg3 * t445 * (t290 + t277) - t135 * t458;
+        let t673 = t357 + 0.24 * t273;
+        let t675 = t345 + t452;
+        let t678 = s_rod_leg3 * (s_cross_leg3 * t673 + c_cross_leg3 * t675);
+        let t683 = s_cross_leg3 * t675 - c_cross_leg3 * t673;
+        let t697 = t36 * t229 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
+        let t709 = rate_dot_cross_leg2 * t70 + t89 * t262;
+        let t721 = rate_dot_cross_leg3 * t445 + t135 * t291;
         Ok([
             [
-                t336, garm_vx_leg1 * actuator_accelerations[0],
+                t326, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                -(garm_vx_leg1 * t347), -(garm_vx_leg2 * t351), garm_vx_leg3 * t355,
-                -(garm_vx_leg1 * t359), -(garm_vx_leg2 * t363), garm_vx_leg3 * t367, t156, t157,
-                t159, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
+                -(garm_vx_leg1 * t337), -(garm_vx_leg2 * t341), garm_vx_leg3 * t345,
+                -(garm_vx_leg1 * t349), -(garm_vx_leg2 * t353), garm_vx_leg3 * t357, t44, t99, t144,
+                ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t403,
-                gcross_vx_leg2 * t439 - t442, gcross_vx_leg3 * t478 - t481,
-                -(minus_gcross_vx_leg1 * t493),
-                -(gcross_vx_leg2 * t505 + 4.9313582121471775 * t510),
-                gcross_vx_leg3 * t519 + 4.9313582121471775 * t524, -(minus_gcross_vx_leg1 * t539),
-                gcross_vx_leg2 * t557 + minus_grod_vx_leg2 * t435,
-                gcross_vx_leg3 * t577 + grod_vx_leg3 * t474, -(minus_gcross_vx_leg1 * t491),
-                gcross_vx_leg2 * t503 + t442, gcross_vx_leg3 * t517 + t481,
-                -(minus_gcross_vx_leg1 * t601),
-                -(gcross_vx_leg2 * t607 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t615 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t636 + minus_gcross_vx_leg1 * t643,
-                garm_vx_leg2 * t665 + gcross_vx_leg2 * t672 + 1.5464739353293548 * t677,
-                garm_vx_leg3 * t696 - gcross_vx_leg3 * t703 - 1.5464739353293548 * t708,
-                garm_vx_leg1 * t722 - minus_gcross_vx_leg1 * t651,
-                garm_vx_leg2 * t735 + gcross_vx_leg2 * t677,
-                garm_vx_leg3 * t748 + gcross_vx_leg3 * t708,
+                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t390,
+                gcross_vx_leg2 * t422 - t425, gcross_vx_leg3 * t459 - t462,
+                -(minus_gcross_vx_leg1 * t475),
+                -(gcross_vx_leg2 * t487 + 4.9313582121471775 * t491),
+                gcross_vx_leg3 * t501 + 4.9313582121471775 * t506, -(minus_gcross_vx_leg1 * t521),
+                gcross_vx_leg2 * t536 + minus_grod_vx_leg2 * t419,
+                gcross_vx_leg3 * t551 + t140 * t553, -(minus_gcross_vx_leg1 * t472),
+                gcross_vx_leg2 * t484 + t425, gcross_vx_leg3 * t499 + t462,
+                -(minus_gcross_vx_leg1 * t575),
+                -(gcross_vx_leg2 * t581 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t589 + t553, 0.0, minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                0.8660254037844387 * t598, garm_vx_leg1 * t609 + minus_gcross_vx_leg1 * t617,
+                garm_vx_leg2 * t638 + gcross_vx_leg2 * t646 + 1.5464739353293548 * t651,
+                garm_vx_leg3 * t670 - gcross_vx_leg3 * t678 - 1.5464739353293548 * t683,
+                garm_vx_leg1 * t697 - minus_gcross_vx_leg1 * t625,
+                garm_vx_leg2 * t709 + gcross_vx_leg2 * t651,
+                garm_vx_leg3 * t721 + gcross_vx_leg3 * t683,
             ],
             [
-                t332, garm_vy_leg1 * actuator_accelerations[0],
+                t322, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                -(garm_vy_leg1 * t347), -(garm_vy_leg2 * t351), garm_vy_leg3 * t355,
-                -(garm_vy_leg1 * t359), -(garm_vy_leg2 * t363), garm_vy_leg3 * t367, t186, t187,
-                t189, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                -(garm_vy_leg1 * t337), -(garm_vy_leg2 * t341), garm_vy_leg3 * t345,
+                -(garm_vy_leg1 * t349), -(garm_vy_leg2 * t353), garm_vy_leg3 * t357, t168, t169,
+                t171, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t403 - t409,
-                -(minus_gcross_vy_leg2 * t439 + t448), gcross_vy_leg3 * t478 + t487,
-                5.694241982507289 * (t150 * (t495 - t240 * t240))
-                    - minus_gcross_vy_leg1 * t493,
-                -(2.8471209912536444 * t510 - minus_gcross_vy_leg2 * t505),
-                gcross_vy_leg3 * t519 - 2.8471209912536444 * t524,
-                -(minus_gcross_vy_leg1 * t539 + grod_vy_leg1 * t399),
-                minus_grod_vy_leg2 * t435 - minus_gcross_vy_leg2 * t557,
-                gcross_vy_leg3 * t577 - minus_grod_vy_leg3 * t474,
-                t409 - minus_gcross_vy_leg1 * t491,
-                t448 - minus_gcross_vy_leg2 * t503,
-                gcross_vy_leg3 * t517 - t487,
-                -(minus_gcross_vy_leg1 * t601
+                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t390 - t396,
+                -(minus_gcross_vy_leg2 * t422 + t431), gcross_vy_leg3 * t459 + t468,
+                5.694241982507289 * (t229 * (t6 + t7) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t475,
+                -(2.8471209912536444 * t491 - minus_gcross_vy_leg2 * t487),
+                gcross_vy_leg3 * t501 - 2.8471209912536444 * t506,
+                -(minus_gcross_vy_leg1 * t521 + grod_vy_leg1 * t387),
+                minus_grod_vy_leg2 * t419 - minus_gcross_vy_leg2 * t536,
+                gcross_vy_leg3 * t551 - t140 * t557,
+                t396 - minus_gcross_vy_leg1 * t472,
+                t431 - minus_gcross_vy_leg2 * t484,
+                gcross_vy_leg3 * t499 - t468,
+                -(minus_gcross_vy_leg1 * t575
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t607 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t615 - 0.8928571428571429 * rate_dot_cross_leg3,
+                minus_gcross_vy_leg2 * t581 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t589 - t557,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t636 + minus_gcross_vy_leg1 * t643
-                    - 1.7857142857142858 * t651,
-                garm_vy_leg2 * t665 - minus_gcross_vy_leg2 * t672
-                    + 0.8928571428571429 * t677,
-                garm_vy_leg3 * t696 - gcross_vy_leg3 * t703 + 0.8928571428571429 * t708,
-                garm_vy_leg1 * t722 - minus_gcross_vy_leg1 * t651,
-                garm_vy_leg2 * t735 - minus_gcross_vy_leg2 * t677,
-                garm_vy_leg3 * t748 + gcross_vy_leg3 * t708,
+                -(0.5 * t598),
+                garm_vy_leg1 * t609 + minus_gcross_vy_leg1 * t617
+                    - 1.7857142857142858 * t625,
+                garm_vy_leg2 * t638 - minus_gcross_vy_leg2 * t646
+                    + 0.8928571428571429 * t651,
+                garm_vy_leg3 * t670 - gcross_vy_leg3 * t678 + 0.8928571428571429 * t683,
+                garm_vy_leg1 * t697 - minus_gcross_vy_leg1 * t625,
+                garm_vy_leg2 * t709 - minus_gcross_vy_leg2 * t651,
+                garm_vy_leg3 * t721 + gcross_vy_leg3 * t683,
             ],
             [
-                t330 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                t320 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
                 -(minus_garm_vz_leg2 * actuator_accelerations[1]),
-                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t347,
-                minus_garm_vz_leg2 * t351, -(minus_garm_vz_leg3 * t355), minus_garm_vz_leg1 * t359,
-                minus_garm_vz_leg2 * t363, -(minus_garm_vz_leg3 * t367), -t222, -t223, -t225,
+                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t337,
+                minus_garm_vz_leg2 * t341, -(minus_garm_vz_leg3 * t345), minus_garm_vz_leg1 * t349,
+                minus_garm_vz_leg2 * t353, -(minus_garm_vz_leg3 * t357), -t200, -t201, -t203,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3,
-                minus_gcross_vz_leg1 * t403, -(minus_gcross_vz_leg2 * t439), gcross_vz_leg3 * t478,
-                -(minus_gcross_vz_leg1 * t493), minus_gcross_vz_leg2 * t505, gcross_vz_leg3 * t519,
-                -(minus_gcross_vz_leg1 * t539), -(minus_gcross_vz_leg2 * t557),
-                gcross_vz_leg3 * t577, -(minus_gcross_vz_leg1 * t491),
-                -(minus_gcross_vz_leg2 * t503), gcross_vz_leg3 * t517,
-                -(minus_gcross_vz_leg1 * t601), minus_gcross_vz_leg2 * t607, gcross_vz_leg3 * t615,
-                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t643 - minus_garm_vz_leg1 * t636,
-                -(minus_gcross_vz_leg2 * t672 + minus_garm_vz_leg2 * t665),
-                -(minus_garm_vz_leg3 * t696 + gcross_vz_leg3 * t703),
-                -(minus_garm_vz_leg1 * t722 + minus_gcross_vz_leg1 * t651),
-                -(minus_gcross_vz_leg2 * t677 + minus_garm_vz_leg2 * t735),
-                gcross_vz_leg3 * t708 - minus_garm_vz_leg3 * t748,
+                minus_gcross_vz_leg1 * t390, -(minus_gcross_vz_leg2 * t422), gcross_vz_leg3 * t459,
+                -(minus_gcross_vz_leg1 * t475), minus_gcross_vz_leg2 * t487, gcross_vz_leg3 * t501,
+                -(minus_gcross_vz_leg1 * t521), -(minus_gcross_vz_leg2 * t536),
+                gcross_vz_leg3 * t551, -(minus_gcross_vz_leg1 * t472),
+                -(minus_gcross_vz_leg2 * t484), gcross_vz_leg3 * t499,
+                -(minus_gcross_vz_leg1 * t575), minus_gcross_vz_leg2 * t581, gcross_vz_leg3 * t589,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t617 - minus_garm_vz_leg1 * t609,
+                -(minus_gcross_vz_leg2 * t646 + minus_garm_vz_leg2 * t638),
+                -(minus_garm_vz_leg3 * t670 + gcross_vz_leg3 * t678),
+                -(minus_garm_vz_leg1 * t697 + minus_gcross_vz_leg1 * t625),
+                -(minus_gcross_vz_leg2 * t651 + minus_garm_vz_leg2 * t709),
+                gcross_vz_leg3 * t683 - minus_garm_vz_leg3 * t721,
             ],
         ])
     }

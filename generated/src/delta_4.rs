@@ -1817,7 +1817,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 808 operations (240 additions, 550 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 644 intermediates.
+    /// 792 operations (240 additions, 518 multiplications, 34 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 628 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1827,518 +1827,506 @@ impl Delta4 {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.16 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.4 * t1;
-        let t9 = pose[1] * pose[1] + -0.2809;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.04;
-        let t13 = 0.4 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t9));
+        let t2 = 0.4 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t7 = pose[1] * pose[1] + -0.2809;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.04;
+        let t11 = 0.4 * pose[2];
+        let t12 = 0.16 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.212 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.04) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t23 = 0.53 * c_rod_leg1;
+        let t24 = 0.4 * t23;
+        let c_cross_leg1 = (t8 + -0.04) / t24;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let s_cross_leg1 = t15 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 5.0 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
+        let t34 = 5.0 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t43 = 0.2 * c_cross_leg1;
-        let t47 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t47;
-        let t49 = pose[1] * grod_vy_leg1;
-        let t50 = t49 * twist[1];
-        let rate_arm_leg1 = t35
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t50);
-        let t53 = rate_arm_leg1 * rate_arm_leg1;
-        let t55 = 0.53 * c_rod_leg1;
-        let t60 = t43 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t60;
-        let t62 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let grod_vy_leg1 = 0.4 / t24;
+        let t46 = pose[1] * grod_vy_leg1;
+        let t47 = t46 * twist[1];
+        let t48 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t47;
+        let rate_arm_leg1 = t34 * t48;
+        let t50 = 0.2 * c_cross_leg1;
+        let t51 = t50 * rate_arm_leg1;
+        let t56 = t51 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t56;
+        let t58 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t64 = rate_rod_leg1 * rate_rod_leg1;
-        let t70 = acceleration[1] + pose[1] * t64;
-        let t71 = t49 * t70;
-        let rate_dot_arm_leg1 = t35
+        let t60 = rate_rod_leg1 * rate_rod_leg1;
+        let t66 = acceleration[1] + t47 * rate_rod_leg1;
+        let t67 = t46 * t66;
+        let rate_dot_arm_leg1 = t34
             * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-                + t43 * t53 + t55 * (t62 + t64) + t71);
-        let t74 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t35 * t49;
-        let t76 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
-        let t78 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t79 = 9.81 * c_arm_leg1;
-        let t83 = 9.81 * minus_s_arm_leg1;
-        let t93 = t34 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t93;
-        let t96 = rate_rod_leg1 * (1.8867924528301887 * t60);
+                + rate_arm_leg1 * t51 + t23 * (t58 + t60) + t67);
+        let t70 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t34 * t46;
+        let t72 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
+        let t74 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t75 = 9.81 * c_arm_leg1;
+        let t79 = 9.81 * minus_s_arm_leg1;
+        let t89 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t89;
+        let t92 = rate_rod_leg1 * (1.8867924528301887 * t56);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t98 = 0.2 * t53;
-        let t100 = 0.2 * rate_dot_arm_leg1;
-        let t106 = s_cross_leg1 * t98 + c_cross_leg1 * t100
-            + s_armcross_leg1 * acceleration[0] + c_armcross_leg1 * acceleration[2];
-        let t107 = t50 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t106 + t107 + t107);
-        let t111 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t113 = t96 + t111 + t96;
-        let t114 = c_rod_leg1 * t113;
-        let t115 = t49 * t114;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
-        let t120 = t62 * s_rod_leg1;
-        let t121 = 1.8867924528301887 * t120;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t93;
-        let t125 = t115 - minus_rate_dot_cross_leg1;
-        let t127 = t49 * t125 - t114;
-        let t129 = pose[1] * t121;
-        let t130 = t64 - t129;
-        let t131 = t62 + t130;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
-        let t141 = s_rod_leg1 * (t55 * t121 + rate_dot_rod_leg1);
-        let t143 = t141 + c_rod_leg1 * t130;
-        let t153 = 1.8867924528301887 * acceleration[1];
-        let t159 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t164 = 0.2 * s_cross_leg1;
-        let t167 = 0.37735849056603776 * (c_cross_leg1 * t106)
-            + 0.9433962264150944 * t16 * t131 + t141 * t164;
-        let t169 = t100 - t79;
-        let t171 = t83 - t98;
-        let t173 = c_cross_leg1 * t169 - s_cross_leg1 * t171;
-        let t174 = c_rod_leg1 * t173;
-        let t178 = 0.2 * t169;
-        let t179 = garm_vy_leg1 * t178;
-        let t188 = t43 * t113 - t164 * (t153 - t120);
-        let t190 = s_rod_leg1 * t173;
-        let t198 = c_cross_leg1 * t171 + s_cross_leg1 * t169;
-        let t206 = t43 * t62 - minus_rate_dot_cross_leg1 * t164;
-        let t219 = pose[1] + 0.05 - 0.2;
-        let t221 = t219 * t219 + t3;
-        let t222 = 0.16 * t221;
-        let t224 = 0.2809 - pose[0] * pose[0];
-        let t225 = t221 - t224;
-        let t226 = t225 + 0.04;
-        let t228 = t222 - t226 * t226;
-        ::overact::guard::reach(t228, "leg2")?;
-        let t229 = ::overact::math::sqrt(t228);
-        let t230 = 3.5599857600569598 * t224;
-        ::overact::guard::reach(t230, "leg2")?;
-        ::overact::guard::reach(t230, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t230);
+        let t98 = t48 * rate_arm_leg1;
+        let t99 = t47 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (t50 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t98 + t99 + t99);
+        let t105 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t107 = t92 + t105 + t92;
+        let t108 = c_rod_leg1 * t107;
+        let t109 = t46 * t108;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t50 * garm_vy_leg1);
+        let t114 = t58 * s_rod_leg1;
+        let t115 = c_rod_leg1 * t114;
+        let t116 = grod_vy_leg1 * t115;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t89;
+        let t120 = t109 - minus_rate_dot_cross_leg1;
+        let t122 = t46 * t120 - t108;
+        let t124 = t46 * t115;
+        let t125 = t60 - t124;
+        let t126 = t58 + t125;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t66;
+        let t135 = s_rod_leg1 * (t115 + rate_dot_rod_leg1);
+        let t137 = t135 + c_rod_leg1 * t125;
+        let t147 = 1.8867924528301887 * acceleration[1];
+        let t153 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t156 = 0.2 * s_cross_leg1;
+        let t161 = t50 * (t120 / c_rod_leg1) - (c_rod_leg1 * t156 * t126 + t135 * t156);
+        let t164 = 0.2 * rate_dot_arm_leg1 - t75;
+        let t167 = t79 - t98 / s_cross_leg1;
+        let t169 = c_cross_leg1 * t164 - s_cross_leg1 * t167;
+        let t170 = c_rod_leg1 * t169;
+        let t174 = 0.2 * t164;
+        let t175 = garm_vy_leg1 * t174;
+        let t184 = t50 * t107 - t156 * (t147 - t114);
+        let t186 = s_rod_leg1 * t169;
+        let t194 = c_cross_leg1 * t167 + s_cross_leg1 * t164;
+        let t202 = t50 * t58 - minus_rate_dot_cross_leg1 * t156;
+        let t215 = pose[1] + 0.05 - 0.2;
+        let t217 = t215 * t215 + t4;
+        let t218 = 0.16 * t217;
+        let t220 = 0.2809 - pose[0] * pose[0];
+        let t221 = t217 - t220;
+        let t222 = t221 + 0.04;
+        let t224 = t218 - t222 * t222;
+        ::overact::guard::reach(t224, "leg2")?;
+        let t225 = ::overact::math::sqrt(t224);
+        let t226 = 3.5599857600569598 * t220;
+        ::overact::guard::reach(t226, "leg2")?;
+        ::overact::guard::reach(t226, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t226);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t232 = 0.212 * c_rod_leg2;
-        let s_cross_leg2 = t229 / t232;
+        let t228 = 0.53 * c_rod_leg2;
+        let t229 = 0.4 * t228;
+        let s_cross_leg2 = t225 / t229;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t234 = 1.0 / s_cross_leg2;
-        let t235 = 5.0 * t234;
-        let t236 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t236;
-        let t238 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t235 * t238;
-        let t240 = 1.0 / t222;
-        let t241 = 0.4 * t219;
-        let c_arm_leg2 = t240 * (t241 * t226 - t13 * t229);
-        let c_cross_leg2 = (-0.04 + t225) / t232;
-        let minus_s_arm_leg2 = t240 * (t13 * t226 + t241 * t229);
+        let t231 = 5.0 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 0.4 / t229;
+        let t233 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t231 * t233;
+        let t235 = 0.4 * t215;
+        let c_arm_leg2 = (t235 * t222 - t11 * t225) / t218;
+        let c_cross_leg2 = (-0.04 + t221) / t229;
+        let minus_s_arm_leg2 = (t11 * t222 + t235 * t225) / t218;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
+        let t258 = t233 * twist[0];
+        let t259 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t258;
+        let rate_arm_leg2 = t231 * t259;
         let t261 = 0.2 * c_cross_leg2;
-        let t265 = t238 * twist[0];
-        let rate_arm_leg2 = t235
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t265);
-        let t268 = rate_arm_leg2 * rate_arm_leg2;
-        let t270 = 0.53 * c_rod_leg2;
+        let t262 = t261 * rate_arm_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t272 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t277 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t261 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t277;
-        let t279 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t285 = acceleration[0] + pose[0] * t272;
-        let t286 = t238 * t285;
-        let rate_dot_arm_leg2 = t235
+        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t269 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2] + t262;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t269;
+        let t271 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t272 = t265 + t271;
+        let t277 = acceleration[0] + pose[0] * t265;
+        let t278 = t233 * t277;
+        let rate_dot_arm_leg2 = t231
             * (c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-                + t261 * t268 + t270 * (t272 + t279) + t286);
-        let t289 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t235;
-        let t291 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t235;
-        let t293 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t294 = 9.81 * c_arm_leg2;
-        let t298 = 9.81 * minus_s_arm_leg2;
+                + rate_arm_leg2 * t262 + t228 * t272 + t278);
+        let t281 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t231;
+        let t283 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t231;
+        let t285 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t286 = 9.81 * c_arm_leg2;
+        let t290 = 9.81 * minus_s_arm_leg2;
         let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t261 * garm_vx_leg2);
-        let t311 = minus_rate_rod_leg2 * (1.8867924528301887 * t277);
-        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t316 = 0.2 * t268;
-        let t318 = t265 * minus_rate_cross_leg2;
-        let t322 = 0.2 * rate_dot_arm_leg2;
+        let t303 = minus_rate_rod_leg2 * (1.8867924528301887 * t269);
+        let t307 = t259 * rate_arm_leg2;
+        let t308 = t258 * minus_rate_cross_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
             * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + s_cross_leg2 * t316 + t318 + t318 + c_cross_leg2 * t322);
-        let t326 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t328 = t311 + t326 + t311;
-        let t329 = c_rod_leg2 * t328;
-        let t330 = t238 * t329;
-        let t332 = t230 * t279;
-        let t333 = t238 * t332;
-        let t334 = minus_grod_vx_leg2 * t333;
-        let t336 = t234 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t336;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t336;
-        let t341 = t330 - minus_rate_dot_cross_leg2;
-        let t343 = t329 - t238 * t341;
-        let t345 = pose[0] * t334;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t285;
-        let t352 = t333 + minus_rate_dot_rod_leg2;
-        let t356 = minus_s_rod_leg2 * t352 + c_rod_leg2 * (t272 - t345);
-        let t366 = 1.8867924528301887 * acceleration[0];
-        let t372 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t375 = 0.9433962264150944 * t229;
-        let t378 = t238 * t375;
-        let t381 = t261 * (t236 * t341) - (t375 * (t332 + t272) + t378 * t352);
-        let t383 = t322 - t294;
-        let t384 = 0.2 * t383;
-        let t385 = garm_vx_leg2 * t384;
-        let t390 = t298 - t316;
-        let t392 = c_cross_leg2 * t383 - s_cross_leg2 * t390;
-        let t393 = c_rod_leg2 * t392;
-        let t405 = t375 * (minus_rate_dot_rod_leg2 - t333) - t378 * (t345 + t272)
-            - t261 * t328;
-        let t407 = minus_s_rod_leg2 * t392;
-        let t412 = c_cross_leg2 * t390 + s_cross_leg2 * t383;
-        let t424 = t261 * t279 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
-        let t437 = pose[0] - 0.05 + 0.2;
-        let t439 = t437 * t437 + t3;
-        let t440 = 0.16 * t439;
-        let t441 = 1.0 / t440;
-        let t442 = 0.4 * t437;
-        let t443 = t439 + t9;
-        let t444 = t443 + 0.04;
-        let t447 = t440 - t444 * t444;
-        ::overact::guard::reach(t447, "leg3")?;
-        let t448 = ::overact::math::sqrt(t447);
-        let minus_c_arm_leg3 = t441 * (t442 * t444 + t13 * t448);
-        let c_cross_leg3 = (-0.04 + t443) / t24;
-        let s_arm_leg3 = t441 * (t442 * t448 - t13 * t444);
-        let s_cross_leg3 = t448 / t24;
+                + t307 + t308 + t308 + t261 * rate_dot_arm_leg2);
+        let t315 = 1.8867924528301887 * minus_rate_dot_cross_leg2;
+        let t316 = pose[0] * t315;
+        let t318 = t303 + t316 + t303;
+        let t319 = c_rod_leg2 * t318;
+        let t320 = t233 * t319;
+        let t322 = t226 * t271;
+        let t323 = t233 * t322;
+        let t324 = minus_grod_vx_leg2 * t323;
+        let t326 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t326;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t326;
+        let t331 = t320 - minus_rate_dot_cross_leg2;
+        let t333 = t319 - t233 * t331;
+        let t335 = t322 + t265;
+        let t336 = t272 - t322;
+        let t342 = 0.2 * s_cross_leg2;
+        let t343 = c_rod_leg2 * t342;
+        let t344 = t233 * t343;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t277;
+        let t347 = t344 * (t323 + minus_rate_dot_rod_leg2);
+        let t351 = t231 * t347 + c_rod_leg2 * (t335 - t271);
+        let t361 = 1.8867924528301887 * acceleration[0];
+        let t366 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t371 = t261 * (t331 / c_rod_leg2) - (t343 * t335 + t347);
+        let t374 = 0.2 * rate_dot_arm_leg2 - t286;
+        let t375 = 0.2 * t374;
+        let t376 = garm_vx_leg2 * t375;
+        let t382 = t290 - t307 / s_cross_leg2;
+        let t385 = c_rod_leg2 * (c_cross_leg2 * t374 - s_cross_leg2 * t382);
+        let t396 = t343 * (minus_rate_dot_rod_leg2 - t323) - t344 * t336 - t261 * t318;
+        let t398 = t233 * t385;
+        let t403 = c_cross_leg2 * t382 + s_cross_leg2 * t374;
+        let t414 = t261 * t271 - minus_rate_dot_cross_leg2 * t342;
+        let t427 = pose[0] - 0.05 + 0.2;
+        let t428 = 0.4 * t427;
+        let t430 = t427 * t427 + t4;
+        let t431 = t430 + t7;
+        let t432 = t431 + 0.04;
+        let t434 = 0.16 * t430;
+        let t436 = t434 - t432 * t432;
+        ::overact::guard::reach(t436, "leg3")?;
+        let t437 = ::overact::math::sqrt(t436);
+        let minus_c_arm_leg3 = (t428 * t432 + t11 * t437) / t434;
+        let c_cross_leg3 = (-0.04 + t431) / t24;
+        let s_arm_leg3 = (t428 * t437 - t11 * t432) / t434;
+        let s_cross_leg3 = t437 / t24;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t462 = 1.0 / s_cross_leg3;
-        let t463 = 5.0 * t462;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t463;
+        let t451 = 5.0 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t451;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t471 = 0.2 * c_cross_leg3;
-        let rate_arm_leg3 = t463
-            * (minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t50);
-        let t477 = rate_arm_leg3 * rate_arm_leg3;
-        let t483 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
-            - t471 * rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t483;
-        let t485 = rate_cross_leg3 * rate_cross_leg3;
-        let t486 = t64 + t485;
-        let rate_dot_arm_leg3 = t463
+        let t462 = minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t47;
+        let rate_arm_leg3 = t451 * t462;
+        let t464 = t462 * rate_arm_leg3;
+        let t465 = t464 / s_cross_leg3;
+        let t470 = 0.2 * c_cross_leg3;
+        let t472 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
+            - t470 * rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t472;
+        let t474 = rate_cross_leg3 * rate_cross_leg3;
+        let t475 = t60 + t474;
+        let rate_dot_arm_leg3 = t451
             * (minus_c_armcross_leg3 * acceleration[0]
-                - s_armcross_leg3 * acceleration[2] + t471 * t477 + t55 * t486 + t71);
-        let t492 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t49 * t463;
-        let t494 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t463;
-        let t496 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t497 = 9.81 * minus_c_arm_leg3;
-        let t501 = 9.81 * s_arm_leg3;
-        let t511 = grod_vy_leg1 * t462;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t511;
-        let t514 = rate_rod_leg1 * (1.8867924528301887 * t483);
-        let t518 = 0.2 * t477;
-        let t520 = t50 * rate_cross_leg3;
-        let t524 = 0.2 * rate_dot_arm_leg3;
+                - s_armcross_leg3 * acceleration[2] + c_cross_leg3 * t465 + t23 * t475
+                + t67);
+        let t481 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t46 * t451;
+        let t483 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t451;
+        let t485 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t486 = 9.81 * minus_c_arm_leg3;
+        let t490 = 9.81 * s_arm_leg3;
+        let t500 = grod_vy_leg1 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t500;
+        let t503 = rate_rod_leg1 * (1.8867924528301887 * t472);
+        let t507 = t47 * rate_cross_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
             * (s_armcross_leg3 * acceleration[0]
-                + minus_c_armcross_leg3 * acceleration[2]
-                - (s_cross_leg3 * t518 - (t520 + t520)) - c_cross_leg3 * t524);
-        let t528 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t530 = t514 + t528 + t514;
-        let t531 = c_rod_leg1 * t530;
-        let t532 = t49 * t531;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t471 * garm_vy_leg3);
-        let t538 = 3.5599857600569598 * (pose[1] * t485);
-        let gcross_vz_leg3 = s_arm_leg3 * t511;
-        let t542 = rate_dot_cross_leg3 - t532;
-        let t544 = t49 * t542 + t531;
-        let t547 = pose[1] * t538;
-        let t548 = t486 - t547;
-        let t549 = t547 + t64;
-        let t568 = t501 + t518;
-        let t570 = t497 + t524;
-        let t572 = s_cross_leg3 * t568 + c_cross_leg3 * t570;
-        let t573 = c_rod_leg1 * t572;
-        let t575 = 0.9433962264150944 * t448;
-        let t577 = t49 * t575;
-        let t578 = t55 * t538;
-        let t584 = t575 * t548 + t577 * (t578 + rate_dot_rod_leg1) - t542 * (t47 * t471);
-        let t588 = 0.2 * t570;
-        let t589 = garm_vy_leg3 * t588;
-        let t600 = t575 * (rate_dot_rod_leg1 - t578) - t577 * t549 + t471 * t530;
-        let t602 = s_rod_leg1 * t572;
-        let t610 = s_cross_leg3 * t570 - c_cross_leg3 * t568;
-        let t619 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t471 * t485;
-        let t632 = pose[1] - 0.05 + 0.2;
-        let t634 = t632 * t632 + t3;
-        let t635 = 0.16 * t634;
-        let t636 = t634 - t224;
-        let t637 = t636 + 0.04;
-        let t639 = t635 - t637 * t637;
-        ::overact::guard::reach(t639, "leg4")?;
-        let t640 = ::overact::math::sqrt(t639);
-        let s_cross_leg4 = t640 / t232;
+                + minus_c_armcross_leg3 * acceleration[2] - (t464 - (t507 + t507))
+                - t470 * rate_dot_arm_leg3);
+        let t514 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t516 = t503 + t514 + t503;
+        let t517 = c_rod_leg1 * t516;
+        let t518 = t46 * t517;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t470 * garm_vy_leg3);
+        let t524 = 3.5599857600569598 * (pose[1] * t474);
+        let gcross_vz_leg3 = s_arm_leg3 * t500;
+        let t528 = rate_dot_cross_leg3 - t518;
+        let t530 = t46 * t528 + t517;
+        let t533 = t23 * t524;
+        let t534 = t46 * t533;
+        let t535 = t475 - t534;
+        let t536 = t534 + t60;
+        let t555 = t490 + t465;
+        let t558 = t486 + 0.2 * rate_dot_arm_leg3;
+        let t560 = s_cross_leg3 * t555 + c_cross_leg3 * t558;
+        let t561 = c_rod_leg1 * t560;
+        let t563 = 0.2 * s_cross_leg3;
+        let t564 = c_rod_leg1 * t563;
+        let t566 = s_rod_leg1 * t563;
+        let t572 = t564 * t535 + t566 * (t533 + rate_dot_rod_leg1)
+            - t528 * (t470 / c_rod_leg1);
+        let t576 = 0.2 * t558;
+        let t577 = garm_vy_leg3 * t576;
+        let t588 = t564 * (rate_dot_rod_leg1 - t533) - t566 * t536 + t470 * t516;
+        let t590 = s_rod_leg1 * t560;
+        let t598 = s_cross_leg3 * t558 - c_cross_leg3 * t555;
+        let t606 = rate_dot_cross_leg3 * t563 + t470 * t474;
+        let t619 = pose[1] - 0.05 + 0.2;
+        let t621 = t619 * t619 + t4;
+        let t622 = 0.16 * t621;
+        let t623 = t621 - t220;
+        let t624 = t623 + 0.04;
+        let t626 = t622 - t624 * t624;
+        ::overact::guard::reach(t626, "leg4")?;
+        let t627 = ::overact::math::sqrt(t626);
+        let s_cross_leg4 = t627 / t229;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t642 = 1.0 / s_cross_leg4;
-        let t643 = 5.0 * t642;
-        let garm_vx_leg4 = t238 * t643;
-        let t645 = 1.0 / t635;
-        let t646 = 0.4 * t632;
-        let minus_c_arm_leg4 = t645 * (t646 * t637 + t13 * t640);
-        let c_cross_leg4 = (-0.04 + t636) / t232;
-        let s_arm_leg4 = t645 * (t646 * t640 - t13 * t637);
+        let t629 = 5.0 / s_cross_leg4;
+        let garm_vx_leg4 = t233 * t629;
+        let t631 = 0.4 * t619;
+        let minus_c_arm_leg4 = (t631 * t624 + t11 * t627) / t622;
+        let c_cross_leg4 = (-0.04 + t623) / t229;
+        let s_arm_leg4 = (t631 * t627 - t11 * t624) / t622;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t666 = 0.2 * c_cross_leg4;
-        let rate_arm_leg4 = t643
-            * (minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t265);
-        let t672 = rate_arm_leg4 * rate_arm_leg4;
-        let t678 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
-            - t666 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t678;
-        let t680 = rate_cross_leg4 * rate_cross_leg4;
-        let t681 = t272 + t680;
-        let rate_dot_arm_leg4 = t643
+        let t654 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t258;
+        let rate_arm_leg4 = t629 * t654;
+        let t656 = t654 * rate_arm_leg4;
+        let t657 = t656 / s_cross_leg4;
+        let t662 = 0.2 * c_cross_leg4;
+        let t664 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
+            - t662 * rate_arm_leg4;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t664;
+        let t666 = rate_cross_leg4 * rate_cross_leg4;
+        let t667 = t265 + t666;
+        let rate_dot_arm_leg4 = t629
             * (minus_c_armcross_leg4 * acceleration[1]
-                - s_armcross_leg4 * acceleration[2] + t666 * t672 + t270 * t681 + t286);
-        let t687 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t643;
-        let t689 = garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t643;
-        let t691 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let t692 = 9.81 * minus_c_arm_leg4;
-        let t696 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t666 * garm_vx_leg4);
-        let t709 = minus_rate_rod_leg2 * (1.8867924528301887 * t678);
-        let t713 = 0.2 * t672;
-        let t715 = t265 * rate_cross_leg4;
-        let t719 = 0.2 * rate_dot_arm_leg4;
+                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t657 + t228 * t667
+                + t278);
+        let t673 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t629;
+        let t675 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t629;
+        let t677 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let t678 = 9.81 * minus_c_arm_leg4;
+        let t682 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t662 * garm_vx_leg4);
+        let t695 = minus_rate_rod_leg2 * (1.8867924528301887 * t664);
+        let t699 = t258 * rate_cross_leg4;
+        let t703 = 0.2 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * acceleration[1]
-                + minus_c_armcross_leg4 * acceleration[2]
-                - (s_cross_leg4 * t713 - (t715 + t715)) - c_cross_leg4 * t719);
-        let t723 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t725 = t709 + t723 + t709;
-        let t726 = c_rod_leg2 * t725;
-        let t727 = t238 * t726;
-        let t730 = t680 * (c_rod_leg2 * minus_s_rod_leg2);
-        let t731 = minus_grod_vx_leg2 * t730;
-        let t733 = minus_grod_vx_leg2 * t642;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t733;
-        let gcross_vz_leg4 = s_arm_leg4 * t733;
-        let t738 = pose[0] * t731;
-        let t739 = t681 - t738;
-        let t740 = t738 + t272;
-        let t743 = rate_dot_cross_leg4 - t727;
-        let t745 = t726 + t238 * t743;
-        let t764 = 0.9433962264150944 * t640;
-        let t766 = t238 * t764;
-        let t772 = t764 * t739 + t766 * (t730 + minus_rate_dot_rod_leg2)
-            - t743 * (t236 * t666);
-        let t774 = t692 + t719;
-        let t775 = 0.2 * t774;
-        let t776 = garm_vx_leg4 * t775;
-        let t779 = t696 + t713;
-        let t782 = s_cross_leg4 * t779 + c_cross_leg4 * t774;
-        let t783 = c_rod_leg2 * t782;
-        let t795 = t764 * (t730 - minus_rate_dot_rod_leg2) + t766 * t740 - t666 * t725;
-        let t797 = minus_s_rod_leg2 * t782;
-        let t802 = s_cross_leg4 * t774 - c_cross_leg4 * t779;
-        let t814 = rate_dot_cross_leg4 * (0.2 * s_cross_leg4) + t666 * t680;
+                + minus_c_armcross_leg4 * acceleration[2] - (t656 - (t699 + t699))
+                - c_cross_leg4 * t703);
+        let t707 = 1.8867924528301887 * rate_dot_cross_leg4;
+        let t708 = pose[0] * t707;
+        let t710 = t695 + t708 + t695;
+        let t711 = c_rod_leg2 * t710;
+        let t712 = t233 * t711;
+        let t715 = t666 * (t226 * t233);
+        let t716 = minus_grod_vx_leg2 * t715;
+        let t718 = minus_grod_vx_leg2 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t718;
+        let gcross_vz_leg4 = s_arm_leg4 * t718;
+        let t723 = pose[0] * t716;
+        let t724 = t667 - t723;
+        let t725 = t723 + t265;
+        let t728 = rate_dot_cross_leg4 - t712;
+        let t730 = t711 + t233 * t728;
+        let t748 = 0.2 * s_cross_leg4;
+        let t749 = c_rod_leg2 * t748;
+        let t751 = t233 * t749;
+        let t757 = t749 * t724 + t751 * (t715 + minus_rate_dot_rod_leg2)
+            - t728 * (t662 / c_rod_leg2);
+        let t759 = t678 + t703;
+        let t760 = 0.2 * t759;
+        let t761 = garm_vx_leg4 * t760;
+        let t764 = t682 + t657;
+        let t768 = c_rod_leg2 * (s_cross_leg4 * t764 + c_cross_leg4 * t759);
+        let t780 = t749 * (t715 - minus_rate_dot_rod_leg2) + t751 * t725 - t662 * t710;
+        let t782 = t233 * t768;
+        let t787 = s_cross_leg4 * t759 - c_cross_leg4 * t764;
+        let t798 = rate_dot_cross_leg4 * t748 + t662 * t666;
         Ok([
             [
-                t74, -(garm_vx_leg1 * t79), -(garm_vx_leg1 * t83), t74,
+                t70, -(garm_vx_leg1 * t75), -(garm_vx_leg1 * t79), t70,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t115, -(minus_gcross_vx_leg1 * t127),
-                -(minus_gcross_vx_leg1 * t143), -(minus_gcross_vx_leg1 * t125),
-                -(minus_gcross_vx_leg1 * t153), 0.0,
-                -(garm_vx_leg1 * t167 + minus_gcross_vx_leg1 * t174),
-                garm_vx_leg1 * t188 + minus_gcross_vx_leg1 * t190,
-                garm_vx_leg1 * t206 - minus_gcross_vx_leg1 * t198, garm_vx_leg1 * t178, t289,
-                -(garm_vx_leg2 * t294), -(garm_vx_leg2 * t298), t289, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1, minus_gcross_vx_leg1 * t109, -(minus_gcross_vx_leg1 * t122),
+                -(minus_gcross_vx_leg1 * t137), -(minus_gcross_vx_leg1 * t120),
+                -(minus_gcross_vx_leg1 * t147), 0.0,
+                garm_vx_leg1 * t161 - minus_gcross_vx_leg1 * t170,
+                garm_vx_leg1 * t184 + minus_gcross_vx_leg1 * t186,
+                garm_vx_leg1 * t202 - minus_gcross_vx_leg1 * t194, garm_vx_leg1 * t174, t281,
+                -(garm_vx_leg2 * t286), -(garm_vx_leg2 * t290), t281, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t330 - t334,
-                -(minus_gcross_vx_leg2 * t343 + minus_grod_vx_leg2 * (t345 - t332)),
-                -(minus_gcross_vx_leg2 * t356 + minus_grod_vx_leg2 * t326),
-                t334 - minus_gcross_vx_leg2 * t341,
-                minus_gcross_vx_leg2 * t366
-                    + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                t372,
-                garm_vx_leg2 * t381 - 1.8867924528301887 * t385,
-                garm_vx_leg2 * t405 - minus_gcross_vx_leg2 * t407
-                    + 1.8867924528301887 * t412,
-                garm_vx_leg2 * t424 - minus_gcross_vx_leg2 * t412,
-                t385,
-                t492,
-                garm_vx_leg3 * t497,
-                garm_vx_leg3 * t501,
-                t492,
+                minus_gcross_vx_leg2 * t320 - t324,
+                -(minus_gcross_vx_leg2 * t333 + minus_grod_vx_leg2 * (t336 - t335)),
+                -(minus_gcross_vx_leg2 * t351 + minus_grod_vx_leg2 * t316),
+                t324 - minus_gcross_vx_leg2 * t331, minus_gcross_vx_leg2 * t361 + t315, t366,
+                garm_vx_leg2 * t371 - 1.8867924528301887 * t376,
+                garm_vx_leg2 * t396 - minus_gcross_vx_leg2 * t398
+                    + 1.8867924528301887 * t403,
+                garm_vx_leg2 * t414 - minus_gcross_vx_leg2 * t403,
+                t376,
+                t481,
+                garm_vx_leg3 * t486,
+                garm_vx_leg3 * t490,
+                t481,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t532),
-                minus_gcross_vx_leg3 * t544,
-                -(minus_gcross_vx_leg3 * t143),
-                -(minus_gcross_vx_leg3 * t542),
-                minus_gcross_vx_leg3 * t153,
+                -(minus_gcross_vx_leg3 * t518),
+                minus_gcross_vx_leg3 * t530,
+                -(minus_gcross_vx_leg3 * t137),
+                -(minus_gcross_vx_leg3 * t528),
+                minus_gcross_vx_leg3 * t147,
                 0.0,
-                -(minus_gcross_vx_leg3 * t573 + garm_vx_leg3 * t584),
-                garm_vx_leg3 * t600 - minus_gcross_vx_leg3 * t602,
-                garm_vx_leg3 * t619 - minus_gcross_vx_leg3 * t610,
-                garm_vx_leg3 * t588,
-                t687,
-                garm_vx_leg4 * t692,
-                garm_vx_leg4 * t696,
-                t687,
+                -(minus_gcross_vx_leg3 * t561 + garm_vx_leg3 * t572),
+                garm_vx_leg3 * t588 - minus_gcross_vx_leg3 * t590,
+                garm_vx_leg3 * t606 - minus_gcross_vx_leg3 * t598,
+                garm_vx_leg3 * t576,
+                t673,
+                garm_vx_leg4 * t678,
+                garm_vx_leg4 * t682,
+                t673,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t727 + t731),
-                -(minus_grod_vx_leg2 * (t739 - t740) + minus_gcross_vx_leg4 * t745),
-                minus_grod_vx_leg2 * t723 - minus_gcross_vx_leg4 * t356,
-                t731 - minus_gcross_vx_leg4 * t743,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t366,
-                t372,
-                -(garm_vx_leg4 * t772 + 1.8867924528301887 * t776),
-                garm_vx_leg4 * t795 + minus_gcross_vx_leg4 * t797
-                    - 1.8867924528301887 * t802,
-                garm_vx_leg4 * t814 - minus_gcross_vx_leg4 * t802,
-                t776,
+                -(minus_gcross_vx_leg4 * t712 + t716),
+                -(minus_grod_vx_leg2 * (t724 - t725) + minus_gcross_vx_leg4 * t730),
+                minus_grod_vx_leg2 * t708 - minus_gcross_vx_leg4 * t351,
+                t716 - minus_gcross_vx_leg4 * t728,
+                t707 - minus_gcross_vx_leg4 * t361,
+                t366,
+                -(garm_vx_leg4 * t757 + 1.8867924528301887 * t761),
+                garm_vx_leg4 * t780 + minus_gcross_vx_leg4 * t782
+                    - 1.8867924528301887 * t787,
+                garm_vx_leg4 * t798 - minus_gcross_vx_leg4 * t787,
+                t761,
                 acceleration[0],
             ],
             [
-                t76, -(garm_vy_leg1 * t79), -(garm_vy_leg1 * t83), t76,
+                t72, -(garm_vy_leg1 * t75), -(garm_vy_leg1 * t79), t72,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t115 - t121,
-                -(grod_vy_leg1 * (t131 - (t129 + t64)) + minus_gcross_vy_leg1 * t127),
-                -(minus_gcross_vy_leg1 * t143 + grod_vy_leg1 * t111),
-                t121 - minus_gcross_vy_leg1 * t125,
-                -(minus_gcross_vy_leg1 * t153
+                garm_vy_leg1, minus_gcross_vy_leg1 * t109 - t116,
+                -(grod_vy_leg1 * (t126 - (t124 + t60)) + minus_gcross_vy_leg1 * t122),
+                -(minus_gcross_vy_leg1 * t137 + grod_vy_leg1 * t105),
+                t116 - minus_gcross_vy_leg1 * t120,
+                -(minus_gcross_vy_leg1 * t147
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                t159,
-                -(garm_vy_leg1 * t167 + 1.8867924528301887 * t179),
-                garm_vy_leg1 * t188 + minus_gcross_vy_leg1 * t190
-                    - 1.8867924528301887 * t198,
-                garm_vy_leg1 * t206 - minus_gcross_vy_leg1 * t198,
-                t179,
-                t291,
-                -(garm_vy_leg2 * t294),
-                -(garm_vy_leg2 * t298),
-                t291,
+                t153,
+                garm_vy_leg1 * t161 - 1.8867924528301887 * t175,
+                garm_vy_leg1 * t184 + minus_gcross_vy_leg1 * t186
+                    - 1.8867924528301887 * t194,
+                garm_vy_leg1 * t202 - minus_gcross_vy_leg1 * t194,
+                t175,
+                t283,
+                -(garm_vy_leg2 * t286),
+                -(garm_vy_leg2 * t290),
+                t283,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                minus_gcross_vy_leg2 * t330,
-                -(minus_gcross_vy_leg2 * t343),
-                -(minus_gcross_vy_leg2 * t356),
-                -(minus_gcross_vy_leg2 * t341),
-                minus_gcross_vy_leg2 * t366,
+                minus_gcross_vy_leg2 * t320,
+                -(minus_gcross_vy_leg2 * t333),
+                -(minus_gcross_vy_leg2 * t351),
+                -(minus_gcross_vy_leg2 * t331),
+                minus_gcross_vy_leg2 * t361,
                 0.0,
-                garm_vy_leg2 * t381 - minus_gcross_vy_leg2 * t393,
-                garm_vy_leg2 * t405 - minus_gcross_vy_leg2 * t407,
-                garm_vy_leg2 * t424 - minus_gcross_vy_leg2 * t412,
-                garm_vy_leg2 * t384,
-                t494,
-                garm_vy_leg3 * t497,
-                garm_vy_leg3 * t501,
-                t494,
+                garm_vy_leg2 * t371 - minus_gcross_vy_leg2 * t385,
+                garm_vy_leg2 * t396 - minus_gcross_vy_leg2 * t398,
+                garm_vy_leg2 * t414 - minus_gcross_vy_leg2 * t403,
+                garm_vy_leg2 * t375,
+                t483,
+                garm_vy_leg3 * t486,
+                garm_vy_leg3 * t490,
+                t483,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t532 + t538),
-                minus_gcross_vy_leg3 * t544 + grod_vy_leg1 * (t548 - t549),
-                grod_vy_leg1 * t528 - minus_gcross_vy_leg3 * t143,
-                t538 - minus_gcross_vy_leg3 * t542,
-                minus_gcross_vy_leg3 * t153 - 1.8867924528301887 * rate_dot_cross_leg3,
-                t159,
-                -(garm_vy_leg3 * t584 + 1.8867924528301887 * t589),
-                garm_vy_leg3 * t600 - minus_gcross_vy_leg3 * t602
-                    + 1.8867924528301887 * t610,
-                garm_vy_leg3 * t619 - minus_gcross_vy_leg3 * t610,
-                t589,
-                t689,
-                garm_vy_leg4 * t692,
-                garm_vy_leg4 * t696,
-                t689,
+                -(minus_gcross_vy_leg3 * t518 + t524),
+                minus_gcross_vy_leg3 * t530 + grod_vy_leg1 * (t535 - t536),
+                grod_vy_leg1 * t514 - minus_gcross_vy_leg3 * t137,
+                t524 - minus_gcross_vy_leg3 * t528,
+                minus_gcross_vy_leg3 * t147 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t153,
+                -(garm_vy_leg3 * t572 + 1.8867924528301887 * t577),
+                garm_vy_leg3 * t588 - minus_gcross_vy_leg3 * t590
+                    + 1.8867924528301887 * t598,
+                garm_vy_leg3 * t606 - minus_gcross_vy_leg3 * t598,
+                t577,
+                t675,
+                garm_vy_leg4 * t678,
+                garm_vy_leg4 * t682,
+                t675,
                 garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
                 garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t727),
-                -(minus_gcross_vy_leg4 * t745),
-                -(minus_gcross_vy_leg4 * t356),
-                -(minus_gcross_vy_leg4 * t743),
-                -(minus_gcross_vy_leg4 * t366),
+                -(minus_gcross_vy_leg4 * t712),
+                -(minus_gcross_vy_leg4 * t730),
+                -(minus_gcross_vy_leg4 * t351),
+                -(minus_gcross_vy_leg4 * t728),
+                -(minus_gcross_vy_leg4 * t361),
                 0.0,
-                -(minus_gcross_vy_leg4 * t783 + garm_vy_leg4 * t772),
-                garm_vy_leg4 * t795 + minus_gcross_vy_leg4 * t797,
-                garm_vy_leg4 * t814 - minus_gcross_vy_leg4 * t802,
-                garm_vy_leg4 * t775,
+                -(minus_gcross_vy_leg4 * t768 + garm_vy_leg4 * t757),
+                garm_vy_leg4 * t780 + minus_gcross_vy_leg4 * t782,
+                garm_vy_leg4 * t798 - minus_gcross_vy_leg4 * t787,
+                garm_vy_leg4 * t760,
                 acceleration[1],
             ],
             [
-                -t78, minus_garm_vz_leg1 * t79, minus_garm_vz_leg1 * t83, -t78,
+                -t74, minus_garm_vz_leg1 * t75, minus_garm_vz_leg1 * t79, -t74,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t115, -(minus_gcross_vz_leg1 * t127),
-                -(minus_gcross_vz_leg1 * t143), -(minus_gcross_vz_leg1 * t125),
-                -(minus_gcross_vz_leg1 * t153), 0.0,
-                -(minus_gcross_vz_leg1 * t174 - minus_garm_vz_leg1 * t167),
-                minus_gcross_vz_leg1 * t190 - minus_garm_vz_leg1 * t188,
-                -(minus_garm_vz_leg1 * t206 + minus_gcross_vz_leg1 * t198),
-                -(minus_garm_vz_leg1 * t178), -t293, minus_garm_vz_leg2 * t294,
-                minus_garm_vz_leg2 * t298, -t293, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                minus_gcross_vz_leg1 * t109, -(minus_gcross_vz_leg1 * t122),
+                -(minus_gcross_vz_leg1 * t137), -(minus_gcross_vz_leg1 * t120),
+                -(minus_gcross_vz_leg1 * t147), 0.0,
+                -(minus_garm_vz_leg1 * t161 + minus_gcross_vz_leg1 * t170),
+                minus_gcross_vz_leg1 * t186 - minus_garm_vz_leg1 * t184,
+                -(minus_garm_vz_leg1 * t202 + minus_gcross_vz_leg1 * t194),
+                -(minus_garm_vz_leg1 * t174), -t285, minus_garm_vz_leg2 * t286,
+                minus_garm_vz_leg2 * t290, -t285, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t330, -(minus_gcross_vz_leg2 * t343),
-                -(minus_gcross_vz_leg2 * t356), -(minus_gcross_vz_leg2 * t341),
-                minus_gcross_vz_leg2 * t366, 0.0,
-                -(minus_gcross_vz_leg2 * t393 + minus_garm_vz_leg2 * t381),
-                -(minus_gcross_vz_leg2 * t407 + minus_garm_vz_leg2 * t405),
-                -(minus_gcross_vz_leg2 * t412 + minus_garm_vz_leg2 * t424),
-                -(minus_garm_vz_leg2 * t384), -t496, -(minus_garm_vz_leg3 * t497),
-                -(minus_garm_vz_leg3 * t501), -t496, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                minus_gcross_vz_leg2 * t320, -(minus_gcross_vz_leg2 * t333),
+                -(minus_gcross_vz_leg2 * t351), -(minus_gcross_vz_leg2 * t331),
+                minus_gcross_vz_leg2 * t361, 0.0,
+                -(minus_gcross_vz_leg2 * t385 + minus_garm_vz_leg2 * t371),
+                -(minus_gcross_vz_leg2 * t398 + minus_garm_vz_leg2 * t396),
+                -(minus_gcross_vz_leg2 * t403 + minus_garm_vz_leg2 * t414),
+                -(minus_garm_vz_leg2 * t375), -t485, -(minus_garm_vz_leg3 * t486),
+                -(minus_garm_vz_leg3 * t490), -t485, -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t532, -(gcross_vz_leg3 * t544), gcross_vz_leg3 * t143,
-                gcross_vz_leg3 * t542, -(gcross_vz_leg3 * t153), 0.0,
-                minus_garm_vz_leg3 * t584 + gcross_vz_leg3 * t573,
-                gcross_vz_leg3 * t602 - minus_garm_vz_leg3 * t600,
-                gcross_vz_leg3 * t610 - minus_garm_vz_leg3 * t619, -(minus_garm_vz_leg3 * t588),
-                -t691, -(minus_garm_vz_leg4 * t692), -(minus_garm_vz_leg4 * t696), -t691,
+                gcross_vz_leg3 * t518, -(gcross_vz_leg3 * t530), gcross_vz_leg3 * t137,
+                gcross_vz_leg3 * t528, -(gcross_vz_leg3 * t147), 0.0,
+                minus_garm_vz_leg3 * t572 + gcross_vz_leg3 * t561,
+                gcross_vz_leg3 * t590 - minus_garm_vz_leg3 * t588,
+                gcross_vz_leg3 * t598 - minus_garm_vz_leg3 * t606, -(minus_garm_vz_leg3 * t576),
+                -t677, -(minus_garm_vz_leg4 * t678), -(minus_garm_vz_leg4 * t682), -t677,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t727, gcross_vz_leg4 * t745, gcross_vz_leg4 * t356,
-                gcross_vz_leg4 * t743, gcross_vz_leg4 * t366, 0.0,
-                minus_garm_vz_leg4 * t772 + gcross_vz_leg4 * t783,
-                -(minus_garm_vz_leg4 * t795 + gcross_vz_leg4 * t797),
-                gcross_vz_leg4 * t802 - minus_garm_vz_leg4 * t814, -(minus_garm_vz_leg4 * t775),
+                gcross_vz_leg4 * t712, gcross_vz_leg4 * t730, gcross_vz_leg4 * t351,
+                gcross_vz_leg4 * t728, gcross_vz_leg4 * t361, 0.0,
+                minus_garm_vz_leg4 * t757 + gcross_vz_leg4 * t768,
+                -(minus_garm_vz_leg4 * t780 + gcross_vz_leg4 * t782),
+                gcross_vz_leg4 * t787 - minus_garm_vz_leg4 * t798, -(minus_garm_vz_leg4 * t760),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2354,7 +2342,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 747 operations (207 additions, 532 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 598 intermediates.
+    /// 731 operations (212 additions, 499 multiplications, 20 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 582 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2382,446 +2370,448 @@ impl Delta4 {
         ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t10 = 1.0 / s_cross_leg1;
-        let t11 = 5.0 * t10;
-        let garm_vx_leg1 = c_armcross_leg1 * t11;
-        let t16 = 0.2 * c_cross_leg1;
-        let t22 = 1.0 / c_rod_leg1;
-        let t23 = s_rod_leg1 * t22;
-        let t24 = t23 * twist[1];
-        let rate_arm_leg1 = t11
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24);
-        let t27 = rate_arm_leg1 * rate_arm_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t22;
-        let t35 = t16 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
-        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t10 = 5.0 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t10;
+        let t20 = s_rod_leg1 / c_rod_leg1;
+        let t21 = t20 * twist[1];
+        let t22 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t21;
+        let rate_arm_leg1 = t10 * t22;
+        let t24 = 0.2 * c_cross_leg1;
+        let t25 = t24 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
+        let t32 = t25 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t32;
+        let t34 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t39 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = acceleration[1] + t24 * rate_rod_leg1;
-        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t16 * t27 + 0.53 * c_rod_leg1 * (t37 + t39) + t23 * t45;
-        let rate_dot_arm_leg1 = t11 * t47;
-        let t49 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t11 * t23;
-        let t51 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t53 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t54 = 9.81 * c_arm_leg1;
-        let t58 = 9.81 * s_arm_leg1;
-        let t68 = t10 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t68;
-        let t70 = 1.8867924528301887 * t35;
-        let t71 = rate_rod_leg1 * t70;
-        let t72 = 0.2 * rate_dot_arm_leg1;
-        let t77 = 0.2 * s_cross_leg1;
-        let t79 = t24 * minus_rate_cross_leg1;
-        let t83 = c_cross_leg1 * t72 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t77 * t27 + t79 + t79;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t83;
-        let t85 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t87 = t71 + t85 + t71;
-        let t88 = s_rod_leg1 * t87;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t93 = t70 * t70;
-        let t94 = t23 * t93;
-        let t95 = grod_vy_leg1 * t94;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t68;
-        let t103 = s_rod_leg1 * t71 + c_rod_leg1 * (1.8867924528301887 * (t79 - t83));
-        let t106 = t23 * t103 - c_rod_leg1 * t87;
-        let t108 = t23 * t94;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t115 = t94 + rate_dot_rod_leg1;
-        let t119 = s_rod_leg1 * t115 + c_rod_leg1 * (t39 - t108);
-        let t129 = 1.8867924528301887 * acceleration[1];
-        let t138 = c_rod_leg1 * t77;
-        let t141 = t77 * s_rod_leg1;
-        let t144 = t16 * (t22 * t103) - (t138 * (t93 + t39) + t141 * t115);
-        let t147 = t58 + 0.2 * t27;
-        let t149 = t72 - t54;
-        let t151 = s_cross_leg1 * t147 + c_cross_leg1 * t149;
-        let t152 = c_rod_leg1 * t151;
-        let t156 = 0.2 * t149;
-        let t157 = garm_vy_leg1 * t156;
-        let t169 = t138 * (t94 - rate_dot_rod_leg1) + t141 * (t108 + t39) + t16 * t87;
-        let t171 = s_rod_leg1 * t151;
-        let t179 = s_cross_leg1 * t149 - c_cross_leg1 * t147;
-        let t187 = t16 * t37 - t77 * minus_rate_dot_cross_leg1;
-        let t201 = 1.0 / s_cross_leg2;
-        let t202 = 5.0 * t201;
-        let t205 = 1.0 / c_rod_leg2;
-        let t206 = s_rod_leg2 * t205;
-        let minus_garm_vx_leg2 = t202 * t206;
+        let t36 = rate_rod_leg1 * rate_rod_leg1;
+        let t37 = t34 + t36;
+        let t42 = acceleration[1] + t21 * rate_rod_leg1;
+        let t44 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + rate_arm_leg1 * t25 + 0.53 * c_rod_leg1 * t37 + t20 * t42;
+        let rate_dot_arm_leg1 = t10 * t44;
+        let t46 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t10 * t20;
+        let t48 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t10;
+        let t50 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t51 = 9.81 * c_arm_leg1;
+        let t55 = 9.81 * s_arm_leg1;
+        let t65 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t65;
+        let t71 = t22 * rate_arm_leg1;
+        let t72 = t21 * minus_rate_cross_leg1;
+        let t73 = t72 + t72;
+        let t76 = t24 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t71 + t73;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t76;
+        let t79 = 1.8867924528301887 * (t73 - t76);
+        let t80 = c_rod_leg1 * t79;
+        let t81 = minus_rate_dot_cross_leg1 + t80;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t24 * garm_vy_leg1);
+        let t86 = 1.8867924528301887 * t32;
+        let t87 = t86 * t86;
+        let t88 = t20 * t87;
+        let t89 = grod_vy_leg1 * t88;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t65;
+        let t94 = rate_rod_leg1 * t86;
+        let t95 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t97 = t94 + t95 + t94;
+        let t99 = t20 * t80 - c_rod_leg1 * t97;
+        let t101 = t87 + t36;
+        let t102 = t37 - t87;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t42;
+        let t109 = t88 + rate_dot_rod_leg1;
+        let t113 = s_rod_leg1 * t109 + c_rod_leg1 * (t101 - t34);
+        let t123 = 1.8867924528301887 * acceleration[1];
+        let t131 = 0.2 * s_cross_leg1;
+        let t132 = c_rod_leg1 * t131;
+        let t134 = t131 * s_rod_leg1;
+        let t137 = t24 * t79 - (t132 * t101 + t134 * t109);
+        let t140 = t55 + t71 / s_cross_leg1;
+        let t143 = 0.2 * rate_dot_arm_leg1 - t51;
+        let t145 = s_cross_leg1 * t140 + c_cross_leg1 * t143;
+        let t146 = c_rod_leg1 * t145;
+        let t150 = 0.2 * t143;
+        let t151 = garm_vy_leg1 * t150;
+        let t162 = t132 * (t88 - rate_dot_rod_leg1) + t134 * t102 + t24 * t97;
+        let t164 = s_rod_leg1 * t145;
+        let t172 = s_cross_leg1 * t143 - c_cross_leg1 * t140;
+        let t180 = t24 * t34 - t131 * minus_rate_dot_cross_leg1;
+        let t194 = 5.0 / s_cross_leg2;
+        let t197 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t194 * t197;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t219 = 0.2 * c_cross_leg2;
-        let t223 = t206 * twist[0];
-        let rate_arm_leg2 = t202
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t223);
-        let t226 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t205;
+        let t213 = t197 * twist[0];
+        let t214 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t213;
+        let rate_arm_leg2 = t194 * t214;
+        let t216 = t214 * rate_arm_leg2;
+        let t217 = t216 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t231 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t236 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t219 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t236;
-        let t238 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t244 = acceleration[0] - t223 * minus_rate_rod_leg2;
-        let t246 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t219 * t226 + 0.53 * c_rod_leg2 * (t231 + t238) - t206 * t244;
-        let rate_dot_arm_leg2 = t202 * t246;
-        let t248 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t202;
-        let t250 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t202;
-        let t252 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t253 = 9.81 * c_arm_leg2;
-        let t257 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t219 * minus_garm_vx_leg2);
-        let t269 = 0.2 * s_cross_leg2;
-        let t274 = 0.2 * rate_dot_arm_leg2;
-        let t277 = t269 * t226 + s_armcross_leg2 * acceleration[1]
-            + c_armcross_leg2 * acceleration[2] + c_cross_leg2 * t274;
-        let t278 = t223 * minus_rate_cross_leg2;
-        let rate_dot_cross_leg2 = minus_grod_vx_leg2 * (t278 + t278 - t277);
-        let t282 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t283 = 1.8867924528301887 * t236;
-        let t284 = minus_rate_rod_leg2 * t283;
-        let t286 = t282 + t284 + t284;
-        let t287 = s_rod_leg2 * t286;
-        let t289 = t283 * t283;
-        let t290 = t206 * t289;
-        let t291 = minus_grod_vx_leg2 * t290;
-        let t293 = t201 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t293;
-        let gcross_vz_leg2 = s_arm_leg2 * t293;
-        let t298 = 1.8867924528301887 * t277;
-        let t299 = c_rod_leg2 * t298;
-        let t302 = c_rod_leg2 * t286 - t206 * t299;
-        let t304 = t206 * t290;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t244;
-        let t311 = t290 - minus_rate_dot_rod_leg2;
-        let t315 = s_rod_leg2 * t311 + c_rod_leg2 * (t231 - t304);
-        let t325 = 1.8867924528301887 * acceleration[0];
-        let t333 = c_rod_leg2 * t269;
-        let t336 = t269 * s_rod_leg2;
-        let t339 = t219 * t298 + t333 * (t289 + t231) + t336 * t311;
-        let t341 = t274 - t253;
-        let t342 = 0.2 * t341;
-        let t343 = minus_garm_vx_leg2 * t342;
-        let t348 = t257 + 0.2 * t226;
-        let t351 = s_cross_leg2 * t348 + c_cross_leg2 * t341;
-        let t352 = c_rod_leg2 * t351;
-        let t360 = s_cross_leg2 * t341 - c_cross_leg2 * t348;
-        let t368 = t333 * (t290 + minus_rate_dot_rod_leg2) + t336 * (t304 + t231)
-            - t219 * t286;
-        let t370 = s_rod_leg2 * t351;
-        let t383 = t269 * rate_dot_cross_leg2 + t219 * t238;
+        let t222 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t226 = 0.2 * c_cross_leg2;
+        let t228 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t226 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t228;
+        let t230 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t231 = t222 + t230;
+        let t236 = acceleration[0] - t213 * minus_rate_rod_leg2;
+        let t238 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + c_cross_leg2 * t217 + 0.53 * c_rod_leg2 * t231 - t197 * t236;
+        let rate_dot_arm_leg2 = t194 * t238;
+        let t240 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t194;
+        let t242 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t194;
+        let t244 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t245 = 9.81 * c_arm_leg2;
+        let t249 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t226 * minus_garm_vx_leg2);
+        let t264 = t213 * minus_rate_cross_leg2;
+        let t265 = t264 + t264;
+        let t269 = s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
+            + t216 - t265 + t226 * rate_dot_arm_leg2;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t269;
+        let t271 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t272 = 1.8867924528301887 * t228;
+        let t273 = minus_rate_rod_leg2 * t272;
+        let t275 = t273 - t271 + t273;
+        let t276 = s_rod_leg2 * t275;
+        let t278 = t272 * t272;
+        let t279 = t197 * t278;
+        let t280 = minus_grod_vx_leg2 * t279;
+        let t282 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t282;
+        let gcross_vz_leg2 = s_arm_leg2 * t282;
+        let t288 = 1.8867924528301887 * (t269 + t265);
+        let t289 = c_rod_leg2 * t288;
+        let t292 = c_rod_leg2 * t275 - t197 * t289;
+        let t294 = t278 + t222;
+        let t295 = t231 - t278;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t236;
+        let t302 = t279 - minus_rate_dot_rod_leg2;
+        let t306 = s_rod_leg2 * t302 + c_rod_leg2 * (t294 - t230);
+        let t316 = 1.8867924528301887 * acceleration[0];
+        let t324 = 0.2 * s_cross_leg2;
+        let t325 = c_rod_leg2 * t324;
+        let t327 = t324 * s_rod_leg2;
+        let t330 = t226 * t288 + t325 * t294 + t327 * t302;
+        let t333 = 0.2 * rate_dot_arm_leg2 - t245;
+        let t334 = 0.2 * t333;
+        let t335 = minus_garm_vx_leg2 * t334;
+        let t339 = t249 + t217;
+        let t342 = s_cross_leg2 * t339 + c_cross_leg2 * t333;
+        let t343 = c_rod_leg2 * t342;
+        let t351 = s_cross_leg2 * t333 - c_cross_leg2 * t339;
+        let t358 = t325 * (t279 + minus_rate_dot_rod_leg2) + t327 * t295 - t226 * t275;
+        let t360 = s_rod_leg2 * t342;
+        let t373 = t226 * t230 - t324 * minus_rate_dot_cross_leg2;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t404 = 1.0 / s_cross_leg3;
-        let t405 = 5.0 * t404;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t405;
-        let t407 = 0.2 * c_cross_leg3;
-        let t413 = 1.0 / c_rod_leg3;
-        let t414 = s_rod_leg3 * t413;
-        let t415 = t414 * twist[1];
-        let minus_rate_arm_leg3 = t405
-            * (c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t415);
-        let t418 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t413;
+        let t394 = 5.0 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t394;
+        let t401 = s_rod_leg3 / c_rod_leg3;
+        let t402 = t401 * twist[1];
+        let t403 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t402;
+        let minus_rate_arm_leg3 = t394 * t403;
+        let t405 = t403 * minus_rate_arm_leg3;
+        let t406 = t405 / s_cross_leg3;
+        let minus_grod_vy_leg3 = 1.8867924528301887 / c_rod_leg3;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t423 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t428 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
-            + t407 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t428;
-        let t430 = rate_cross_leg3 * rate_cross_leg3;
-        let t439 = acceleration[1] - t415 * minus_rate_rod_leg3;
-        let t441 = t407 * t418 + 0.53 * c_rod_leg3 * (t423 + t430)
+        let t411 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t415 = 0.2 * c_cross_leg3;
+        let t417 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
+            + t415 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t417;
+        let t419 = rate_cross_leg3 * rate_cross_leg3;
+        let t420 = t411 + t419;
+        let t428 = acceleration[1] - t402 * minus_rate_rod_leg3;
+        let t430 = c_cross_leg3 * t406 + 0.53 * c_rod_leg3 * t420
             - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2])
-            - t414 * t439;
-        let rate_dot_arm_leg3 = t405 * t441;
-        let t443 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t405 * t414;
-        let t445 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t405;
-        let t447 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t448 = 9.81 * c_arm_leg3;
-        let t452 = 9.81 * s_arm_leg3;
-        let t462 = t404 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t462;
-        let t464 = 0.2 * s_cross_leg3;
-        let t469 = 0.2 * rate_dot_arm_leg3;
-        let t472 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-            - c_cross_leg3 * t469 - t464 * t418;
-        let t473 = t415 * rate_cross_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * (t472 - (t473 + t473));
-        let t477 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t478 = 1.8867924528301887 * t428;
-        let t479 = minus_rate_rod_leg3 * t478;
-        let t481 = t477 - t479 - t479;
-        let t482 = s_rod_leg3 * t481;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t407 * minus_garm_vy_leg3);
-        let t487 = t478 * t478;
-        let t488 = t414 * t487;
-        let t489 = minus_grod_vy_leg3 * t488;
-        let gcross_vz_leg3 = s_arm_leg3 * t462;
-        let t493 = 1.8867924528301887 * t472;
-        let t494 = c_rod_leg3 * t493;
-        let t497 = t414 * t494 + c_rod_leg3 * t481;
-        let t500 = t414 * t488;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t439;
-        let t506 = t488 - minus_rate_dot_rod_leg3;
-        let t510 = s_rod_leg3 * t506 + c_rod_leg3 * (t423 - t500);
-        let t527 = t452 + 0.2 * t418;
-        let t529 = t469 - t448;
-        let t531 = s_cross_leg3 * t527 + c_cross_leg3 * t529;
-        let t532 = c_rod_leg3 * t531;
-        let t535 = c_rod_leg3 * t464;
-        let t538 = t464 * s_rod_leg3;
-        let t541 = t407 * t493 - (t535 * (t487 + t423) + t538 * t506);
-        let t545 = 0.2 * t529;
-        let t546 = minus_garm_vy_leg3 * t545;
-        let t558 = t535 * (t488 + minus_rate_dot_rod_leg3) + t538 * (t500 + t423)
-            - t407 * t481;
-        let t560 = s_rod_leg3 * t531;
-        let t565 = s_cross_leg3 * t529 - c_cross_leg3 * t527;
-        let t577 = t464 * rate_dot_cross_leg3 + t407 * t430;
-        let t590 = 1.0 / s_cross_leg4;
-        let t591 = 5.0 * t590;
-        let t594 = 1.0 / c_rod_leg4;
-        let t595 = s_rod_leg4 * t594;
-        let garm_vx_leg4 = t591 * t595;
-        let t597 = 0.2 * c_cross_leg4;
-        let t598 = t595 * twist[0];
+            - t401 * t428;
+        let rate_dot_arm_leg3 = t394 * t430;
+        let t432 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t394 * t401;
+        let t434 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t394;
+        let t436 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t437 = 9.81 * c_arm_leg3;
+        let t441 = 9.81 * s_arm_leg3;
+        let t451 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t451;
+        let t456 = t402 * rate_cross_leg3;
+        let t457 = t456 + t456;
+        let t460 = 0.2 * rate_dot_arm_leg3;
+        let t462 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t405 + t457) - c_cross_leg3 * t460;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t462;
+        let t465 = 1.8867924528301887 * (t462 + t457);
+        let t466 = c_rod_leg3 * t465;
+        let t467 = rate_dot_cross_leg3 - t466;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t415 * minus_garm_vy_leg3);
+        let t472 = 1.8867924528301887 * t417;
+        let t473 = t472 * t472;
+        let t474 = t401 * t473;
+        let t475 = minus_grod_vy_leg3 * t474;
+        let gcross_vz_leg3 = s_arm_leg3 * t451;
+        let t480 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t481 = minus_rate_rod_leg3 * t472;
+        let t483 = t480 - t481 - t481;
+        let t485 = s_rod_leg3 * t465 + c_rod_leg3 * t483;
+        let t488 = t473 + t411;
+        let t489 = t420 - t473;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t428;
+        let t495 = t474 - minus_rate_dot_rod_leg3;
+        let t499 = s_rod_leg3 * t495 + c_rod_leg3 * (t488 - t419);
+        let t515 = t441 + t406;
+        let t517 = t460 - t437;
+        let t519 = s_cross_leg3 * t515 + c_cross_leg3 * t517;
+        let t520 = c_rod_leg3 * t519;
+        let t523 = 0.2 * s_cross_leg3;
+        let t524 = c_rod_leg3 * t523;
+        let t526 = t523 * s_rod_leg3;
+        let t529 = t415 * t465 - (t524 * t488 + t526 * t495);
+        let t533 = 0.2 * t517;
+        let t534 = minus_garm_vy_leg3 * t533;
+        let t545 = t524 * (t474 + minus_rate_dot_rod_leg3) + t526 * t489 - t415 * t483;
+        let t547 = s_rod_leg3 * t519;
+        let t552 = s_cross_leg3 * t517 - c_cross_leg3 * t515;
+        let t564 = t523 * rate_dot_cross_leg3 + t415 * t419;
+        let t577 = 5.0 / s_cross_leg4;
+        let t580 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t577 * t580;
+        let t582 = t580 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let rate_arm_leg4 = t591
-            * (t598 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]));
-        let t612 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t594;
+        let t594 = t582 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t577 * t594;
+        let t596 = t594 * rate_arm_leg4;
+        let t597 = t596 / s_cross_leg4;
+        let grod_vx_leg4 = 1.8867924528301887 / c_rod_leg4;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t617 = rate_rod_leg4 * rate_rod_leg4;
-        let t622 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t597 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t622;
-        let t624 = rate_cross_leg4 * rate_cross_leg4;
-        let t633 = acceleration[0] + t598 * rate_rod_leg4;
-        let t635 = t597 * t612 + 0.53 * c_rod_leg4 * (t617 + t624)
+        let t602 = rate_rod_leg4 * rate_rod_leg4;
+        let t606 = 0.2 * c_cross_leg4;
+        let t608 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
+            - t606 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t608;
+        let t610 = rate_cross_leg4 * rate_cross_leg4;
+        let t611 = t602 + t610;
+        let t619 = acceleration[0] + t582 * rate_rod_leg4;
+        let t621 = c_cross_leg4 * t597 + 0.53 * c_rod_leg4 * t611
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2])
-            + t595 * t633;
-        let rate_dot_arm_leg4 = t591 * t635;
-        let t637 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t591;
-        let t639 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t591;
-        let t641 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let t642 = 9.81 * c_arm_leg4;
-        let t646 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t597 * garm_vx_leg4);
-        let t658 = 1.8867924528301887 * t622;
-        let t659 = rate_rod_leg4 * t658;
-        let t660 = 0.2 * s_cross_leg4;
-        let t665 = 0.2 * rate_dot_arm_leg4;
-        let t668 = t660 * t612
-            - (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-                - c_cross_leg4 * t665);
-        let t669 = t598 * rate_cross_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * (t669 + t669 - t668);
-        let t673 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t675 = t659 + t673 + t659;
-        let t676 = s_rod_leg4 * t675;
-        let t678 = t658 * t658;
-        let t679 = t595 * t678;
-        let t680 = grod_vx_leg4 * t679;
-        let t682 = t590 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t682;
-        let gcross_vz_leg4 = s_arm_leg4 * t682;
-        let t687 = t595 * t679;
-        let t691 = 1.8867924528301887 * t668;
-        let t692 = c_rod_leg4 * t691;
-        let t694 = c_rod_leg4 * t675 - t595 * t692;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t633;
-        let t701 = t679 + rate_dot_rod_leg4;
-        let t705 = s_rod_leg4 * t701 + c_rod_leg4 * (t617 - t687);
-        let t720 = c_rod_leg4 * t660;
-        let t723 = t660 * s_rod_leg4;
-        let t727 = t720 * (t678 + t617) + t723 * t701 + t597 * t691;
-        let t729 = t665 - t642;
-        let t730 = 0.2 * t729;
-        let t731 = garm_vx_leg4 * t730;
-        let t736 = t646 + 0.2 * t612;
-        let t739 = s_cross_leg4 * t736 + c_cross_leg4 * t729;
-        let t740 = c_rod_leg4 * t739;
-        let t752 = t720 * (t679 - rate_dot_rod_leg4) + t723 * (t687 + t617)
-            - t597 * t675;
-        let t754 = s_rod_leg4 * t739;
-        let t759 = s_cross_leg4 * t729 - c_cross_leg4 * t736;
-        let t770 = t660 * rate_dot_cross_leg4 + t597 * t624;
+            + t580 * t619;
+        let rate_dot_arm_leg4 = t577 * t621;
+        let t623 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t577;
+        let t625 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t577;
+        let t627 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let t628 = 9.81 * c_arm_leg4;
+        let t632 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t606 * garm_vx_leg4);
+        let t647 = t582 * rate_cross_leg4;
+        let t648 = t647 + t647;
+        let t652 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+            - (t596 - t648) - t606 * rate_dot_arm_leg4;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t652;
+        let t655 = 1.8867924528301887 * (t648 - t652);
+        let t656 = c_rod_leg4 * t655;
+        let t657 = rate_dot_cross_leg4 + t656;
+        let t659 = 1.8867924528301887 * t608;
+        let t660 = t659 * t659;
+        let t661 = t580 * t660;
+        let t662 = grod_vx_leg4 * t661;
+        let t664 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t664;
+        let gcross_vz_leg4 = s_arm_leg4 * t664;
+        let t669 = t660 + t602;
+        let t670 = t611 - t660;
+        let t673 = rate_rod_leg4 * t659;
+        let t674 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t676 = t673 + t674 + t673;
+        let t679 = c_rod_leg4 * t676 - t580 * t656;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t619;
+        let t686 = t661 + rate_dot_rod_leg4;
+        let t690 = s_rod_leg4 * t686 + c_rod_leg4 * (t669 - t610);
+        let t705 = 0.2 * s_cross_leg4;
+        let t706 = c_rod_leg4 * t705;
+        let t708 = t705 * s_rod_leg4;
+        let t712 = t706 * t669 + t708 * t686 + t606 * t655;
+        let t715 = 0.2 * rate_dot_arm_leg4 - t628;
+        let t716 = 0.2 * t715;
+        let t717 = garm_vx_leg4 * t716;
+        let t721 = t632 + t597;
+        let t724 = s_cross_leg4 * t721 + c_cross_leg4 * t715;
+        let t725 = c_rod_leg4 * t724;
+        let t736 = t706 * (t661 - rate_dot_rod_leg4) + t708 * t670 - t606 * t676;
+        let t738 = s_rod_leg4 * t724;
+        let t743 = s_cross_leg4 * t715 - c_cross_leg4 * t721;
+        let t754 = t705 * rate_dot_cross_leg4 + t606 * t610;
         Ok([
             [
-                t49, -(garm_vx_leg1 * t54), garm_vx_leg1 * t58, t49, garm_vx_leg1 * rate_arm_leg1,
+                t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t88, -(minus_gcross_vx_leg1 * t106),
-                -(minus_gcross_vx_leg1 * t119), -(minus_gcross_vx_leg1 * t103),
-                -(minus_gcross_vx_leg1 * t129), 0.0,
-                garm_vx_leg1 * t144 - minus_gcross_vx_leg1 * t152,
-                garm_vx_leg1 * t169 + minus_gcross_vx_leg1 * t171,
-                garm_vx_leg1 * t187 - minus_gcross_vx_leg1 * t179, garm_vx_leg1 * t156, -t248,
-                minus_garm_vx_leg2 * t253, -(minus_garm_vx_leg2 * t257), -t248,
+                minus_gcross_vx_leg1 * t81, -(minus_gcross_vx_leg1 * t99),
+                -(minus_gcross_vx_leg1 * t113), -(minus_gcross_vx_leg1 * t80),
+                -(minus_gcross_vx_leg1 * t123), 0.0,
+                garm_vx_leg1 * t137 - minus_gcross_vx_leg1 * t146,
+                garm_vx_leg1 * t162 + minus_gcross_vx_leg1 * t164,
+                garm_vx_leg1 * t180 - minus_gcross_vx_leg1 * t172, garm_vx_leg1 * t150, -t240,
+                minus_garm_vx_leg2 * t245, -(minus_garm_vx_leg2 * t249), -t240,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t287 + t291,
-                gcross_vx_leg2 * t302 - minus_grod_vx_leg2 * (t304 - t289),
-                gcross_vx_leg2 * t315 - minus_grod_vx_leg2 * t282, -(gcross_vx_leg2 * t299 + t291),
-                -(gcross_vx_leg2 * t325 + 1.8867924528301887 * rate_dot_cross_leg2),
+                gcross_vx_leg2 * t276 + t280,
+                gcross_vx_leg2 * t292 - minus_grod_vx_leg2 * (t295 - t294),
+                gcross_vx_leg2 * t306 + minus_grod_vx_leg2 * t271, -(gcross_vx_leg2 * t289 + t280),
+                -(gcross_vx_leg2 * t316
+                    - 1.8867924528301887 * minus_rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                minus_garm_vx_leg2 * t339 + 1.8867924528301887 * t343,
-                1.8867924528301887 * t360
-                    - (minus_garm_vx_leg2 * t368 + gcross_vx_leg2 * t370),
-                gcross_vx_leg2 * t360 - minus_garm_vx_leg2 * t383,
-                -t343,
-                -t443,
-                minus_garm_vx_leg3 * t448,
-                -(minus_garm_vx_leg3 * t452),
-                -t443,
+                minus_garm_vx_leg2 * t330 + 1.8867924528301887 * t335,
+                1.8867924528301887 * t351
+                    - (minus_garm_vx_leg2 * t358 + gcross_vx_leg2 * t360),
+                gcross_vx_leg2 * t351 - minus_garm_vx_leg2 * t373,
+                -t335,
+                -t432,
+                minus_garm_vx_leg3 * t437,
+                -(minus_garm_vx_leg3 * t441),
+                -t432,
                 minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 -minus_garm_vx_leg3,
-                gcross_vx_leg3 * t482,
-                gcross_vx_leg3 * t497,
-                gcross_vx_leg3 * t510,
-                gcross_vx_leg3 * t494,
-                -(gcross_vx_leg3 * t129),
+                gcross_vx_leg3 * t467,
+                gcross_vx_leg3 * t485,
+                gcross_vx_leg3 * t499,
+                gcross_vx_leg3 * t466,
+                -(gcross_vx_leg3 * t123),
                 0.0,
-                gcross_vx_leg3 * t532 - minus_garm_vx_leg3 * t541,
-                -(minus_garm_vx_leg3 * t558 + gcross_vx_leg3 * t560),
-                gcross_vx_leg3 * t565 - minus_garm_vx_leg3 * t577,
-                -(minus_garm_vx_leg3 * t545),
-                t637,
-                -(garm_vx_leg4 * t642),
-                garm_vx_leg4 * t646,
-                t637,
+                gcross_vx_leg3 * t520 - minus_garm_vx_leg3 * t529,
+                -(minus_garm_vx_leg3 * t545 + gcross_vx_leg3 * t547),
+                gcross_vx_leg3 * t552 - minus_garm_vx_leg3 * t564,
+                -(minus_garm_vx_leg3 * t533),
+                t623,
+                -(garm_vx_leg4 * t628),
+                garm_vx_leg4 * t632,
+                t623,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t676 + t680),
-                grod_vx_leg4 * (t687 - t678) - minus_gcross_vx_leg4 * t694,
-                grod_vx_leg4 * t673 - minus_gcross_vx_leg4 * t705,
-                t680 + minus_gcross_vx_leg4 * t692,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t325,
+                -(minus_gcross_vx_leg4 * t657 + t662),
+                grod_vx_leg4 * (t670 - t669) - minus_gcross_vx_leg4 * t679,
+                grod_vx_leg4 * t674 - minus_gcross_vx_leg4 * t690,
+                t662 + minus_gcross_vx_leg4 * t656,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t316,
                 grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t727 + 1.8867924528301887 * t731),
-                garm_vx_leg4 * t752 + minus_gcross_vx_leg4 * t754
-                    - 1.8867924528301887 * t759,
-                garm_vx_leg4 * t770 - minus_gcross_vx_leg4 * t759,
-                t731,
+                -(garm_vx_leg4 * t712 + 1.8867924528301887 * t717),
+                garm_vx_leg4 * t736 + minus_gcross_vx_leg4 * t738
+                    - 1.8867924528301887 * t743,
+                garm_vx_leg4 * t754 - minus_gcross_vx_leg4 * t743,
+                t717,
                 acceleration[0],
             ],
             [
-                t51, -(garm_vy_leg1 * t54), garm_vy_leg1 * t58, t51, garm_vy_leg1 * rate_arm_leg1,
+                t48, -(garm_vy_leg1 * t51), garm_vy_leg1 * t55, t48, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t88 - t95,
-                grod_vy_leg1 * (t108 - t93) - minus_gcross_vy_leg1 * t106,
-                -(minus_gcross_vy_leg1 * t119 + grod_vy_leg1 * t85),
-                t95 - minus_gcross_vy_leg1 * t103,
-                -(minus_gcross_vy_leg1 * t129
+                minus_gcross_vy_leg1 * t81 - t89,
+                grod_vy_leg1 * (t102 - t101) - minus_gcross_vy_leg1 * t99,
+                -(minus_gcross_vy_leg1 * t113 + grod_vy_leg1 * t95),
+                t89 - minus_gcross_vy_leg1 * t80,
+                -(minus_gcross_vy_leg1 * t123
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                garm_vy_leg1 * t144 - 1.8867924528301887 * t157,
-                garm_vy_leg1 * t169 + minus_gcross_vy_leg1 * t171
-                    - 1.8867924528301887 * t179,
-                garm_vy_leg1 * t187 - minus_gcross_vy_leg1 * t179,
-                t157,
-                t250,
-                -(garm_vy_leg2 * t253),
-                garm_vy_leg2 * t257,
-                t250,
+                garm_vy_leg1 * t137 - 1.8867924528301887 * t151,
+                garm_vy_leg1 * t162 + minus_gcross_vy_leg1 * t164
+                    - 1.8867924528301887 * t172,
+                garm_vy_leg1 * t180 - minus_gcross_vy_leg1 * t172,
+                t151,
+                t242,
+                -(garm_vy_leg2 * t245),
+                garm_vy_leg2 * t249,
+                t242,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t287),
-                -(minus_gcross_vy_leg2 * t302),
-                -(minus_gcross_vy_leg2 * t315),
-                minus_gcross_vy_leg2 * t299,
-                minus_gcross_vy_leg2 * t325,
+                -(minus_gcross_vy_leg2 * t276),
+                -(minus_gcross_vy_leg2 * t292),
+                -(minus_gcross_vy_leg2 * t306),
+                minus_gcross_vy_leg2 * t289,
+                minus_gcross_vy_leg2 * t316,
                 0.0,
-                -(garm_vy_leg2 * t339 + minus_gcross_vy_leg2 * t352),
-                garm_vy_leg2 * t368 + minus_gcross_vy_leg2 * t370,
-                garm_vy_leg2 * t383 - minus_gcross_vy_leg2 * t360,
-                garm_vy_leg2 * t342,
-                -t445,
-                minus_garm_vy_leg3 * t448,
-                -(minus_garm_vy_leg3 * t452),
-                -t445,
+                -(garm_vy_leg2 * t330 + minus_gcross_vy_leg2 * t343),
+                garm_vy_leg2 * t358 + minus_gcross_vy_leg2 * t360,
+                garm_vy_leg2 * t373 - minus_gcross_vy_leg2 * t351,
+                garm_vy_leg2 * t334,
+                -t434,
+                minus_garm_vy_leg3 * t437,
+                -(minus_garm_vy_leg3 * t441),
+                -t434,
                 minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t482 + t489,
-                gcross_vy_leg3 * t497 - minus_grod_vy_leg3 * (t500 - t487),
-                gcross_vy_leg3 * t510 - minus_grod_vy_leg3 * t477,
-                gcross_vy_leg3 * t494 - t489,
-                -(gcross_vy_leg3 * t129 + 1.8867924528301887 * rate_dot_cross_leg3),
+                gcross_vy_leg3 * t467 + t475,
+                gcross_vy_leg3 * t485 - minus_grod_vy_leg3 * (t489 - t488),
+                gcross_vy_leg3 * t499 - minus_grod_vy_leg3 * t480,
+                gcross_vy_leg3 * t466 - t475,
+                -(gcross_vy_leg3 * t123 + 1.8867924528301887 * rate_dot_cross_leg3),
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                1.8867924528301887 * t546 - minus_garm_vy_leg3 * t541,
-                1.8867924528301887 * t565
-                    - (minus_garm_vy_leg3 * t558 + gcross_vy_leg3 * t560),
-                gcross_vy_leg3 * t565 - minus_garm_vy_leg3 * t577,
-                -t546,
-                -t639,
-                minus_garm_vy_leg4 * t642,
-                -(minus_garm_vy_leg4 * t646),
-                -t639,
+                1.8867924528301887 * t534 - minus_garm_vy_leg3 * t529,
+                1.8867924528301887 * t552
+                    - (minus_garm_vy_leg3 * t545 + gcross_vy_leg3 * t547),
+                gcross_vy_leg3 * t552 - minus_garm_vy_leg3 * t564,
+                -t534,
+                -t625,
+                minus_garm_vy_leg4 * t628,
+                -(minus_garm_vy_leg4 * t632),
+                -t625,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4),
                 -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t676,
-                gcross_vy_leg4 * t694,
-                gcross_vy_leg4 * t705,
-                -(gcross_vy_leg4 * t692),
-                gcross_vy_leg4 * t325,
+                gcross_vy_leg4 * t657,
+                gcross_vy_leg4 * t679,
+                gcross_vy_leg4 * t690,
+                -(gcross_vy_leg4 * t656),
+                gcross_vy_leg4 * t316,
                 0.0,
-                minus_garm_vy_leg4 * t727 + gcross_vy_leg4 * t740,
-                -(minus_garm_vy_leg4 * t752 + gcross_vy_leg4 * t754),
-                gcross_vy_leg4 * t759 - minus_garm_vy_leg4 * t770,
-                -(minus_garm_vy_leg4 * t730),
+                minus_garm_vy_leg4 * t712 + gcross_vy_leg4 * t725,
+                -(minus_garm_vy_leg4 * t736 + gcross_vy_leg4 * t738),
+                gcross_vy_leg4 * t743 - minus_garm_vy_leg4 * t754,
+                -(minus_garm_vy_leg4 * t716),
                 acceleration[1],
             ],
             [
-                -t53, minus_garm_vz_leg1 * t54, -(minus_garm_vz_leg1 * t58), -t53,
+                -t50, minus_garm_vz_leg1 * t51, -(minus_garm_vz_leg1 * t55), -t50,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t88), minus_minus_gcross_vz_leg1 * t106,
-                minus_minus_gcross_vz_leg1 * t119, minus_minus_gcross_vz_leg1 * t103,
-                minus_minus_gcross_vz_leg1 * t129, 0.0,
-                -(minus_garm_vz_leg1 * t144 - minus_minus_gcross_vz_leg1 * t152),
-                -(minus_minus_gcross_vz_leg1 * t171 + minus_garm_vz_leg1 * t169),
-                -(minus_garm_vz_leg1 * t187 - minus_minus_gcross_vz_leg1 * t179),
-                -(minus_garm_vz_leg1 * t156), -t252, minus_garm_vz_leg2 * t253,
-                -(minus_garm_vz_leg2 * t257), -t252, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t81), minus_minus_gcross_vz_leg1 * t99,
+                minus_minus_gcross_vz_leg1 * t113, minus_minus_gcross_vz_leg1 * t80,
+                minus_minus_gcross_vz_leg1 * t123, 0.0,
+                -(minus_garm_vz_leg1 * t137 - minus_minus_gcross_vz_leg1 * t146),
+                -(minus_minus_gcross_vz_leg1 * t164 + minus_garm_vz_leg1 * t162),
+                -(minus_garm_vz_leg1 * t180 - minus_minus_gcross_vz_leg1 * t172),
+                -(minus_garm_vz_leg1 * t150), -t244, minus_garm_vz_leg2 * t245,
+                -(minus_garm_vz_leg2 * t249), -t244, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t287, gcross_vz_leg2 * t302, gcross_vz_leg2 * t315,
-                -(gcross_vz_leg2 * t299), -(gcross_vz_leg2 * t325), 0.0,
-                gcross_vz_leg2 * t352 + minus_garm_vz_leg2 * t339,
-                -(minus_garm_vz_leg2 * t368 + gcross_vz_leg2 * t370),
-                gcross_vz_leg2 * t360 - minus_garm_vz_leg2 * t383, -(minus_garm_vz_leg2 * t342),
-                -t447, minus_garm_vz_leg3 * t448, -(minus_garm_vz_leg3 * t452), -t447,
+                gcross_vz_leg2 * t276, gcross_vz_leg2 * t292, gcross_vz_leg2 * t306,
+                -(gcross_vz_leg2 * t289), -(gcross_vz_leg2 * t316), 0.0,
+                gcross_vz_leg2 * t343 + minus_garm_vz_leg2 * t330,
+                -(minus_garm_vz_leg2 * t358 + gcross_vz_leg2 * t360),
+                gcross_vz_leg2 * t351 - minus_garm_vz_leg2 * t373, -(minus_garm_vz_leg2 * t334),
+                -t436, minus_garm_vz_leg3 * t437, -(minus_garm_vz_leg3 * t441), -t436,
                 minus_garm_vz_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t482, gcross_vz_leg3 * t497,
-                gcross_vz_leg3 * t510, gcross_vz_leg3 * t494, -(gcross_vz_leg3 * t129), 0.0,
-                gcross_vz_leg3 * t532 - minus_garm_vz_leg3 * t541,
-                -(minus_garm_vz_leg3 * t558 + gcross_vz_leg3 * t560),
-                gcross_vz_leg3 * t565 - minus_garm_vz_leg3 * t577, -(minus_garm_vz_leg3 * t545),
-                -t641, minus_garm_vz_leg4 * t642, -(minus_garm_vz_leg4 * t646), -t641,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t467, gcross_vz_leg3 * t485,
+                gcross_vz_leg3 * t499, gcross_vz_leg3 * t466, -(gcross_vz_leg3 * t123), 0.0,
+                gcross_vz_leg3 * t520 - minus_garm_vz_leg3 * t529,
+                -(minus_garm_vz_leg3 * t545 + gcross_vz_leg3 * t547),
+                gcross_vz_leg3 * t552 - minus_garm_vz_leg3 * t564, -(minus_garm_vz_leg3 * t533),
+                -t627, minus_garm_vz_leg4 * t628, -(minus_garm_vz_leg4 * t632), -t627,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t676, gcross_vz_leg4 * t694, gcross_vz_leg4 * t705,
-                -(gcross_vz_leg4 * t692), gcross_vz_leg4 * t325, 0.0,
-                minus_garm_vz_leg4 * t727 + gcross_vz_leg4 * t740,
-                -(minus_garm_vz_leg4 * t752 + gcross_vz_leg4 * t754),
-                gcross_vz_leg4 * t759 - minus_garm_vz_leg4 * t770, -(minus_garm_vz_leg4 * t730),
+                gcross_vz_leg4 * t657, gcross_vz_leg4 * t679, gcross_vz_leg4 * t690,
+                -(gcross_vz_leg4 * t656), gcross_vz_leg4 * t316, 0.0,
+                minus_garm_vz_leg4 * t712 + gcross_vz_leg4 * t725,
+                -(minus_garm_vz_leg4 * t736 + gcross_vz_leg4 * t738),
+                gcross_vz_leg4 * t743 - minus_garm_vz_leg4 * t754, -(minus_garm_vz_leg4 * t716),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2837,7 +2827,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 948 operations (299 additions, 628 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 782 intermediates.
+    /// 930 operations (298 additions, 588 multiplications, 44 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 764 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2849,583 +2839,572 @@ impl Delta4 {
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.16 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.4 * t1;
-        let t9 = pose[1] * pose[1] + -0.2809;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.04;
-        let t13 = 0.4 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t9));
+        let t2 = 0.4 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t7 = pose[1] * pose[1] + -0.2809;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.04;
+        let t11 = 0.4 * pose[2];
+        let t12 = 0.16 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.212 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.04) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t23 = 0.53 * c_rod_leg1;
+        let t24 = 0.4 * t23;
+        let c_cross_leg1 = (t8 + -0.04) / t24;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let t31 = 0.9433962264150944 * t15;
+        let t32 = t31 / c_rod_leg1;
+        let s_cross_leg1 = 5.0 * t32;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 5.0 * t34;
-        let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t39 = pose[1] + 0.05 - 0.2;
-        let t41 = t39 * t39 + t3;
-        let t42 = 0.16 * t41;
-        let t44 = 0.2809 - pose[0] * pose[0];
-        let t45 = t41 - t44;
-        let t46 = t45 + 0.04;
-        let t48 = t42 - t46 * t46;
-        ::overact::guard::reach(t48, "leg2")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let t50 = 3.5599857600569598 * t44;
-        ::overact::guard::reach(t50, "leg2")?;
-        ::overact::guard::reach(t50, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t50);
+        let t36 = 5.0 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t36;
+        let t40 = 0.2809 - pose[0] * pose[0];
+        let t41 = 3.5599857600569598 * t40;
+        ::overact::guard::reach(t41, "leg2")?;
+        ::overact::guard::reach(t41, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t41);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t52 = 0.212 * c_rod_leg2;
-        let s_cross_leg2 = t49 / t52;
+        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
+        let t44 = 0.53 * minus_grod_vx_leg2;
+        let t46 = pose[1] + 0.05 - 0.2;
+        let t48 = t46 * t46 + t4;
+        let t49 = 0.16 * t48;
+        let t50 = t48 - t40;
+        let t51 = t50 + 0.04;
+        let t53 = t49 - t51 * t51;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t55 = 0.9433962264150944 * t54;
+        let t56 = t44 * t55;
+        let s_cross_leg2 = 5.0 * t56;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t54 = 1.0 / s_cross_leg2;
-        let t55 = 5.0 * t54;
-        let t56 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t56;
-        let t58 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t55 * t58;
-        let t63 = pose[0] - 0.05 + 0.2;
-        let t65 = t63 * t63 + t3;
-        let t66 = 0.16 * t65;
-        let t67 = 1.0 / t66;
-        let t68 = 0.4 * t63;
-        let t69 = t65 + t9;
-        let t70 = t69 + 0.04;
-        let t73 = t66 - t70 * t70;
+        let t58 = 5.0 / s_cross_leg2;
+        let t59 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t58 * t59;
+        let t64 = pose[0] - 0.05 + 0.2;
+        let t65 = 0.4 * t64;
+        let t67 = t64 * t64 + t4;
+        let t68 = t67 + t7;
+        let t69 = t68 + 0.04;
+        let t71 = 0.16 * t67;
+        let t73 = t71 - t69 * t69;
         ::overact::guard::reach(t73, "leg3")?;
         let t74 = ::overact::math::sqrt(t73);
-        let minus_c_arm_leg3 = t67 * (t68 * t70 + t13 * t74);
-        let c_cross_leg3 = (-0.04 + t69) / t24;
-        let s_arm_leg3 = t67 * (t68 * t74 - t13 * t70);
-        let s_cross_leg3 = t74 / t24;
+        let minus_c_arm_leg3 = (t65 * t69 + t11 * t74) / t71;
+        let c_cross_leg3 = (-0.04 + t68) / t24;
+        let s_arm_leg3 = (t65 * t74 - t11 * t69) / t71;
+        let t85 = 0.9433962264150944 * t74;
+        let t86 = t85 / c_rod_leg1;
+        let s_cross_leg3 = 5.0 * t86;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t88 = 1.0 / s_cross_leg3;
-        let t89 = 5.0 * t88;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t89;
-        let t94 = pose[1] - 0.05 + 0.2;
-        let t96 = t94 * t94 + t3;
-        let t97 = 0.16 * t96;
-        let t98 = t96 - t44;
-        let t99 = t98 + 0.04;
-        let t101 = t97 - t99 * t99;
-        ::overact::guard::reach(t101, "leg4")?;
-        let t102 = ::overact::math::sqrt(t101);
-        let s_cross_leg4 = t102 / t52;
+        let t90 = 5.0 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t90;
+        let t95 = pose[1] - 0.05 + 0.2;
+        let t97 = t95 * t95 + t4;
+        let t98 = 0.16 * t97;
+        let t99 = t97 - t40;
+        let t100 = t99 + 0.04;
+        let t102 = t98 - t100 * t100;
+        ::overact::guard::reach(t102, "leg4")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t104 = t54 / s_cross_leg2;
+        let s_cross_leg4 = t103 / t104;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t104 = 1.0 / s_cross_leg4;
-        let t105 = 5.0 * t104;
-        let garm_vx_leg4 = t58 * t105;
-        let t108 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t108, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t108, 22.533170865545554, "actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = 0.2 * c_cross_leg1;
-        let t117 = garm_vx_leg1 * actuator_velocities[0]
+        let t106 = 5.0 / s_cross_leg4;
+        let garm_vx_leg4 = t59 * t106;
+        let t109 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t119 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t119;
-        let t121 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t121;
-        let t124 = 1.0 / t42;
-        let t125 = 0.4 * t39;
-        let c_arm_leg2 = t124 * (t125 * t46 - t13 * t49);
-        let c_cross_leg2 = (-0.04 + t45) / t52;
-        let minus_s_arm_leg2 = t124 * (t13 * t46 + t125 * t49);
+        let t116 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
+        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
+        let t119 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t36 * t119;
+        let t122 = 0.4 * t46;
+        let c_arm_leg2 = (t122 * t51 - t11 * t54) / t49;
+        let c_cross_leg2 = (-0.04 + t50) / t104;
+        let minus_s_arm_leg2 = (t11 * t51 + t122 * t54) / t49;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t55;
-        let garm_vy_leg3 = t121 * t89;
-        let t145 = 1.0 / t97;
-        let t146 = 0.4 * t94;
-        let minus_c_arm_leg4 = t145 * (t146 * t99 + t13 * t102);
-        let c_cross_leg4 = (-0.04 + t98) / t52;
-        let s_arm_leg4 = t145 * (t146 * t102 - t13 * t99);
+        let garm_vy_leg2 = c_armcross_leg2 * t58;
+        let garm_vy_leg3 = t119 * t90;
+        let t142 = 0.4 * t95;
+        let minus_c_arm_leg4 = (t142 * t100 + t11 * t103) / t98;
+        let c_cross_leg4 = (-0.04 + t99) / t104;
+        let s_arm_leg4 = (t142 * t103 - t11 * t100) / t98;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t105;
-        let t162 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t106;
+        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t163 = t162 * t109;
-        let t172 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t162 * t163;
-        ::overact::guard::platform(t172, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t172, 22.533170865545554, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t182 = garm_vy_leg1 * actuator_velocities[0]
+        let t159 = t158 / t116;
+        let t168 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t117 * t163;
+            + garm_vy_leg4 * actuator_velocities[3] - t109 * t159;
+        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t55;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t58;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t89;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t90;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t105;
-        let t206 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t106;
+        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t207 = t206 * t109;
-        let t216 = t162 * t207
+        let t202 = t201 / t116;
+        let t211 = t158 * t202
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t217 = t216 * t173;
-        let t228 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t206 * t207 - t216 * t217;
-        ::overact::guard::platform(t228, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t228, 66.4019122371629, "actuators")?;
-        let t229 = 1.0 / t228;
-        let t240 = t117 * t207
+        let t212 = t211 / t177;
+        let t223 = t109 * t202
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t217 * t182;
-        let t241 = t229 * t240;
-        let t243 = t173 * t182 - t217 * t241;
-        let t247 = t117 * t109 - t163 * t243 + t207 * t241;
-        let t251 = t121 * t243;
-        let rate_arm_leg1 = t35
-            * (c_armcross_leg1 * t247 - s_armcross_leg1 * t241 + t251);
-        let t254 = rate_arm_leg1 * rate_arm_leg1;
-        let t256 = 0.53 * c_rod_leg1;
-        let t261 = t110 * rate_arm_leg1 + s_armcross_leg1 * t247
-            + c_armcross_leg1 * t241;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t261;
-        let t263 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t243;
-        let t265 = rate_rod_leg1 * rate_rod_leg1;
-        let t268 = t110 * t254 + t256 * (t263 + t265);
-        let t269 = pose[1] * t265;
-        let t270 = t121 * t269;
-        let rate_dot_arm_leg1 = t35 * (t268 + t270);
-        let t273 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t275 = 0.2 * c_cross_leg2;
-        let t279 = t58 * t247;
-        let rate_arm_leg2 = t55
-            * (c_armcross_leg2 * t243 - s_armcross_leg2 * t241 + t279);
-        let t282 = rate_arm_leg2 * rate_arm_leg2;
-        let t284 = 0.53 * c_rod_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t247;
-        let t286 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t291 = s_armcross_leg2 * t243 + c_armcross_leg2 * t241
-            + t275 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t291;
-        let t293 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t296 = t275 * t282 + t284 * (t286 + t293);
-        let t297 = pose[0] * t286;
-        let t298 = t58 * t297;
-        let rate_dot_arm_leg2 = t55 * (t296 + t298);
-        let t301 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t304 = 0.2 * c_cross_leg3;
-        let rate_arm_leg3 = t89
-            * (minus_c_armcross_leg3 * t247 - s_armcross_leg3 * t241 + t251);
-        let t310 = rate_arm_leg3 * rate_arm_leg3;
-        let t316 = s_armcross_leg3 * t247 + minus_c_armcross_leg3 * t241
-            - t304 * rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t316;
-        let t318 = rate_cross_leg3 * rate_cross_leg3;
-        let t319 = t265 + t318;
-        let t321 = t304 * t310 + t256 * t319;
-        let rate_dot_arm_leg3 = t89 * (t321 + t270);
-        let t324 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t327 = 0.2 * c_cross_leg4;
-        let rate_arm_leg4 = t105
-            * (minus_c_armcross_leg4 * t243 - s_armcross_leg4 * t241 + t279);
-        let t333 = rate_arm_leg4 * rate_arm_leg4;
-        let t339 = s_armcross_leg4 * t243 + minus_c_armcross_leg4 * t241
-            - t327 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t339;
-        let t341 = rate_cross_leg4 * rate_cross_leg4;
-        let t342 = t286 + t341;
-        let t344 = t327 * t333 + t284 * t342;
-        let rate_dot_arm_leg4 = t105 * (t344 + t298);
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t212 * t168;
+        let t234 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t201 * t202 - t211 * t212;
+        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
+        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
+        let t235 = t223 / t234;
+        let t237 = t168 / t177 - t212 * t235;
+        let t241 = t109 / t116 - t159 * t237 + t202 * t235;
+        let t245 = t119 * t237;
+        let t246 = c_armcross_leg1 * t241 - s_armcross_leg1 * t235 + t245;
+        let rate_arm_leg1 = t36 * t246;
+        let t248 = 0.2 * c_cross_leg1;
+        let t249 = t248 * rate_arm_leg1;
+        let t254 = t249 + s_armcross_leg1 * t241 + c_armcross_leg1 * t235;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t254;
+        let t256 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t237;
+        let t258 = rate_rod_leg1 * rate_rod_leg1;
+        let t259 = t256 + t258;
+        let t261 = rate_arm_leg1 * t249 + t23 * t259;
+        let t262 = t245 * rate_rod_leg1;
+        let t263 = t119 * t262;
+        let rate_dot_arm_leg1 = t36 * (t261 + t263);
+        let t266 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t271 = t59 * t241;
+        let t272 = c_armcross_leg2 * t237 - s_armcross_leg2 * t235 + t271;
+        let rate_arm_leg2 = t58 * t272;
+        let t274 = t272 * rate_arm_leg2;
+        let t275 = t274 / s_cross_leg2;
+        let t277 = 0.53 * c_rod_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t241;
+        let t279 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t283 = 0.2 * c_cross_leg2;
+        let t285 = s_armcross_leg2 * t237 + c_armcross_leg2 * t235
+            + t283 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t285;
+        let t287 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t288 = t279 + t287;
+        let t290 = c_cross_leg2 * t275 + t277 * t288;
+        let t291 = t271 * minus_rate_rod_leg2;
+        let t292 = t59 * t291;
+        let rate_dot_arm_leg2 = t58 * (t290 + t292);
+        let t295 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t301 = minus_c_armcross_leg3 * t241 - s_armcross_leg3 * t235 + t245;
+        let rate_arm_leg3 = t90 * t301;
+        let t303 = 0.2 * c_cross_leg3;
+        let t304 = t303 * rate_arm_leg3;
+        let t309 = s_armcross_leg3 * t241 + minus_c_armcross_leg3 * t235 - t304;
+        let rate_cross_leg3 = grod_vy_leg1 * t309;
+        let t311 = rate_cross_leg3 * rate_cross_leg3;
+        let t312 = t258 + t311;
+        let t314 = rate_arm_leg3 * t304 + t23 * t312;
+        let rate_dot_arm_leg3 = t90 * (t314 + t263);
+        let t317 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t323 = minus_c_armcross_leg4 * t237 - s_armcross_leg4 * t235 + t271;
+        let rate_arm_leg4 = t106 * t323;
+        let t325 = t323 * rate_arm_leg4;
+        let t326 = t325 / s_cross_leg4;
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t332 = 0.2 * c_cross_leg4;
+        let t334 = s_armcross_leg4 * t237 + minus_c_armcross_leg4 * t235
+            - t332 * rate_arm_leg4;
+        let t335 = 1.8867924528301887 * t334;
+        let t336 = t335 * t335;
+        let t337 = t336 / c_rod_leg2;
+        let t338 = minus_s_rod_leg2 * t337;
+        let t339 = minus_grod_vx_leg2 * t338;
+        let t340 = pose[0] * t339;
+        let t341 = t340 + t279;
+        let t344 = c_cross_leg4 * t326 + t277 * (t341 + t336);
+        let rate_dot_arm_leg4 = t106 * (t344 + t292);
         let t347 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t349 = garm_vx_leg1 * t273 + garm_vx_leg2 * t301 + garm_vx_leg3 * t324
+        let t349 = garm_vx_leg1 * t266 + garm_vx_leg2 * t295 + garm_vx_leg3 * t317
             + garm_vx_leg4 * t347;
-        let t359 = garm_vy_leg1 * t273 + garm_vy_leg2 * t301 + garm_vy_leg3 * t324
-            + garm_vy_leg4 * t347 - t163 * t349;
-        let t371 = t207 * t349
-            - (minus_garm_vz_leg1 * t273 + minus_garm_vz_leg2 * t301
-                + minus_garm_vz_leg3 * t324 + minus_garm_vz_leg4 * t347) - t217 * t359;
-        let t372 = t229 * t371;
-        let t374 = t173 * t359 - t217 * t372;
-        let t378 = t109 * t349 - t163 * t374 + t207 * t372;
-        let t383 = t374 + t269;
-        let t384 = t121 * t383;
-        let rate_dot_arm_leg1_2 = t35
-            * (c_armcross_leg1 * t378 - s_armcross_leg1 * t372 + t268 + t384);
+        let t359 = garm_vy_leg1 * t266 + garm_vy_leg2 * t295 + garm_vy_leg3 * t317
+            + garm_vy_leg4 * t347 - t159 * t349;
+        let t371 = t202 * t349
+            - (minus_garm_vz_leg1 * t266 + minus_garm_vz_leg2 * t295
+                + minus_garm_vz_leg3 * t317 + minus_garm_vz_leg4 * t347) - t212 * t359;
+        let t372 = t371 / t234;
+        let t374 = t359 / t177 - t212 * t372;
+        let t378 = t349 / t116 - t159 * t374 + t202 * t372;
+        let t383 = t374 + t262;
+        let t384 = t119 * t383;
+        let rate_dot_arm_leg1_2 = t36
+            * (c_armcross_leg1 * t378 - s_armcross_leg1 * t372 + t261 + t384);
         let t387 = garm_vx_leg1 * rate_dot_arm_leg1_2;
         let t388 = garm_vy_leg1 * rate_dot_arm_leg1_2;
         let t389 = minus_garm_vz_leg1 * rate_dot_arm_leg1_2;
         let t390 = 9.81 * c_arm_leg1;
         let t394 = 9.81 * minus_s_arm_leg1;
-        let t404 = t34 * grod_vy_leg1;
+        let t404 = grod_vy_leg1 / s_cross_leg1;
         let minus_gcross_vx_leg1 = c_arm_leg1 * t404;
-        let t407 = rate_rod_leg1 * (1.8867924528301887 * t261);
+        let t407 = rate_rod_leg1 * (1.8867924528301887 * t254);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t409 = 0.2 * t254;
-        let t411 = 0.2 * rate_dot_arm_leg1_2;
-        let t417 = s_cross_leg1 * t409 + c_cross_leg1 * t411 + s_armcross_leg1 * t378
-            + c_armcross_leg1 * t372;
-        let t418 = t251 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t417 + t418 + t418);
-        let t422 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t424 = t407 + t422 + t407;
-        let t425 = c_rod_leg1 * t424;
-        let t426 = t121 * t425;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t110 * garm_vy_leg1);
-        let t431 = t263 * s_rod_leg1;
-        let t432 = 1.8867924528301887 * t431;
+        let t409 = 0.2 * rate_dot_arm_leg1_2;
+        let t414 = t246 * rate_arm_leg1;
+        let t415 = t245 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t409 + s_armcross_leg1 * t378 + c_armcross_leg1 * t372
+                + t414 + t415 + t415);
+        let t421 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t423 = t407 + t421 + t407;
+        let t424 = c_rod_leg1 * t423;
+        let t425 = t119 * t424;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t248 * garm_vy_leg1);
+        let t430 = t256 * s_rod_leg1;
+        let t431 = c_rod_leg1 * t430;
+        let t432 = grod_vy_leg1 * t431;
         let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t404;
-        let t436 = t426 - minus_rate_dot_cross_leg1;
-        let t438 = t121 * t436 - t425;
+        let t436 = t425 - minus_rate_dot_cross_leg1;
+        let t438 = t119 * t436 - t424;
         let t440 = pose[1] * t432;
-        let t441 = t265 - t440;
-        let t442 = t263 + t441;
+        let t441 = t259 - t440;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t383;
-        let t452 = s_rod_leg1 * (t256 * t432 + rate_dot_rod_leg1);
-        let t454 = t452 + c_rod_leg1 * t441;
-        let t464 = 1.8867924528301887 * t374;
-        let t470 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t475 = 0.2 * s_cross_leg1;
-        let t478 = 0.37735849056603776 * (c_cross_leg1 * t417)
-            + 0.9433962264150944 * t16 * t442 + t452 * t475;
-        let t480 = t411 - t390;
-        let t482 = t394 - t409;
-        let t484 = c_cross_leg1 * t480 - s_cross_leg1 * t482;
-        let t485 = c_rod_leg1 * t484;
-        let t489 = 0.2 * t480;
-        let t490 = garm_vy_leg1 * t489;
-        let t499 = t110 * t424 - t475 * (t464 - t431);
-        let t501 = s_rod_leg1 * t484;
-        let t509 = c_cross_leg1 * t482 + s_cross_leg1 * t480;
-        let t517 = t110 * t263 - minus_rate_dot_cross_leg1 * t475;
-        let t533 = t378 + t297;
-        let t534 = t58 * t533;
-        let rate_dot_arm_leg2_2 = t55
-            * (c_armcross_leg2 * t374 - s_armcross_leg2 * t372 + t296 + t534);
-        let t537 = garm_vx_leg2 * rate_dot_arm_leg2_2;
-        let t538 = garm_vy_leg2 * rate_dot_arm_leg2_2;
-        let t539 = minus_garm_vz_leg2 * rate_dot_arm_leg2_2;
-        let t540 = 9.81 * c_arm_leg2;
-        let t544 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t275 * garm_vx_leg2);
-        let t557 = minus_rate_rod_leg2 * (1.8867924528301887 * t291);
-        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t562 = 0.2 * t282;
-        let t564 = t279 * minus_rate_cross_leg2;
-        let t568 = 0.2 * rate_dot_arm_leg2_2;
+        let t450 = s_rod_leg1 * (t431 + rate_dot_rod_leg1);
+        let t453 = t450 + c_rod_leg1 * (t258 - t440);
+        let t463 = 1.8867924528301887 * t374;
+        let t469 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t475 = t248 * (t436 / c_rod_leg1) - (t31 * t441 + t450 * t32);
+        let t477 = t409 - t390;
+        let t480 = t394 - t414 / s_cross_leg1;
+        let t482 = c_cross_leg1 * t477 - s_cross_leg1 * t480;
+        let t483 = c_rod_leg1 * t482;
+        let t487 = 0.2 * t477;
+        let t488 = garm_vy_leg1 * t487;
+        let t497 = t248 * t423 - t32 * (t463 - t430);
+        let t499 = s_rod_leg1 * t482;
+        let t507 = c_cross_leg1 * t480 + s_cross_leg1 * t477;
+        let t515 = t248 * t256 - minus_rate_dot_cross_leg1 * t32;
+        let t531 = t378 + t291;
+        let t532 = t59 * t531;
+        let rate_dot_arm_leg2_2 = t58
+            * (c_armcross_leg2 * t374 - s_armcross_leg2 * t372 + t290 + t532);
+        let t535 = garm_vx_leg2 * rate_dot_arm_leg2_2;
+        let t536 = garm_vy_leg2 * rate_dot_arm_leg2_2;
+        let t537 = minus_garm_vz_leg2 * rate_dot_arm_leg2_2;
+        let t538 = 9.81 * c_arm_leg2;
+        let t542 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t283 * garm_vx_leg2);
+        let t554 = 1.8867924528301887 * t285;
+        let t555 = minus_rate_rod_leg2 * t554;
+        let t559 = t271 * minus_rate_cross_leg2;
+        let t563 = 0.2 * rate_dot_arm_leg2_2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t374 + c_armcross_leg2 * t372 + s_cross_leg2 * t562
-                + t564 + t564 + c_cross_leg2 * t568);
-        let t572 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t574 = t557 + t572 + t557;
-        let t575 = c_rod_leg2 * t574;
-        let t576 = t58 * t575;
-        let t578 = t50 * t293;
-        let t579 = t58 * t578;
-        let t580 = minus_grod_vx_leg2 * t579;
-        let t582 = t54 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t582;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t582;
-        let t587 = t576 - minus_rate_dot_cross_leg2;
-        let t589 = t575 - t58 * t587;
-        let t591 = pose[0] * t580;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t533;
-        let t598 = t579 + minus_rate_dot_rod_leg2;
-        let t602 = minus_s_rod_leg2 * t598 + c_rod_leg2 * (t286 - t591);
-        let t612 = 1.8867924528301887 * t378;
-        let t618 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t621 = 0.9433962264150944 * t49;
-        let t624 = t58 * t621;
-        let t627 = t275 * (t56 * t587) - (t621 * (t578 + t286) + t624 * t598);
-        let t629 = t568 - t540;
-        let t630 = 0.2 * t629;
-        let t631 = garm_vx_leg2 * t630;
-        let t636 = t544 - t562;
-        let t638 = c_cross_leg2 * t629 - s_cross_leg2 * t636;
-        let t639 = c_rod_leg2 * t638;
-        let t651 = t621 * (minus_rate_dot_rod_leg2 - t579) - t624 * (t591 + t286)
-            - t275 * t574;
-        let t653 = minus_s_rod_leg2 * t638;
-        let t658 = c_cross_leg2 * t636 + s_cross_leg2 * t629;
-        let t670 = t275 * t293 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
-        let rate_dot_arm_leg3_2 = t89
-            * (minus_c_armcross_leg3 * t378 - s_armcross_leg3 * t372 + t321 + t384);
-        let t688 = garm_vx_leg3 * rate_dot_arm_leg3_2;
-        let t689 = garm_vy_leg3 * rate_dot_arm_leg3_2;
-        let t690 = minus_garm_vz_leg3 * rate_dot_arm_leg3_2;
-        let t691 = 9.81 * minus_c_arm_leg3;
-        let t695 = 9.81 * s_arm_leg3;
-        let t705 = t88 * grod_vy_leg1;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t705;
-        let t708 = rate_rod_leg1 * (1.8867924528301887 * t316);
-        let t712 = 0.2 * t310;
-        let t714 = t251 * rate_cross_leg3;
-        let t718 = 0.2 * rate_dot_arm_leg3_2;
+            * (s_armcross_leg2 * t374 + c_armcross_leg2 * t372 + t274 + t559 + t559
+                + c_cross_leg2 * t563);
+        let t567 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t569 = t555 + t567 + t555;
+        let t570 = minus_s_rod_leg2 * t569;
+        let t572 = t554 * t554;
+        let t573 = t59 * t572;
+        let t574 = minus_grod_vx_leg2 * t573;
+        let t576 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t576;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t576;
+        let t582 = t570 - minus_rate_dot_cross_leg2;
+        let t584 = c_rod_leg2 * t569 - t59 * t582;
+        let t586 = t572 + t279;
+        let t587 = t288 - t572;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t531;
+        let t594 = t573 + minus_rate_dot_rod_leg2;
+        let t598 = minus_s_rod_leg2 * t594 + c_rod_leg2 * (t586 - t287);
+        let t608 = 1.8867924528301887 * t378;
+        let t614 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t618 = minus_s_rod_leg2 * t56;
+        let t621 = t283 * (t44 * t582) - (t55 * t586 + t618 * t594);
+        let t623 = t563 - t538;
+        let t624 = 0.2 * t623;
+        let t625 = garm_vx_leg2 * t624;
+        let t630 = t542 - t275;
+        let t632 = c_cross_leg2 * t623 - s_cross_leg2 * t630;
+        let t633 = c_rod_leg2 * t632;
+        let t644 = t55 * (minus_rate_dot_rod_leg2 - t573) - t618 * t587 - t283 * t569;
+        let t646 = minus_s_rod_leg2 * t632;
+        let t651 = c_cross_leg2 * t630 + s_cross_leg2 * t623;
+        let t662 = t283 * t287 - minus_rate_dot_cross_leg2 * t56;
+        let rate_dot_arm_leg3_2 = t90
+            * (minus_c_armcross_leg3 * t378 - s_armcross_leg3 * t372 + t314 + t384);
+        let t680 = garm_vx_leg3 * rate_dot_arm_leg3_2;
+        let t681 = garm_vy_leg3 * rate_dot_arm_leg3_2;
+        let t682 = minus_garm_vz_leg3 * rate_dot_arm_leg3_2;
+        let t683 = 9.81 * minus_c_arm_leg3;
+        let t687 = 9.81 * s_arm_leg3;
+        let t697 = grod_vy_leg1 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t697;
+        let t700 = rate_rod_leg1 * (1.8867924528301887 * t309);
+        let t704 = t301 * rate_arm_leg3;
+        let t705 = t245 * rate_cross_leg3;
+        let t709 = 0.2 * rate_dot_arm_leg3_2;
         let rate_dot_cross_leg3 = grod_vy_leg1
             * (s_armcross_leg3 * t378 + minus_c_armcross_leg3 * t372
-                - (s_cross_leg3 * t712 - (t714 + t714)) - c_cross_leg3 * t718);
-        let t722 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t724 = t708 + t722 + t708;
-        let t725 = c_rod_leg1 * t724;
-        let t726 = t121 * t725;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t304 * garm_vy_leg3);
-        let t732 = 3.5599857600569598 * (pose[1] * t318);
-        let gcross_vz_leg3 = s_arm_leg3 * t705;
-        let t736 = rate_dot_cross_leg3 - t726;
-        let t738 = t121 * t736 + t725;
-        let t741 = pose[1] * t732;
-        let t742 = t319 - t741;
-        let t743 = t741 + t265;
-        let t762 = t695 + t712;
-        let t764 = t691 + t718;
-        let t766 = s_cross_leg3 * t762 + c_cross_leg3 * t764;
-        let t767 = c_rod_leg1 * t766;
-        let t769 = 0.9433962264150944 * t74;
-        let t771 = t121 * t769;
-        let t772 = t256 * t732;
-        let t778 = t769 * t742 + t771 * (t772 + rate_dot_rod_leg1)
-            - t736 * (t119 * t304);
-        let t782 = 0.2 * t764;
-        let t783 = garm_vy_leg3 * t782;
-        let t794 = t769 * (rate_dot_rod_leg1 - t772) - t771 * t743 + t304 * t724;
-        let t796 = s_rod_leg1 * t766;
-        let t804 = s_cross_leg3 * t764 - c_cross_leg3 * t762;
-        let t813 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t304 * t318;
-        let rate_dot_arm_leg4_2 = t105
-            * (minus_c_armcross_leg4 * t374 - s_armcross_leg4 * t372 + t344 + t534);
-        let t831 = garm_vx_leg4 * rate_dot_arm_leg4_2;
-        let t832 = garm_vy_leg4 * rate_dot_arm_leg4_2;
-        let t833 = minus_garm_vz_leg4 * rate_dot_arm_leg4_2;
-        let t834 = 9.81 * minus_c_arm_leg4;
-        let t838 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t327 * garm_vx_leg4);
-        let t851 = minus_rate_rod_leg2 * (1.8867924528301887 * t339);
-        let t855 = 0.2 * t333;
-        let t857 = t279 * rate_cross_leg4;
-        let t861 = 0.2 * rate_dot_arm_leg4_2;
+                - (t704 - (t705 + t705)) - c_cross_leg3 * t709);
+        let t713 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t715 = t700 + t713 + t700;
+        let t716 = c_rod_leg1 * t715;
+        let t717 = t119 * t716;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t303 * garm_vy_leg3);
+        let t723 = 3.5599857600569598 * (pose[1] * t311);
+        let gcross_vz_leg3 = s_arm_leg3 * t697;
+        let t727 = rate_dot_cross_leg3 - t717;
+        let t729 = t119 * t727 + t716;
+        let t732 = t23 * t723;
+        let t733 = t119 * t732;
+        let t734 = t312 - t733;
+        let t735 = t733 + t258;
+        let t755 = t687 + t704 / s_cross_leg3;
+        let t757 = t683 + t709;
+        let t759 = s_cross_leg3 * t755 + c_cross_leg3 * t757;
+        let t760 = c_rod_leg1 * t759;
+        let t763 = s_rod_leg1 * t86;
+        let t769 = t85 * t734 + t763 * (t732 + rate_dot_rod_leg1)
+            - t727 * (t303 / c_rod_leg1);
+        let t773 = 0.2 * t757;
+        let t774 = garm_vy_leg3 * t773;
+        let t785 = t85 * (rate_dot_rod_leg1 - t732) - t763 * t735 + t303 * t715;
+        let t787 = s_rod_leg1 * t759;
+        let t795 = s_cross_leg3 * t757 - c_cross_leg3 * t755;
+        let t803 = rate_dot_cross_leg3 * t86 + t303 * t311;
+        let rate_dot_arm_leg4_2 = t106
+            * (minus_c_armcross_leg4 * t374 - s_armcross_leg4 * t372 + t344 + t532);
+        let t821 = garm_vx_leg4 * rate_dot_arm_leg4_2;
+        let t822 = garm_vy_leg4 * rate_dot_arm_leg4_2;
+        let t823 = minus_garm_vz_leg4 * rate_dot_arm_leg4_2;
+        let t824 = 9.81 * minus_c_arm_leg4;
+        let t828 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t332 * garm_vx_leg4);
+        let t840 = minus_rate_rod_leg2 * t335;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t334;
+        let t845 = t271 * rate_cross_leg4;
+        let t849 = 0.2 * rate_dot_arm_leg4_2;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * t374 + minus_c_armcross_leg4 * t372
-                - (s_cross_leg4 * t855 - (t857 + t857)) - c_cross_leg4 * t861);
-        let t865 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t867 = t851 + t865 + t851;
-        let t868 = c_rod_leg2 * t867;
-        let t869 = t58 * t868;
-        let t871 = c_rod_leg2 * t341;
-        let t872 = minus_s_rod_leg2 * t871;
-        let t873 = minus_grod_vx_leg2 * t872;
-        let t875 = minus_grod_vx_leg2 * t104;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t875;
-        let gcross_vz_leg4 = s_arm_leg4 * t875;
-        let t880 = pose[0] * t873;
-        let t882 = t880 + t286;
-        let t885 = rate_dot_cross_leg4 - t869;
-        let t887 = t868 + t58 * t885;
-        let t906 = 0.2 * s_cross_leg4;
-        let t911 = t906 * (t602 + t871) - t885 * (t56 * t327);
-        let t913 = t834 + t861;
-        let t914 = 0.2 * t913;
-        let t915 = garm_vx_leg4 * t914;
-        let t918 = t838 + t855;
-        let t921 = s_cross_leg4 * t918 + c_cross_leg4 * t913;
-        let t922 = c_rod_leg2 * t921;
-        let t929 = 0.9433962264150944 * t102;
-        let t936 = t929 * (t872 - minus_rate_dot_rod_leg2) + t58 * t929 * t882
-            - t327 * t867;
-        let t938 = minus_s_rod_leg2 * t921;
-        let t943 = s_cross_leg4 * t913 - c_cross_leg4 * t918;
-        let t954 = rate_dot_cross_leg4 * t906 + t327 * t341;
+                - (t325 - (t845 + t845)) - c_cross_leg4 * t849);
+        let t853 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t855 = t840 + t853 + t840;
+        let t856 = minus_s_rod_leg2 * t855;
+        let t859 = minus_grod_vx_leg2 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t859;
+        let gcross_vz_leg4 = s_arm_leg4 * t859;
+        let t867 = rate_dot_cross_leg4 - t856;
+        let t869 = c_rod_leg2 * t855 + t59 * t867;
+        let t888 = 0.9433962264150944 * t103;
+        let t889 = t888 / c_rod_leg2;
+        let t892 = t332 / c_rod_leg2;
+        let t894 = t889 * (t598 + t337) - t867 * t892;
+        let t896 = t824 + t849;
+        let t897 = 0.2 * t896;
+        let t898 = garm_vx_leg4 * t897;
+        let t901 = t828 + t326;
+        let t904 = s_cross_leg4 * t901 + c_cross_leg4 * t896;
+        let t905 = c_rod_leg2 * t904;
+        let t918 = t888 * (t338 - minus_rate_dot_rod_leg2) + t59 * t888 * t341
+            - t332 * t855;
+        let t920 = minus_s_rod_leg2 * t904;
+        let t925 = s_cross_leg4 * t896 - c_cross_leg4 * t901;
+        let t936 = rate_dot_cross_leg4 * t889 + t892 * t337;
         Ok([
             [
                 t387, -(garm_vx_leg1 * t390), -(garm_vx_leg1 * t394), t387,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t426, -(minus_gcross_vx_leg1 * t438),
-                -(minus_gcross_vx_leg1 * t454), -(minus_gcross_vx_leg1 * t436),
-                -(minus_gcross_vx_leg1 * t464), 0.0,
-                -(garm_vx_leg1 * t478 + minus_gcross_vx_leg1 * t485),
-                garm_vx_leg1 * t499 + minus_gcross_vx_leg1 * t501,
-                garm_vx_leg1 * t517 - minus_gcross_vx_leg1 * t509, garm_vx_leg1 * t489, t537,
-                -(garm_vx_leg2 * t540), -(garm_vx_leg2 * t544), t537, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1, minus_gcross_vx_leg1 * t425, -(minus_gcross_vx_leg1 * t438),
+                -(minus_gcross_vx_leg1 * t453), -(minus_gcross_vx_leg1 * t436),
+                -(minus_gcross_vx_leg1 * t463), 0.0,
+                garm_vx_leg1 * t475 - minus_gcross_vx_leg1 * t483,
+                garm_vx_leg1 * t497 + minus_gcross_vx_leg1 * t499,
+                garm_vx_leg1 * t515 - minus_gcross_vx_leg1 * t507, garm_vx_leg1 * t487, t535,
+                -(garm_vx_leg2 * t538), -(garm_vx_leg2 * t542), t535, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t576 - t580,
-                -(minus_gcross_vx_leg2 * t589 + minus_grod_vx_leg2 * (t591 - t578)),
-                -(minus_gcross_vx_leg2 * t602 + minus_grod_vx_leg2 * t572),
-                t580 - minus_gcross_vx_leg2 * t587,
-                minus_gcross_vx_leg2 * t612
+                minus_gcross_vx_leg2 * t570 - t574,
+                -(minus_gcross_vx_leg2 * t584 + minus_grod_vx_leg2 * (t587 - t586)),
+                -(minus_gcross_vx_leg2 * t598 + minus_grod_vx_leg2 * t567),
+                t574 - minus_gcross_vx_leg2 * t582,
+                minus_gcross_vx_leg2 * t608
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                t618,
-                garm_vx_leg2 * t627 - 1.8867924528301887 * t631,
-                garm_vx_leg2 * t651 - minus_gcross_vx_leg2 * t653
-                    + 1.8867924528301887 * t658,
-                garm_vx_leg2 * t670 - minus_gcross_vx_leg2 * t658,
-                t631,
-                t688,
-                garm_vx_leg3 * t691,
-                garm_vx_leg3 * t695,
-                t688,
+                t614,
+                garm_vx_leg2 * t621 - 1.8867924528301887 * t625,
+                garm_vx_leg2 * t644 - minus_gcross_vx_leg2 * t646
+                    + 1.8867924528301887 * t651,
+                garm_vx_leg2 * t662 - minus_gcross_vx_leg2 * t651,
+                t625,
+                t680,
+                garm_vx_leg3 * t683,
+                garm_vx_leg3 * t687,
+                t680,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t726),
-                minus_gcross_vx_leg3 * t738,
-                -(minus_gcross_vx_leg3 * t454),
-                -(minus_gcross_vx_leg3 * t736),
-                minus_gcross_vx_leg3 * t464,
+                -(minus_gcross_vx_leg3 * t717),
+                minus_gcross_vx_leg3 * t729,
+                -(minus_gcross_vx_leg3 * t453),
+                -(minus_gcross_vx_leg3 * t727),
+                minus_gcross_vx_leg3 * t463,
                 0.0,
-                -(minus_gcross_vx_leg3 * t767 + garm_vx_leg3 * t778),
-                garm_vx_leg3 * t794 - minus_gcross_vx_leg3 * t796,
-                garm_vx_leg3 * t813 - minus_gcross_vx_leg3 * t804,
-                garm_vx_leg3 * t782,
-                t831,
-                garm_vx_leg4 * t834,
-                garm_vx_leg4 * t838,
-                t831,
+                -(minus_gcross_vx_leg3 * t760 + garm_vx_leg3 * t769),
+                garm_vx_leg3 * t785 - minus_gcross_vx_leg3 * t787,
+                garm_vx_leg3 * t803 - minus_gcross_vx_leg3 * t795,
+                garm_vx_leg3 * t773,
+                t821,
+                garm_vx_leg4 * t824,
+                garm_vx_leg4 * t828,
+                t821,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t869 + t873),
-                -(minus_grod_vx_leg2 * (t342 - t880 - t882)
-                    + minus_gcross_vx_leg4 * t887),
-                minus_grod_vx_leg2 * t865 - minus_gcross_vx_leg4 * t602,
-                t873 - minus_gcross_vx_leg4 * t885,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t612,
-                t618,
-                -(garm_vx_leg4 * t911 + 1.8867924528301887 * t915),
-                garm_vx_leg4 * t936 + minus_gcross_vx_leg4 * t938
-                    - 1.8867924528301887 * t943,
-                garm_vx_leg4 * t954 - minus_gcross_vx_leg4 * t943,
-                t915,
+                -(minus_gcross_vx_leg4 * t856 + t339),
+                -(minus_grod_vx_leg2 * (t336 - t340) + minus_gcross_vx_leg4 * t869),
+                minus_grod_vx_leg2 * t853 - minus_gcross_vx_leg4 * t598,
+                t339 - minus_gcross_vx_leg4 * t867,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t608,
+                t614,
+                -(garm_vx_leg4 * t894 + 1.8867924528301887 * t898),
+                garm_vx_leg4 * t918 + minus_gcross_vx_leg4 * t920
+                    - 1.8867924528301887 * t925,
+                garm_vx_leg4 * t936 - minus_gcross_vx_leg4 * t925,
+                t898,
                 t378,
             ],
             [
                 t388, -(garm_vy_leg1 * t390), -(garm_vy_leg1 * t394), t388,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t426 - t432,
-                -(grod_vy_leg1 * (t442 - (t440 + t265)) + minus_gcross_vy_leg1 * t438),
-                -(minus_gcross_vy_leg1 * t454 + grod_vy_leg1 * t422),
+                garm_vy_leg1, minus_gcross_vy_leg1 * t425 - t432,
+                -(grod_vy_leg1 * (t441 - (t440 + t258)) + minus_gcross_vy_leg1 * t438),
+                -(minus_gcross_vy_leg1 * t453 + grod_vy_leg1 * t421),
                 t432 - minus_gcross_vy_leg1 * t436,
-                -(minus_gcross_vy_leg1 * t464
+                -(minus_gcross_vy_leg1 * t463
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                t470,
-                -(garm_vy_leg1 * t478 + 1.8867924528301887 * t490),
-                garm_vy_leg1 * t499 + minus_gcross_vy_leg1 * t501
-                    - 1.8867924528301887 * t509,
-                garm_vy_leg1 * t517 - minus_gcross_vy_leg1 * t509,
-                t490,
-                t538,
-                -(garm_vy_leg2 * t540),
-                -(garm_vy_leg2 * t544),
-                t538,
+                t469,
+                garm_vy_leg1 * t475 - 1.8867924528301887 * t488,
+                garm_vy_leg1 * t497 + minus_gcross_vy_leg1 * t499
+                    - 1.8867924528301887 * t507,
+                garm_vy_leg1 * t515 - minus_gcross_vy_leg1 * t507,
+                t488,
+                t536,
+                -(garm_vy_leg2 * t538),
+                -(garm_vy_leg2 * t542),
+                t536,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                minus_gcross_vy_leg2 * t576,
-                -(minus_gcross_vy_leg2 * t589),
-                -(minus_gcross_vy_leg2 * t602),
-                -(minus_gcross_vy_leg2 * t587),
-                minus_gcross_vy_leg2 * t612,
+                minus_gcross_vy_leg2 * t570,
+                -(minus_gcross_vy_leg2 * t584),
+                -(minus_gcross_vy_leg2 * t598),
+                -(minus_gcross_vy_leg2 * t582),
+                minus_gcross_vy_leg2 * t608,
                 0.0,
-                garm_vy_leg2 * t627 - minus_gcross_vy_leg2 * t639,
-                garm_vy_leg2 * t651 - minus_gcross_vy_leg2 * t653,
-                garm_vy_leg2 * t670 - minus_gcross_vy_leg2 * t658,
-                garm_vy_leg2 * t630,
-                t689,
-                garm_vy_leg3 * t691,
-                garm_vy_leg3 * t695,
-                t689,
+                garm_vy_leg2 * t621 - minus_gcross_vy_leg2 * t633,
+                garm_vy_leg2 * t644 - minus_gcross_vy_leg2 * t646,
+                garm_vy_leg2 * t662 - minus_gcross_vy_leg2 * t651,
+                garm_vy_leg2 * t624,
+                t681,
+                garm_vy_leg3 * t683,
+                garm_vy_leg3 * t687,
+                t681,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t726 + t732),
-                minus_gcross_vy_leg3 * t738 + grod_vy_leg1 * (t742 - t743),
-                grod_vy_leg1 * t722 - minus_gcross_vy_leg3 * t454,
-                t732 - minus_gcross_vy_leg3 * t736,
-                minus_gcross_vy_leg3 * t464 - 1.8867924528301887 * rate_dot_cross_leg3,
-                t470,
-                -(garm_vy_leg3 * t778 + 1.8867924528301887 * t783),
-                garm_vy_leg3 * t794 - minus_gcross_vy_leg3 * t796
-                    + 1.8867924528301887 * t804,
-                garm_vy_leg3 * t813 - minus_gcross_vy_leg3 * t804,
-                t783,
-                t832,
-                garm_vy_leg4 * t834,
-                garm_vy_leg4 * t838,
-                t832,
+                -(minus_gcross_vy_leg3 * t717 + t723),
+                minus_gcross_vy_leg3 * t729 + grod_vy_leg1 * (t734 - t735),
+                grod_vy_leg1 * t713 - minus_gcross_vy_leg3 * t453,
+                t723 - minus_gcross_vy_leg3 * t727,
+                minus_gcross_vy_leg3 * t463 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t469,
+                -(garm_vy_leg3 * t769 + 1.8867924528301887 * t774),
+                garm_vy_leg3 * t785 - minus_gcross_vy_leg3 * t787
+                    + 1.8867924528301887 * t795,
+                garm_vy_leg3 * t803 - minus_gcross_vy_leg3 * t795,
+                t774,
+                t822,
+                garm_vy_leg4 * t824,
+                garm_vy_leg4 * t828,
+                t822,
                 garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
                 garm_vy_leg4,
+                -(minus_gcross_vy_leg4 * t856),
                 -(minus_gcross_vy_leg4 * t869),
-                -(minus_gcross_vy_leg4 * t887),
-                -(minus_gcross_vy_leg4 * t602),
-                -(minus_gcross_vy_leg4 * t885),
-                -(minus_gcross_vy_leg4 * t612),
+                -(minus_gcross_vy_leg4 * t598),
+                -(minus_gcross_vy_leg4 * t867),
+                -(minus_gcross_vy_leg4 * t608),
                 0.0,
-                -(minus_gcross_vy_leg4 * t922 + garm_vy_leg4 * t911),
-                garm_vy_leg4 * t936 + minus_gcross_vy_leg4 * t938,
-                garm_vy_leg4 * t954 - minus_gcross_vy_leg4 * t943,
-                garm_vy_leg4 * t914,
+                -(minus_gcross_vy_leg4 * t905 + garm_vy_leg4 * t894),
+                garm_vy_leg4 * t918 + minus_gcross_vy_leg4 * t920,
+                garm_vy_leg4 * t936 - minus_gcross_vy_leg4 * t925,
+                garm_vy_leg4 * t897,
                 t374,
             ],
             [
                 -t389, minus_garm_vz_leg1 * t390, minus_garm_vz_leg1 * t394, -t389,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t426, -(minus_gcross_vz_leg1 * t438),
-                -(minus_gcross_vz_leg1 * t454), -(minus_gcross_vz_leg1 * t436),
-                -(minus_gcross_vz_leg1 * t464), 0.0,
-                -(minus_gcross_vz_leg1 * t485 - minus_garm_vz_leg1 * t478),
-                minus_gcross_vz_leg1 * t501 - minus_garm_vz_leg1 * t499,
-                -(minus_garm_vz_leg1 * t517 + minus_gcross_vz_leg1 * t509),
-                -(minus_garm_vz_leg1 * t489), -t539, minus_garm_vz_leg2 * t540,
-                minus_garm_vz_leg2 * t544, -t539, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                minus_gcross_vz_leg1 * t425, -(minus_gcross_vz_leg1 * t438),
+                -(minus_gcross_vz_leg1 * t453), -(minus_gcross_vz_leg1 * t436),
+                -(minus_gcross_vz_leg1 * t463), 0.0,
+                -(minus_garm_vz_leg1 * t475 + minus_gcross_vz_leg1 * t483),
+                minus_gcross_vz_leg1 * t499 - minus_garm_vz_leg1 * t497,
+                -(minus_garm_vz_leg1 * t515 + minus_gcross_vz_leg1 * t507),
+                -(minus_garm_vz_leg1 * t487), -t537, minus_garm_vz_leg2 * t538,
+                minus_garm_vz_leg2 * t542, -t537, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t576, -(minus_gcross_vz_leg2 * t589),
-                -(minus_gcross_vz_leg2 * t602), -(minus_gcross_vz_leg2 * t587),
-                minus_gcross_vz_leg2 * t612, 0.0,
-                -(minus_gcross_vz_leg2 * t639 + minus_garm_vz_leg2 * t627),
-                -(minus_gcross_vz_leg2 * t653 + minus_garm_vz_leg2 * t651),
-                -(minus_gcross_vz_leg2 * t658 + minus_garm_vz_leg2 * t670),
-                -(minus_garm_vz_leg2 * t630), -t690, -(minus_garm_vz_leg3 * t691),
-                -(minus_garm_vz_leg3 * t695), -t690, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                minus_gcross_vz_leg2 * t570, -(minus_gcross_vz_leg2 * t584),
+                -(minus_gcross_vz_leg2 * t598), -(minus_gcross_vz_leg2 * t582),
+                minus_gcross_vz_leg2 * t608, 0.0,
+                -(minus_gcross_vz_leg2 * t633 + minus_garm_vz_leg2 * t621),
+                -(minus_gcross_vz_leg2 * t646 + minus_garm_vz_leg2 * t644),
+                -(minus_gcross_vz_leg2 * t651 + minus_garm_vz_leg2 * t662),
+                -(minus_garm_vz_leg2 * t624), -t682, -(minus_garm_vz_leg3 * t683),
+                -(minus_garm_vz_leg3 * t687), -t682, -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t726, -(gcross_vz_leg3 * t738), gcross_vz_leg3 * t454,
-                gcross_vz_leg3 * t736, -(gcross_vz_leg3 * t464), 0.0,
-                minus_garm_vz_leg3 * t778 + gcross_vz_leg3 * t767,
-                gcross_vz_leg3 * t796 - minus_garm_vz_leg3 * t794,
-                gcross_vz_leg3 * t804 - minus_garm_vz_leg3 * t813, -(minus_garm_vz_leg3 * t782),
-                -t833, -(minus_garm_vz_leg4 * t834), -(minus_garm_vz_leg4 * t838), -t833,
+                gcross_vz_leg3 * t717, -(gcross_vz_leg3 * t729), gcross_vz_leg3 * t453,
+                gcross_vz_leg3 * t727, -(gcross_vz_leg3 * t463), 0.0,
+                minus_garm_vz_leg3 * t769 + gcross_vz_leg3 * t760,
+                gcross_vz_leg3 * t787 - minus_garm_vz_leg3 * t785,
+                gcross_vz_leg3 * t795 - minus_garm_vz_leg3 * t803, -(minus_garm_vz_leg3 * t773),
+                -t823, -(minus_garm_vz_leg4 * t824), -(minus_garm_vz_leg4 * t828), -t823,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t869, gcross_vz_leg4 * t887, gcross_vz_leg4 * t602,
-                gcross_vz_leg4 * t885, gcross_vz_leg4 * t612, 0.0,
-                minus_garm_vz_leg4 * t911 + gcross_vz_leg4 * t922,
-                -(minus_garm_vz_leg4 * t936 + gcross_vz_leg4 * t938),
-                gcross_vz_leg4 * t943 - minus_garm_vz_leg4 * t954, -(minus_garm_vz_leg4 * t914),
+                gcross_vz_leg4 * t856, gcross_vz_leg4 * t869, gcross_vz_leg4 * t598,
+                gcross_vz_leg4 * t867, gcross_vz_leg4 * t608, 0.0,
+                minus_garm_vz_leg4 * t894 + gcross_vz_leg4 * t905,
+                -(minus_garm_vz_leg4 * t918 + gcross_vz_leg4 * t920),
+                gcross_vz_leg4 * t925 - minus_garm_vz_leg4 * t936, -(minus_garm_vz_leg4 * t897),
                 t372 + 9.81,
             ],
         ])
@@ -5172,7 +5151,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 739 operations (215 additions, 506 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 599 intermediates.
+    /// 715 operations (215 additions, 465 multiplications, 35 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 577 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5182,438 +5161,432 @@ impl Delta4 {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
         let t2 = pose[0] + 0.05 - 0.2;
-        let t4 = pose[2] * pose[2];
-        let t5 = t2 * t2 + t4;
-        let t6 = 0.16 * t5;
-        let t7 = 1.0 / t6;
-        let t8 = 0.4 * t2;
-        let t10 = pose[1] * pose[1] + -0.2809;
-        let t11 = t5 + t10;
-        let t12 = t11 + 0.04;
-        let t14 = 0.4 * pose[2];
-        let t16 = t6 - t12 * t12;
-        ::overact::guard::reach(t16, "leg1")?;
-        let t17 = ::overact::math::sqrt(t16);
-        let c_arm_leg1 = t7 * (t8 * t12 - t14 * t17);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t10));
+        let t3 = 0.4 * t2;
+        let t5 = pose[2] * pose[2];
+        let t6 = t2 * t2 + t5;
+        let t7 = pose[1] * pose[1];
+        let t8 = t7 + -0.2809;
+        let t9 = t6 + t8;
+        let t10 = t9 + 0.04;
+        let t12 = 0.4 * pose[2];
+        let t13 = 0.16 * t6;
+        let t15 = t13 - t10 * t10;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = (t3 * t10 - t12 * t16) / t13;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t8));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t25 = 0.212 * c_rod_leg1;
-        let c_cross_leg1 = (t11 + -0.04) / t25;
-        let minus_s_arm_leg1 = t7 * (t14 * t12 + t8 * t17);
-        let s_cross_leg1 = t17 / t25;
-        ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
-        let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
-            + minus_s_arm_leg1 * s_cross_leg1;
-        let t35 = 1.0 / s_cross_leg1;
-        let t36 = 5.0 * t35;
-        let garm_vx_leg1 = c_armcross_leg1 * t36;
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t44 = 0.2 * c_cross_leg1;
-        let t48 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t48;
-        let t50 = pose[1] * grod_vy_leg1;
-        let t51 = t50 * twist[1];
-        let rate_arm_leg1 = t36
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t51);
-        let t54 = rate_arm_leg1 * rate_arm_leg1;
-        let t56 = 0.53 * c_rod_leg1;
-        let t61 = t44 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t61;
-        let t63 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
+        let t25 = grod_vy_leg1 * t8;
+        let t26 = 0.4 * t25;
+        let minus_c_cross_leg1 = (t9 + -0.04) / t26;
+        let minus_s_arm_leg1 = (t12 * t10 + t3 * t16) / t13;
+        let minus_s_cross_leg1 = t16 / t26;
+        ::overact::guard::leg(minus_s_cross_leg1, 0.9471622941895194, "leg1")?;
+        let minus_c_armcross_leg1 = c_arm_leg1 * minus_c_cross_leg1
+            + minus_s_arm_leg1 * minus_s_cross_leg1;
+        let t36 = 5.0 / minus_s_cross_leg1;
+        let garm_vx_leg1 = minus_c_armcross_leg1 * t36;
+        let s_armcross_leg1 = minus_s_arm_leg1 * minus_c_cross_leg1
+            - c_arm_leg1 * minus_s_cross_leg1;
+        let t47 = pose[1] * grod_vy_leg1;
+        let t48 = t47 * twist[1];
+        let t49 = t48 - (minus_c_armcross_leg1 * twist[0] + s_armcross_leg1 * twist[2]);
+        let minus_rate_arm_leg1 = t36 * t49;
+        let t51 = 0.2 * minus_c_cross_leg1;
+        let t52 = t51 * minus_rate_arm_leg1;
+        let t57 = t52 + s_armcross_leg1 * twist[0] - minus_c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t57;
+        let t59 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t65 = rate_rod_leg1 * rate_rod_leg1;
-        let t71 = acceleration[1] + pose[1] * t65;
-        let t72 = t50 * t71;
-        let rate_dot_arm_leg1 = t36
-            * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-                + t44 * t54 + t56 * (t63 + t65) + t72);
-        let garm_vy_leg1 = t36 * t50;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
-        let t81 = pose[1] + 0.05 - 0.2;
-        let t83 = t81 * t81 + t4;
-        let t84 = 0.16 * t83;
-        let t85 = pose[0] * pose[0];
-        let t86 = 0.2809 - t85;
-        let t87 = t83 - t86;
-        let t88 = t87 + 0.04;
-        let t90 = t84 - t88 * t88;
-        ::overact::guard::reach(t90, "leg2")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t92 = 3.5599857600569598 * t86;
-        ::overact::guard::reach(t92, "leg2")?;
-        ::overact::guard::reach(t92, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t92);
+        let t61 = rate_rod_leg1 * rate_rod_leg1;
+        let t67 = acceleration[1] + t48 * rate_rod_leg1;
+        let t68 = t47 * t67;
+        let minus_rate_dot_arm_leg1 = t36
+            * (t68
+                - (minus_c_armcross_leg1 * acceleration[0]
+                    + s_armcross_leg1 * acceleration[2] + minus_rate_arm_leg1 * t52
+                    + t25 * (t59 + t61)));
+        let minus_garm_vy_leg1 = t36 * t47;
+        let minus_minus_garm_vz_leg1 = s_armcross_leg1 * t36;
+        let t77 = pose[1] + 0.05 - 0.2;
+        let t79 = t77 * t77 + t5;
+        let t80 = 0.16 * t79;
+        let t81 = pose[0] * pose[0];
+        let t82 = 0.2809 - t81;
+        let t83 = t79 - t82;
+        let t84 = t83 + 0.04;
+        let t86 = t80 - t84 * t84;
+        ::overact::guard::reach(t86, "leg2")?;
+        let t87 = ::overact::math::sqrt(t86);
+        let t89 = pose[1] - 0.05 + 0.2;
+        let t91 = t89 * t89 + t5;
+        let t92 = 0.16 * t91;
+        let t93 = t91 - t82;
+        let t94 = t93 + 0.04;
+        let t96 = t92 - t94 * t94;
+        ::overact::guard::reach(t96, "leg4")?;
+        let t97 = ::overact::math::sqrt(t96);
+        let t98 = 0.9433962264150944 * t97;
+        let t99 = 3.5599857600569598 * t82;
+        ::overact::guard::reach(t99, "leg2")?;
+        ::overact::guard::reach(t99, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t99);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t94 = 0.212 * c_rod_leg2;
-        let s_cross_leg2 = t91 / t94;
+        let t101 = t98 / c_rod_leg2;
+        let s_cross_leg4 = 5.0 * t101;
+        ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
+        let t103 = t97 / s_cross_leg4;
+        let s_cross_leg2 = t87 / t103;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t96 = 1.0 / s_cross_leg2;
-        let t97 = 5.0 * t96;
-        let t98 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t98;
-        let t100 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t97 * t100;
-        let t102 = 1.0 / t84;
-        let t103 = 0.4 * t81;
-        let c_arm_leg2 = t102 * (t103 * t88 - t14 * t91);
-        let c_cross_leg2 = (-0.04 + t87) / t94;
-        let minus_s_arm_leg2 = t102 * (t14 * t88 + t103 * t91);
+        let t105 = 5.0 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
+        let t107 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t105 * t107;
+        let t109 = 0.4 * t77;
+        let c_arm_leg2 = (t109 * t84 - t12 * t87) / t80;
+        let c_cross_leg2 = (-0.04 + t83) / t103;
+        let minus_s_arm_leg2 = (t12 * t84 + t109 * t87) / t80;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t123 = 0.2 * c_cross_leg2;
-        let t127 = t100 * twist[0];
-        let rate_arm_leg2 = t97
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t127);
-        let t130 = rate_arm_leg2 * rate_arm_leg2;
-        let t132 = 0.53 * c_rod_leg2;
+        let t132 = t107 * twist[0];
+        let t133 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t132;
+        let rate_arm_leg2 = t105 * t133;
+        let t135 = t133 * rate_arm_leg2;
+        let t136 = t135 / s_cross_leg2;
+        let t138 = minus_grod_vx_leg2 * t82;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t134 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t139 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t123 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t139;
-        let t141 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t147 = acceleration[0] + pose[0] * t134;
-        let t148 = t100 * t147;
-        let rate_dot_arm_leg2 = t97
+        let t140 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t144 = 0.2 * c_cross_leg2;
+        let t146 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t144 * rate_arm_leg2;
+        let t147 = 1.8867924528301887 * t146;
+        let t148 = t147 * t147;
+        let t149 = t107 * t148;
+        let t150 = t107 * t149;
+        let t151 = t150 + t148;
+        let t157 = acceleration[0] + t132 * minus_rate_rod_leg2;
+        let t158 = t107 * t157;
+        let rate_dot_arm_leg2 = t105
             * (c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-                + t123 * t130 + t132 * (t134 + t141) + t148);
-        let garm_vy_leg2 = c_armcross_leg2 * t97;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t97;
-        let t157 = pose[0] - 0.05 + 0.2;
-        let t159 = t157 * t157 + t4;
-        let t160 = 0.16 * t159;
-        let t161 = 1.0 / t160;
-        let t162 = 0.4 * t157;
-        let t163 = t159 + t10;
-        let t164 = t163 + 0.04;
-        let t167 = t160 - t164 * t164;
-        ::overact::guard::reach(t167, "leg3")?;
-        let t168 = ::overact::math::sqrt(t167);
-        let minus_c_arm_leg3 = t161 * (t162 * t164 + t14 * t168);
-        let c_cross_leg3 = (-0.04 + t163) / t25;
-        let s_arm_leg3 = t161 * (t162 * t168 - t14 * t164);
-        let s_cross_leg3 = t168 / t25;
-        ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
-        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
-            + s_arm_leg3 * s_cross_leg3;
-        let t182 = 1.0 / s_cross_leg3;
-        let t183 = 5.0 * t182;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t183;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let t191 = 0.2 * c_cross_leg3;
-        let rate_arm_leg3 = t183
-            * (minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t51);
-        let t197 = rate_arm_leg3 * rate_arm_leg3;
-        let t203 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
-            - t191 * rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t203;
-        let t205 = rate_cross_leg3 * rate_cross_leg3;
-        let rate_dot_arm_leg3 = t183
-            * (minus_c_armcross_leg3 * acceleration[0]
-                - s_armcross_leg3 * acceleration[2] + t191 * t197 + t56 * (t65 + t205)
-                + t72);
-        let garm_vy_leg3 = t50 * t183;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t183;
-        let t218 = pose[1] - 0.05 + 0.2;
-        let t220 = t218 * t218 + t4;
-        let t221 = 0.16 * t220;
-        let t222 = t220 - t86;
-        let t223 = t222 + 0.04;
-        let t225 = t221 - t223 * t223;
-        ::overact::guard::reach(t225, "leg4")?;
-        let t226 = ::overact::math::sqrt(t225);
-        let s_cross_leg4 = t226 / t94;
-        ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t228 = 1.0 / s_cross_leg4;
-        let t229 = 5.0 * t228;
-        let garm_vx_leg4 = t100 * t229;
-        let t231 = 1.0 / t221;
-        let t232 = 0.4 * t218;
-        let minus_c_arm_leg4 = t231 * (t232 * t223 + t14 * t226);
-        let c_cross_leg4 = (-0.04 + t222) / t94;
-        let s_arm_leg4 = t231 * (t232 * t226 - t14 * t223);
+                + c_cross_leg2 * t136 + t138 * (t140 + t151) + t158);
+        let garm_vy_leg2 = c_armcross_leg2 * t105;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t105;
+        let t167 = pose[0] - 0.05 + 0.2;
+        let t168 = 0.4 * t167;
+        let t170 = t167 * t167 + t5;
+        let t171 = t170 + t8;
+        let t172 = t171 + 0.04;
+        let t174 = 0.16 * t170;
+        let t176 = t174 - t172 * t172;
+        ::overact::guard::reach(t176, "leg3")?;
+        let t177 = ::overact::math::sqrt(t176);
+        let minus_c_arm_leg3 = (t168 * t172 + t12 * t177) / t174;
+        let minus_c_cross_leg3 = (-0.04 + t171) / t26;
+        let s_arm_leg3 = (t168 * t177 - t12 * t172) / t174;
+        let minus_s_cross_leg3 = t177 / t26;
+        ::overact::guard::leg(minus_s_cross_leg3, 0.9471622941895194, "leg3")?;
+        let minus_minus_c_armcross_leg3 = minus_c_arm_leg3 * minus_c_cross_leg3
+            + s_arm_leg3 * minus_s_cross_leg3;
+        let t191 = 5.0 / minus_s_cross_leg3;
+        let garm_vx_leg3 = minus_minus_c_armcross_leg3 * t191;
+        let s_armcross_leg3 = minus_c_arm_leg3 * minus_s_cross_leg3
+            - s_arm_leg3 * minus_c_cross_leg3;
+        let t202 = t48
+            - (minus_minus_c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2]);
+        let minus_rate_arm_leg3 = t191 * t202;
+        let t204 = t202 * minus_rate_arm_leg3;
+        let t205 = t204 / minus_s_cross_leg3;
+        let t210 = 0.2 * minus_c_cross_leg3;
+        let t212 = s_armcross_leg3 * twist[0] - minus_minus_c_armcross_leg3 * twist[2]
+            - t210 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t212;
+        let t214 = rate_cross_leg3 * rate_cross_leg3;
+        let minus_rate_dot_arm_leg3 = t191
+            * (t68
+                - (minus_minus_c_armcross_leg3 * acceleration[0]
+                    + s_armcross_leg3 * acceleration[2] + minus_c_cross_leg3 * t205
+                    + t25 * (t61 + t214)));
+        let minus_garm_vy_leg3 = t47 * t191;
+        let minus_minus_garm_vz_leg3 = s_armcross_leg3 * t191;
+        let t226 = 5.0 / s_cross_leg4;
+        let garm_vx_leg4 = t107 * t226;
+        let t228 = 0.4 * t89;
+        let minus_c_arm_leg4 = (t228 * t94 + t12 * t97) / t92;
+        let c_cross_leg4 = (-0.04 + t93) / t103;
+        let s_arm_leg4 = (t228 * t97 - t12 * t94) / t92;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t252 = 0.2 * c_cross_leg4;
-        let rate_arm_leg4 = t229
-            * (minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t127);
-        let t258 = rate_arm_leg4 * rate_arm_leg4;
-        let t264 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
-            - t252 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t264;
-        let t266 = rate_cross_leg4 * rate_cross_leg4;
-        let t267 = t134 + t266;
-        let rate_dot_arm_leg4 = t229
+        let t251 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t132;
+        let rate_arm_leg4 = t226 * t251;
+        let t253 = t251 * rate_arm_leg4;
+        let t254 = t253 / s_cross_leg4;
+        let t259 = 0.2 * c_cross_leg4;
+        let t261 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
+            - t259 * rate_arm_leg4;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t261;
+        let t263 = rate_cross_leg4 * rate_cross_leg4;
+        let t264 = t140 + t263;
+        let rate_dot_arm_leg4 = t226
             * (minus_c_armcross_leg4 * acceleration[1]
-                - s_armcross_leg4 * acceleration[2] + t252 * t258 + t132 * t267 + t148);
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t229;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t229;
-        let t278 = 9.81 * c_arm_leg1;
-        let t282 = 9.81 * c_arm_leg2;
-        let t286 = 9.81 * minus_c_arm_leg3;
-        let t290 = 9.81 * minus_c_arm_leg4;
-        let t294 = 9.81 * minus_s_arm_leg1;
-        let t298 = 9.81 * minus_s_arm_leg2;
-        let t302 = 9.81 * s_arm_leg3;
-        let t306 = 9.81 * s_arm_leg4;
-        let t334 = t35 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t334;
-        let t337 = rate_rod_leg1 * (1.8867924528301887 * t61);
+                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t254 + t138 * t264
+                + t158);
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t226;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t226;
+        let t275 = 9.81 * c_arm_leg1;
+        let t279 = 9.81 * c_arm_leg2;
+        let t283 = 9.81 * minus_c_arm_leg3;
+        let t287 = 9.81 * minus_c_arm_leg4;
+        let t291 = 9.81 * minus_s_arm_leg1;
+        let t295 = 9.81 * minus_s_arm_leg2;
+        let t299 = 9.81 * s_arm_leg3;
+        let t303 = 9.81 * s_arm_leg4;
+        let t319 = -minus_rate_arm_leg1;
+        let t326 = -minus_rate_arm_leg3;
+        let t333 = grod_vy_leg1 / minus_s_cross_leg1;
+        let minus_minus_gcross_vx_leg1 = c_arm_leg1 * t333;
+        let t336 = rate_rod_leg1 * (1.8867924528301887 * t57);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t339 = 0.2 * rate_dot_arm_leg1;
-        let t344 = 0.2 * t54;
-        let t346 = t51 * minus_rate_cross_leg1;
+        let t342 = t49 * minus_rate_arm_leg1;
+        let t343 = t48 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t339 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t344 + t346 + t346);
-        let t352 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t354 = t337 + t352 + t337;
-        let t355 = c_rod_leg1 * t354;
-        let t356 = t50 * t355;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t44 * garm_vy_leg1);
-        let t361 = pose[1] * minus_rate_cross_leg1;
-        let t363 = 3.5599857600569598 * (minus_rate_cross_leg1 * t361);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t334;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t123 * garm_vx_leg2);
-        let t370 = minus_rate_rod_leg2 * (1.8867924528301887 * t139);
+            * (t51 * minus_rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+                - minus_c_armcross_leg1 * acceleration[2] + t343 - t342 + t343);
+        let t349 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t351 = t336 + t349 + t336;
+        let t352 = c_rod_leg1 * t351;
+        let t353 = t47 * t352;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t51 * minus_garm_vy_leg1);
+        let t359 = 3.5599857600569598 * (pose[1] * t59);
+        let minus_minus_gcross_vz_leg1 = minus_s_arm_leg1 * t333;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t144 * garm_vx_leg2);
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t375 = 0.2 * t130;
-        let t377 = t127 * minus_rate_cross_leg2;
-        let t381 = 0.2 * rate_dot_arm_leg2;
+        let t366 = minus_rate_rod_leg2 * t147;
+        let t371 = minus_rate_rod_leg2 * (t107 * t146);
+        let t375 = 0.2 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
             * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + s_cross_leg2 * t375 + t377 + t377 + c_cross_leg2 * t381);
-        let t385 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t387 = t370 + t385 + t370;
-        let t388 = c_rod_leg2 * t387;
-        let t389 = t100 * t388;
-        let t391 = pose[0] * minus_rate_cross_leg2;
-        let t393 = 3.5599857600569598 * (t139 * t391);
-        let t394 = minus_grod_vx_leg2 * t393;
-        let t396 = t96 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t396;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t396;
-        let t401 = grod_vy_leg1 * t182;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t401;
-        let t404 = rate_rod_leg1 * (1.8867924528301887 * t203);
-        let t408 = 0.2 * t197;
-        let t410 = t51 * rate_cross_leg3;
-        let t414 = 0.2 * rate_dot_arm_leg3;
+                + t135 + t371 + t371 + c_cross_leg2 * t375);
+        let t379 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t381 = t366 + t379 + t366;
+        let t382 = minus_s_rod_leg2 * t381;
+        let t384 = minus_grod_vx_leg2 * t149;
+        let t386 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t386;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t386;
+        let t391 = grod_vy_leg1 / minus_s_cross_leg3;
+        let gcross_vx_leg3 = minus_c_arm_leg3 * t391;
+        let t394 = rate_rod_leg1 * (1.8867924528301887 * t212);
+        let t398 = t48 * rate_cross_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
             * (s_armcross_leg3 * acceleration[0]
-                + minus_c_armcross_leg3 * acceleration[2]
-                - (s_cross_leg3 * t408 - t410 - t410) - c_cross_leg3 * t414);
-        let t418 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t420 = t404 + t418 + t404;
-        let t421 = c_rod_leg1 * t420;
-        let t422 = t50 * t421;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t191 * garm_vy_leg3);
-        let t427 = pose[1] * rate_cross_leg3;
-        let t429 = 3.5599857600569598 * (rate_cross_leg3 * t427);
-        let gcross_vz_leg3 = s_arm_leg3 * t401;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t252 * garm_vx_leg4);
-        let t436 = minus_rate_rod_leg2 * (1.8867924528301887 * t264);
-        let t440 = 0.2 * t258;
-        let t442 = t127 * rate_cross_leg4;
-        let t446 = 0.2 * rate_dot_arm_leg4;
+                - minus_minus_c_armcross_leg3 * acceleration[2] + t204 + t398 + t398
+                - t210 * minus_rate_dot_arm_leg3);
+        let t405 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t407 = t394 + t405 + t394;
+        let t408 = s_rod_leg1 * t407;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t210 * minus_garm_vy_leg3);
+        let t414 = 3.5599857600569598 * (pose[1] * t214);
+        let minus_gcross_vz_leg3 = s_arm_leg3 * t391;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t259 * garm_vx_leg4);
+        let t421 = minus_rate_rod_leg2 * (1.8867924528301887 * t261);
+        let t425 = t132 * rate_cross_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * acceleration[1]
-                + minus_c_armcross_leg4 * acceleration[2]
-                - (s_cross_leg4 * t440 - t442 - t442) - c_cross_leg4 * t446);
-        let t450 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t452 = t436 + t450 + t436;
-        let t453 = c_rod_leg2 * t452;
-        let t454 = t100 * t453;
-        let t456 = t264 * t264;
-        let t457 = 3.5599857600569598 * t456;
-        let t458 = t100 * t457;
-        let t459 = minus_grod_vx_leg2 * t458;
-        let t461 = minus_grod_vx_leg2 * t228;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t461;
-        let gcross_vz_leg4 = s_arm_leg4 * t461;
-        let t466 = t356 - minus_rate_dot_cross_leg1;
-        let t468 = t50 * t466 - t355;
-        let t470 = t361 * t361;
-        let t478 = t389 - minus_rate_dot_cross_leg2;
-        let t480 = t388 - t100 * t478;
-        let t482 = t391 * t391;
-        let t490 = rate_dot_cross_leg3 - t422;
-        let t492 = t50 * t490 + t421;
-        let t495 = t427 * t427;
-        let t506 = rate_dot_cross_leg4 - t454;
-        let t508 = t453 + t100 * t506;
-        let t513 = t56 * t363;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t71;
-        let t517 = 3.5599857600569598 * t470;
-        let t520 = s_rod_leg1 * (t513 + rate_dot_rod_leg1) + c_rod_leg1 * (t65 - t517);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t147;
-        let t529 = 3.5599857600569598 * t482;
-        let t532 = minus_s_rod_leg2 * (t393 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t134 - t529);
-        let t564 = 1.8867924528301887 * acceleration[1];
-        let t570 = 1.8867924528301887 * acceleration[0];
-        let t588 = 0.9433962264150944 * t17;
-        let t596 = t588 * (t513 - rate_dot_rod_leg1) + t50 * t588 * (t517 + t65)
-            + t44 * t354;
-        let t598 = t339 - t278;
-        let t600 = t294 - t344;
-        let t603 = s_rod_leg1 * (c_cross_leg1 * t598 - s_cross_leg1 * t600);
-        let t611 = c_cross_leg1 * t600 + s_cross_leg1 * t598;
-        let t617 = 0.9433962264150944 * t91;
-        let t625 = t617 * (minus_rate_dot_rod_leg2 - t393) - t100 * t617 * (t529 + t134)
-            - t123 * t387;
-        let t627 = t381 - t282;
-        let t629 = t298 - t375;
-        let t632 = minus_s_rod_leg2 * (c_cross_leg2 * t627 - s_cross_leg2 * t629);
-        let t637 = c_cross_leg2 * t629 + s_cross_leg2 * t627;
-        let t646 = 0.9433962264150944 * t168;
-        let t656 = t646 * (rate_dot_rod_leg1 - t56 * t429)
-            - t50 * t646 * (3.5599857600569598 * t495 + t65) + t191 * t420;
-        let t658 = t302 + t408;
-        let t660 = t286 + t414;
-        let t663 = s_rod_leg1 * (s_cross_leg3 * t658 + c_cross_leg3 * t660);
-        let t671 = s_cross_leg3 * t660 - c_cross_leg3 * t658;
-        let t677 = 0.9433962264150944 * t226;
-        let t685 = t677 * (t458 - minus_rate_dot_rod_leg2) + t100 * t677 * (t267 - t457)
-            - t252 * t452;
-        let t687 = t306 + t440;
-        let t689 = t290 + t446;
-        let t692 = minus_s_rod_leg2 * (s_cross_leg4 * t687 + c_cross_leg4 * t689);
-        let t697 = s_cross_leg4 * t689 - c_cross_leg4 * t687;
-        let t709 = t44 * t63 - minus_rate_dot_cross_leg1 * (0.2 * s_cross_leg1);
-        let t722 = t123 * t141 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
-        let t735 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t191 * t205;
-        let t748 = rate_dot_cross_leg4 * (0.2 * s_cross_leg4) + t252 * t266;
+                + minus_c_armcross_leg4 * acceleration[2] - (t253 - t425 - t425)
+                - t259 * rate_dot_arm_leg4);
+        let t432 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t434 = t421 + t432 + t421;
+        let t435 = c_rod_leg2 * t434;
+        let t436 = t107 * t435;
+        let t438 = t99 * t263;
+        let t439 = t107 * t438;
+        let t440 = minus_grod_vx_leg2 * t439;
+        let t442 = minus_grod_vx_leg2 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t442;
+        let gcross_vz_leg4 = s_arm_leg4 * t442;
+        let t447 = t353 - minus_rate_dot_cross_leg1;
+        let t449 = t47 * t447 - t352;
+        let t451 = t7 + t8;
+        let t459 = t382 - minus_rate_dot_cross_leg2;
+        let t461 = c_rod_leg2 * t381 - t107 * t459;
+        let t468 = rate_dot_cross_leg3 - t408;
+        let t471 = t47 * t468 + c_rod_leg1 * t407;
+        let t483 = rate_dot_cross_leg4 - t436;
+        let t485 = t435 + t107 * t483;
+        let t490 = t25 * t359;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t67;
+        let t494 = t47 * t490;
+        let t497 = s_rod_leg1 * (rate_dot_rod_leg1 - t490) + c_rod_leg1 * (t61 + t494);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t157;
+        let t508 = minus_s_rod_leg2 * (t149 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t140 - t150);
+        let t540 = 1.8867924528301887 * acceleration[1];
+        let t546 = 1.8867924528301887 * acceleration[0];
+        let t564 = 0.9433962264150944 * t16;
+        let t572 = t47 * t564 * (t61 - t494) - t564 * (t490 + rate_dot_rod_leg1)
+            - t51 * t351;
+        let t575 = 0.2 * minus_rate_dot_arm_leg1 + t275;
+        let t578 = t291 - t342 / minus_s_cross_leg1;
+        let t581 = s_rod_leg1 * (minus_c_cross_leg1 * t575 + minus_s_cross_leg1 * t578);
+        let t589 = minus_s_cross_leg1 * t575 - minus_c_cross_leg1 * t578;
+        let t595 = 0.9433962264150944 * t87;
+        let t603 = t595 * (minus_rate_dot_rod_leg2 - t149) - t107 * t595 * (t150 + t140)
+            - t144 * t381;
+        let t605 = t375 - t279;
+        let t607 = t295 - t136;
+        let t610 = minus_s_rod_leg2 * (c_cross_leg2 * t605 - s_cross_leg2 * t607);
+        let t615 = c_cross_leg2 * t607 + s_cross_leg2 * t605;
+        let t624 = 0.9433962264150944 * t177;
+        let t625 = t25 * t414;
+        let t634 = t624 * (rate_dot_rod_leg1 + t625) - t47 * t624 * (t61 - t47 * t625)
+            - t210 * t407;
+        let t636 = t299 + t205;
+        let t639 = t283 - 0.2 * minus_rate_dot_arm_leg3;
+        let t642 = s_rod_leg1 * (minus_s_cross_leg3 * t636 + minus_c_cross_leg3 * t639);
+        let t650 = minus_c_cross_leg3 * t636 - minus_s_cross_leg3 * t639;
+        let t663 = t98 * (t439 - minus_rate_dot_rod_leg2)
+            + minus_s_rod_leg2 * t101 * (t264 - t438) - t259 * t434;
+        let t665 = t303 + t254;
+        let t668 = t287 + 0.2 * rate_dot_arm_leg4;
+        let t671 = minus_s_rod_leg2 * (s_cross_leg4 * t665 + c_cross_leg4 * t668);
+        let t676 = s_cross_leg4 * t668 - c_cross_leg4 * t665;
+        let t688 = t51 * t59 + minus_rate_dot_cross_leg1 * (t564 / c_rod_leg1);
+        let t701 = t144 * t151 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
+        let t714 = rate_dot_cross_leg3 * (0.2 * minus_s_cross_leg3) + t210 * t214;
+        let t726 = rate_dot_cross_leg4 * t101 + t259 * t263;
         Ok([
             [
-                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, garm_vx_leg4 * rate_dot_arm_leg4,
-                -(garm_vx_leg1 * t278), -(garm_vx_leg2 * t282), garm_vx_leg3 * t286,
-                garm_vx_leg4 * t290, -(garm_vx_leg1 * t294), -(garm_vx_leg2 * t298),
-                garm_vx_leg3 * t302, garm_vx_leg4 * t306, garm_vx_leg1 * rate_arm_leg1,
-                garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
-                garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
+                acceleration[0], -(garm_vx_leg1 * minus_rate_dot_arm_leg1),
+                garm_vx_leg2 * rate_dot_arm_leg2, -(garm_vx_leg3 * minus_rate_dot_arm_leg3),
+                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t275), -(garm_vx_leg2 * t279),
+                garm_vx_leg3 * t283, garm_vx_leg4 * t287, -(garm_vx_leg1 * t291),
+                -(garm_vx_leg2 * t295), garm_vx_leg3 * t299, garm_vx_leg4 * t303,
+                -(garm_vx_leg1 * minus_rate_arm_leg1), garm_vx_leg2 * rate_arm_leg2,
+                -(garm_vx_leg3 * minus_rate_arm_leg3), garm_vx_leg4 * rate_arm_leg4,
+                ::overact::math::signed(garm_vx_leg1, t319),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
-                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vx_leg3, t326),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t356,
-                minus_gcross_vx_leg2 * t389 - t394, -(minus_gcross_vx_leg3 * t422),
-                -(minus_gcross_vx_leg4 * t454 + t459), -(minus_gcross_vx_leg1 * t468),
-                -(minus_gcross_vx_leg2 * t480
-                    + 6.716954264258415 * (t98 * (t482 - t139 * t139))),
-                minus_gcross_vx_leg3 * t492,
-                6.716954264258415 * (t98 * (t85 * t266 - t456))
-                    - minus_gcross_vx_leg4 * t508,
-                -(minus_gcross_vx_leg1 * t520),
-                -(minus_gcross_vx_leg2 * t532 + minus_grod_vx_leg2 * t385),
-                -(minus_gcross_vx_leg3 * t520),
-                minus_grod_vx_leg2 * t450 - minus_gcross_vx_leg4 * t532,
-                -(minus_gcross_vx_leg1 * t466),
-                t394 - minus_gcross_vx_leg2 * t478,
-                -(minus_gcross_vx_leg3 * t490),
-                t459 - minus_gcross_vx_leg4 * t506,
-                -(minus_gcross_vx_leg1 * t564),
-                minus_gcross_vx_leg2 * t570
+                garm_vx_leg3, garm_vx_leg4, -(minus_minus_gcross_vx_leg1 * t353),
+                minus_gcross_vx_leg2 * t382 - t384, gcross_vx_leg3 * t408,
+                -(minus_gcross_vx_leg4 * t436 + t440), minus_minus_gcross_vx_leg1 * t449,
+                -(minus_gcross_vx_leg2 * t461 + minus_grod_vx_leg2 * (t150 - t148)),
+                -(gcross_vx_leg3 * t471),
+                6.716954264258415 * (t263 * (t81 - t82) / c_rod_leg2)
+                    - minus_gcross_vx_leg4 * t485,
+                minus_minus_gcross_vx_leg1 * t497,
+                -(minus_gcross_vx_leg2 * t508 + minus_grod_vx_leg2 * t379),
+                gcross_vx_leg3 * t497,
+                minus_grod_vx_leg2 * t432 - minus_gcross_vx_leg4 * t508,
+                minus_minus_gcross_vx_leg1 * t447,
+                t384 - minus_gcross_vx_leg2 * t459,
+                gcross_vx_leg3 * t468,
+                t440 - minus_gcross_vx_leg4 * t483,
+                minus_minus_gcross_vx_leg1 * t540,
+                minus_gcross_vx_leg2 * t546
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                minus_gcross_vx_leg3 * t564,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t570,
+                -(gcross_vx_leg3 * t540),
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t546,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t596 + minus_gcross_vx_leg1 * t603,
-                garm_vx_leg2 * t625 - minus_gcross_vx_leg2 * t632
-                    + 1.8867924528301887 * t637,
-                garm_vx_leg3 * t656 - minus_gcross_vx_leg3 * t663,
-                garm_vx_leg4 * t685 + minus_gcross_vx_leg4 * t692
-                    - 1.8867924528301887 * t697,
-                garm_vx_leg1 * t709 - minus_gcross_vx_leg1 * t611,
-                garm_vx_leg2 * t722 - minus_gcross_vx_leg2 * t637,
-                garm_vx_leg3 * t735 - minus_gcross_vx_leg3 * t671,
-                garm_vx_leg4 * t748 - minus_gcross_vx_leg4 * t697,
+                garm_vx_leg1 * t572 - minus_minus_gcross_vx_leg1 * t581,
+                garm_vx_leg2 * t603 - minus_gcross_vx_leg2 * t610
+                    + 1.8867924528301887 * t615,
+                garm_vx_leg3 * t634 - gcross_vx_leg3 * t642,
+                garm_vx_leg4 * t663 + minus_gcross_vx_leg4 * t671
+                    - 1.8867924528301887 * t676,
+                minus_minus_gcross_vx_leg1 * t589 - garm_vx_leg1 * t688,
+                garm_vx_leg2 * t701 - minus_gcross_vx_leg2 * t615,
+                gcross_vx_leg3 * t650 - garm_vx_leg3 * t714,
+                garm_vx_leg4 * t726 - minus_gcross_vx_leg4 * t676,
             ],
             [
-                acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                garm_vy_leg3 * rate_dot_arm_leg3, garm_vy_leg4 * rate_dot_arm_leg4,
-                -(garm_vy_leg1 * t278), -(garm_vy_leg2 * t282), garm_vy_leg3 * t286,
-                garm_vy_leg4 * t290, -(garm_vy_leg1 * t294), -(garm_vy_leg2 * t298),
-                garm_vy_leg3 * t302, garm_vy_leg4 * t306, garm_vy_leg1 * rate_arm_leg1,
-                garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
-                garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
+                acceleration[1], minus_garm_vy_leg1 * minus_rate_dot_arm_leg1,
+                garm_vy_leg2 * rate_dot_arm_leg2, minus_garm_vy_leg3 * minus_rate_dot_arm_leg3,
+                garm_vy_leg4 * rate_dot_arm_leg4, minus_garm_vy_leg1 * t275, -(garm_vy_leg2 * t279),
+                -(minus_garm_vy_leg3 * t283), garm_vy_leg4 * t287, minus_garm_vy_leg1 * t291,
+                -(garm_vy_leg2 * t295), -(minus_garm_vy_leg3 * t299), garm_vy_leg4 * t303,
+                minus_garm_vy_leg1 * minus_rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                minus_garm_vy_leg3 * minus_rate_arm_leg3, garm_vy_leg4 * rate_arm_leg4,
+                -::overact::math::signed(minus_garm_vy_leg1, t319),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
-                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
-                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t356 - t363,
-                minus_gcross_vy_leg2 * t389, -(minus_gcross_vy_leg3 * t422 + t429),
-                -(minus_gcross_vy_leg4 * t454),
-                6.716954264258415 * (t48 * (t470 - t61 * t61))
-                    - minus_gcross_vy_leg1 * t468,
-                -(minus_gcross_vy_leg2 * t480),
-                -(6.716954264258415 * (t48 * (t495 - t203 * t203))
-                    - minus_gcross_vy_leg3 * t492),
+                -::overact::math::signed(minus_garm_vy_leg3, t326),
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), -minus_garm_vy_leg1,
+                garm_vy_leg2, -minus_garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t353 - t359,
+                minus_gcross_vy_leg2 * t382, -(minus_gcross_vy_leg3 * t408 + t414),
+                -(minus_gcross_vy_leg4 * t436),
+                6.716954264258415 * (t59 * t451 / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t449,
+                -(minus_gcross_vy_leg2 * t461),
+                -(6.716954264258415 * (t214 * t451 / c_rod_leg1)
+                    - minus_gcross_vy_leg3 * t471),
+                -(minus_gcross_vy_leg4 * t485),
+                -(minus_gcross_vy_leg1 * t497 + grod_vy_leg1 * t349),
+                -(minus_gcross_vy_leg2 * t508),
+                grod_vy_leg1 * t405 - minus_gcross_vy_leg3 * t497,
                 -(minus_gcross_vy_leg4 * t508),
-                -(minus_gcross_vy_leg1 * t520 + grod_vy_leg1 * t352),
-                -(minus_gcross_vy_leg2 * t532),
-                grod_vy_leg1 * t418 - minus_gcross_vy_leg3 * t520,
-                -(minus_gcross_vy_leg4 * t532),
-                t363 - minus_gcross_vy_leg1 * t466,
-                -(minus_gcross_vy_leg2 * t478),
-                t429 - minus_gcross_vy_leg3 * t490,
-                -(minus_gcross_vy_leg4 * t506),
-                -(minus_gcross_vy_leg1 * t564
+                t359 - minus_gcross_vy_leg1 * t447,
+                -(minus_gcross_vy_leg2 * t459),
+                t414 - minus_gcross_vy_leg3 * t468,
+                -(minus_gcross_vy_leg4 * t483),
+                -(minus_gcross_vy_leg1 * t540
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t570,
-                minus_gcross_vy_leg3 * t564 - 1.8867924528301887 * rate_dot_cross_leg3,
-                -(minus_gcross_vy_leg4 * t570),
+                minus_gcross_vy_leg2 * t546,
+                minus_gcross_vy_leg3 * t540 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t546),
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t596 + minus_gcross_vy_leg1 * t603
-                    - 1.8867924528301887 * t611,
-                garm_vy_leg2 * t625 - minus_gcross_vy_leg2 * t632,
-                garm_vy_leg3 * t656 - minus_gcross_vy_leg3 * t663
-                    + 1.8867924528301887 * t671,
-                garm_vy_leg4 * t685 + minus_gcross_vy_leg4 * t692,
-                garm_vy_leg1 * t709 - minus_gcross_vy_leg1 * t611,
-                garm_vy_leg2 * t722 - minus_gcross_vy_leg2 * t637,
-                garm_vy_leg3 * t735 - minus_gcross_vy_leg3 * t671,
-                garm_vy_leg4 * t748 - minus_gcross_vy_leg4 * t697,
+                minus_gcross_vy_leg1 * t581 - minus_garm_vy_leg1 * t572
+                    - 1.8867924528301887 * t589,
+                garm_vy_leg2 * t603 - minus_gcross_vy_leg2 * t610,
+                minus_gcross_vy_leg3 * t642 - minus_garm_vy_leg3 * t634
+                    + 1.8867924528301887 * t650,
+                garm_vy_leg4 * t663 + minus_gcross_vy_leg4 * t671,
+                minus_garm_vy_leg1 * t688 - minus_gcross_vy_leg1 * t589,
+                garm_vy_leg2 * t701 - minus_gcross_vy_leg2 * t615,
+                minus_garm_vy_leg3 * t714 - minus_gcross_vy_leg3 * t650,
+                garm_vy_leg4 * t726 - minus_gcross_vy_leg4 * t676,
             ],
             [
-                acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
+                acceleration[2] + 9.81, -(minus_minus_garm_vz_leg1 * minus_rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t278,
-                minus_garm_vz_leg2 * t282, -(minus_garm_vz_leg3 * t286),
-                -(minus_garm_vz_leg4 * t290), minus_garm_vz_leg1 * t294, minus_garm_vz_leg2 * t298,
-                -(minus_garm_vz_leg3 * t302), -(minus_garm_vz_leg4 * t306),
-                -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
-                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
+                -(minus_minus_garm_vz_leg3 * minus_rate_dot_arm_leg3),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), -(minus_minus_garm_vz_leg1 * t275),
+                minus_garm_vz_leg2 * t279, minus_minus_garm_vz_leg3 * t283,
+                -(minus_garm_vz_leg4 * t287), -(minus_minus_garm_vz_leg1 * t291),
+                minus_garm_vz_leg2 * t295, minus_minus_garm_vz_leg3 * t299,
+                -(minus_garm_vz_leg4 * t303), -(minus_minus_garm_vz_leg1 * minus_rate_arm_leg1),
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_garm_vz_leg3 * minus_rate_arm_leg3),
+                -(minus_garm_vz_leg4 * rate_arm_leg4),
+                ::overact::math::signed(minus_minus_garm_vz_leg1, t319),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
-                -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t356, minus_gcross_vz_leg2 * t389, gcross_vz_leg3 * t422,
-                gcross_vz_leg4 * t454, -(minus_gcross_vz_leg1 * t468),
-                -(minus_gcross_vz_leg2 * t480), -(gcross_vz_leg3 * t492), gcross_vz_leg4 * t508,
-                -(minus_gcross_vz_leg1 * t520), -(minus_gcross_vz_leg2 * t532),
-                gcross_vz_leg3 * t520, gcross_vz_leg4 * t532, -(minus_gcross_vz_leg1 * t466),
-                -(minus_gcross_vz_leg2 * t478), gcross_vz_leg3 * t490, gcross_vz_leg4 * t506,
-                -(minus_gcross_vz_leg1 * t564), minus_gcross_vz_leg2 * t570,
-                -(gcross_vz_leg3 * t564), gcross_vz_leg4 * t570, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t603 - minus_garm_vz_leg1 * t596,
-                -(minus_gcross_vz_leg2 * t632 + minus_garm_vz_leg2 * t625),
-                gcross_vz_leg3 * t663 - minus_garm_vz_leg3 * t656,
-                -(minus_garm_vz_leg4 * t685 + gcross_vz_leg4 * t692),
-                -(minus_garm_vz_leg1 * t709 + minus_gcross_vz_leg1 * t611),
-                -(minus_gcross_vz_leg2 * t637 + minus_garm_vz_leg2 * t722),
-                gcross_vz_leg3 * t671 - minus_garm_vz_leg3 * t735,
-                gcross_vz_leg4 * t697 - minus_garm_vz_leg4 * t748,
+                ::overact::math::signed(minus_minus_garm_vz_leg3, t326),
+                -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4),
+                minus_minus_garm_vz_leg1, -minus_garm_vz_leg2, minus_minus_garm_vz_leg3,
+                -minus_garm_vz_leg4, -(minus_minus_gcross_vz_leg1 * t353),
+                minus_gcross_vz_leg2 * t382, -(minus_gcross_vz_leg3 * t408), gcross_vz_leg4 * t436,
+                minus_minus_gcross_vz_leg1 * t449, -(minus_gcross_vz_leg2 * t461),
+                minus_gcross_vz_leg3 * t471, gcross_vz_leg4 * t485,
+                minus_minus_gcross_vz_leg1 * t497, -(minus_gcross_vz_leg2 * t508),
+                -(minus_gcross_vz_leg3 * t497), gcross_vz_leg4 * t508,
+                minus_minus_gcross_vz_leg1 * t447, -(minus_gcross_vz_leg2 * t459),
+                -(minus_gcross_vz_leg3 * t468), gcross_vz_leg4 * t483,
+                minus_minus_gcross_vz_leg1 * t540, minus_gcross_vz_leg2 * t546,
+                minus_gcross_vz_leg3 * t540, gcross_vz_leg4 * t546, 0.0, 0.0,
+                minus_minus_garm_vz_leg1 * t572 - minus_minus_gcross_vz_leg1 * t581,
+                -(minus_gcross_vz_leg2 * t610 + minus_garm_vz_leg2 * t603),
+                minus_gcross_vz_leg3 * t642 + minus_minus_garm_vz_leg3 * t634,
+                -(minus_garm_vz_leg4 * t663 + gcross_vz_leg4 * t671),
+                -(minus_minus_garm_vz_leg1 * t688 - minus_minus_gcross_vz_leg1 * t589),
+                -(minus_gcross_vz_leg2 * t615 + minus_garm_vz_leg2 * t701),
+                -(minus_gcross_vz_leg3 * t650 + minus_minus_garm_vz_leg3 * t714),
+                gcross_vz_leg4 * t676 - minus_garm_vz_leg4 * t726,
             ],
         ])
     }
@@ -5628,7 +5601,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 681 operations (187 additions, 486 multiplications, 8 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 558 intermediates.
+    /// 666 operations (190 additions, 456 multiplications, 20 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 543 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5656,297 +5629,280 @@ impl Delta4 {
         ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t11 = 1.0 / s_cross_leg1;
-        let t12 = 5.0 * t11;
-        let garm_vx_leg1 = c_armcross_leg1 * t12;
-        let t17 = 0.2 * c_cross_leg1;
-        let t23 = 1.0 / c_rod_leg1;
-        let t24 = s_rod_leg1 * t23;
-        let t25 = t24 * twist[1];
-        let rate_arm_leg1 = t12
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t25);
-        let t28 = rate_arm_leg1 * rate_arm_leg1;
-        let t30 = 0.53 * c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t23;
-        let t36 = t17 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let t11 = 5.0 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t11;
+        let t21 = s_rod_leg1 / c_rod_leg1;
+        let t22 = t21 * twist[1];
+        let t23 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t22;
+        let rate_arm_leg1 = t11 * t23;
+        let t25 = t23 * rate_arm_leg1;
+        let t26 = t25 / s_cross_leg1;
+        let t28 = 0.53 * c_rod_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
+        let t30 = 0.2 * c_cross_leg1;
+        let t35 = t30 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t36;
-        let t38 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
+        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t40 = rate_rod_leg1 * rate_rod_leg1;
-        let t46 = acceleration[1] + t25 * rate_rod_leg1;
-        let t48 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t17 * t28 + t30 * (t38 + t40) + t24 * t46;
-        let rate_dot_arm_leg1 = t12 * t48;
-        let garm_vy_leg1 = t12 * t24;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t12;
-        let t57 = 1.0 / s_cross_leg2;
-        let t58 = 5.0 * t57;
-        let t61 = 1.0 / c_rod_leg2;
-        let t62 = s_rod_leg2 * t61;
-        let minus_garm_vx_leg2 = t58 * t62;
+        let t39 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = acceleration[1] + t22 * rate_rod_leg1;
+        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t26 + t28 * (t37 + t39) + t21 * t45;
+        let rate_dot_arm_leg1 = t11 * t47;
+        let garm_vy_leg1 = t11 * t21;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
+        let t56 = 5.0 / s_cross_leg2;
+        let t59 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t56 * t59;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t75 = 0.2 * c_cross_leg2;
-        let t79 = t62 * twist[0];
-        let rate_arm_leg2 = t58
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t79);
-        let t82 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t61;
+        let t72 = 0.2 * c_cross_leg2;
+        let t76 = t59 * twist[0];
+        let rate_arm_leg2 = t56
+            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t76);
+        let t79 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t87 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t92 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t75 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t92;
-        let t94 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t100 = acceleration[0] - t79 * minus_rate_rod_leg2;
-        let t102 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t75 * t82 + 0.53 * c_rod_leg2 * (t87 + t94) - t62 * t100;
-        let rate_dot_arm_leg2 = t58 * t102;
-        let garm_vy_leg2 = c_armcross_leg2 * t58;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t58;
+        let t84 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t89 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t72 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t89;
+        let t91 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t97 = acceleration[0] - t76 * minus_rate_rod_leg2;
+        let t99 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + t72 * t79 + 0.53 * c_rod_leg2 * (t84 + t91) - t59 * t97;
+        let rate_dot_arm_leg2 = t56 * t99;
+        let garm_vy_leg2 = c_armcross_leg2 * t56;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t119 = 1.0 / s_cross_leg3;
-        let t120 = 5.0 * t119;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t120;
-        let t122 = 0.2 * c_cross_leg3;
-        let t128 = 1.0 / c_rod_leg3;
-        let t129 = s_rod_leg3 * t128;
-        let t130 = t129 * twist[1];
-        let minus_rate_arm_leg3 = t120
-            * (c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t130);
-        let t133 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t135 = 0.53 * c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 * t128;
+        let t116 = 5.0 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t116;
+        let t123 = s_rod_leg3 / c_rod_leg3;
+        let t124 = t123 * twist[1];
+        let t125 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t124;
+        let minus_rate_arm_leg3 = t116 * t125;
+        let t127 = 0.2 * c_cross_leg3;
+        let t128 = t127 * minus_rate_arm_leg3;
+        let t130 = 0.53 * c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.8867924528301887 / c_rod_leg3;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t138 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t143 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
-            + t122 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t143;
-        let t145 = rate_cross_leg3 * rate_cross_leg3;
-        let t154 = acceleration[1] - t130 * minus_rate_rod_leg3;
-        let t156 = t122 * t133 + t135 * (t138 + t145)
+        let t133 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t137 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2] + t128;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t137;
+        let t139 = rate_cross_leg3 * rate_cross_leg3;
+        let t148 = acceleration[1] - t124 * minus_rate_rod_leg3;
+        let t150 = minus_rate_arm_leg3 * t128 + t130 * (t133 + t139)
             - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2])
-            - t129 * t154;
-        let rate_dot_arm_leg3 = t120 * t156;
-        let minus_garm_vy_leg3 = t120 * t129;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t120;
-        let t165 = 1.0 / s_cross_leg4;
-        let t166 = 5.0 * t165;
-        let t169 = 1.0 / c_rod_leg4;
-        let t170 = s_rod_leg4 * t169;
-        let garm_vx_leg4 = t166 * t170;
-        let t172 = 0.2 * c_cross_leg4;
-        let t173 = t170 * twist[0];
+            - t123 * t148;
+        let rate_dot_arm_leg3 = t116 * t150;
+        let minus_garm_vy_leg3 = t116 * t123;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t116;
+        let t159 = 1.0 / s_cross_leg4;
+        let t160 = 5.0 * t159;
+        let t163 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t160 * t163;
+        let t165 = t163 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let rate_arm_leg4 = t166
-            * (t173 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]));
-        let t187 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t169;
+        let t177 = t165 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t160 * t177;
+        let t179 = 0.2 * c_cross_leg4;
+        let t180 = t179 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.8867924528301887 / c_rod_leg4;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t192 = rate_rod_leg4 * rate_rod_leg4;
-        let t197 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t172 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t197;
-        let t199 = rate_cross_leg4 * rate_cross_leg4;
-        let t208 = acceleration[0] + t173 * rate_rod_leg4;
-        let t210 = t172 * t187 + 0.53 * c_rod_leg4 * (t192 + t199)
+        let t185 = rate_rod_leg4 * rate_rod_leg4;
+        let t189 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2] - t180;
+        let t190 = 1.8867924528301887 * t189;
+        let t191 = t190 * t190;
+        let t192 = t163 * t191;
+        let t193 = t163 * t192;
+        let t194 = t193 + t191;
+        let t203 = acceleration[0] + t165 * rate_rod_leg4;
+        let t205 = rate_arm_leg4 * t180 + 0.53 * c_rod_leg4 * (t185 + t194)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2])
-            + t170 * t208;
-        let rate_dot_arm_leg4 = t166 * t210;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t166;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t166;
-        let t217 = 9.81 * c_arm_leg1;
-        let t221 = 9.81 * c_arm_leg2;
-        let t225 = 9.81 * c_arm_leg3;
-        let t229 = 9.81 * c_arm_leg4;
-        let t233 = 9.81 * s_arm_leg1;
-        let t237 = 9.81 * s_arm_leg2;
-        let t241 = 9.81 * s_arm_leg3;
-        let t245 = 9.81 * s_arm_leg4;
-        let t273 = t11 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t273;
-        let t276 = rate_rod_leg1 * (1.8867924528301887 * t36);
-        let t277 = 0.2 * rate_dot_arm_leg1;
-        let t282 = 0.2 * s_cross_leg1;
-        let t284 = t25 * minus_rate_cross_leg1;
-        let t288 = c_cross_leg1 * t277 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t282 * t28 + t284 + t284;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t288;
-        let t290 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t292 = t276 + t290 + t276;
-        let t293 = s_rod_leg1 * t292;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t17 * garm_vy_leg1);
-        let t298 = t24 * t36;
-        let t300 = 3.5599857600569598 * (minus_rate_cross_leg1 * t298);
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t273;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t75 * minus_garm_vx_leg2);
-        let t309 = 0.2 * s_cross_leg2;
-        let t311 = t79 * minus_rate_cross_leg2;
-        let t315 = 0.2 * rate_dot_arm_leg2;
+            + t163 * t203;
+        let rate_dot_arm_leg4 = t160 * t205;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t160;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t160;
+        let t212 = 9.81 * c_arm_leg1;
+        let t216 = 9.81 * c_arm_leg2;
+        let t220 = 9.81 * c_arm_leg3;
+        let t224 = 9.81 * c_arm_leg4;
+        let t228 = 9.81 * s_arm_leg1;
+        let t232 = 9.81 * s_arm_leg2;
+        let t236 = 9.81 * s_arm_leg3;
+        let t240 = 9.81 * s_arm_leg4;
+        let t268 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t268;
+        let t274 = t21 * t35;
+        let t275 = rate_rod_leg1 * t274;
+        let t279 = t30 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t25 + t275 + t275;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t279;
+        let t282 = rate_rod_leg1 * (1.8867924528301887 * t35);
+        let t287 = s_rod_leg1 * t282 + c_rod_leg1 * (1.8867924528301887 * (t275 - t279));
+        let t288 = minus_rate_dot_cross_leg1 + t287;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t30 * garm_vy_leg1);
+        let t294 = 3.5599857600569598 * (minus_rate_cross_leg1 * t274);
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t268;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t72 * minus_garm_vx_leg2);
+        let t303 = 0.2 * s_cross_leg2;
+        let t305 = t76 * minus_rate_cross_leg2;
+        let t309 = 0.2 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
             * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + t309 * t82 - t311 - t311 + c_cross_leg2 * t315);
-        let t319 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t320 = 1.8867924528301887 * t92;
-        let t321 = minus_rate_rod_leg2 * t320;
-        let t323 = t321 - t319 + t321;
-        let t324 = s_rod_leg2 * t323;
-        let t326 = s_rod_leg2 * minus_rate_cross_leg2;
-        let t327 = t320 * t326;
-        let t328 = minus_grod_vx_leg2 * t327;
-        let t330 = t57 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t330;
-        let gcross_vz_leg2 = s_arm_leg2 * t330;
-        let t335 = t119 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t335;
-        let t340 = 0.2 * s_cross_leg3;
-        let t342 = t130 * rate_cross_leg3;
-        let t346 = 0.2 * rate_dot_arm_leg3;
-        let t348 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-            - (t340 * t133 + t342 + t342) - c_cross_leg3 * t346;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t348;
-        let t350 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t352 = minus_rate_rod_leg3 * (1.8867924528301887 * t143);
-        let t354 = t350 - t352 - t352;
-        let t355 = s_rod_leg3 * t354;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t122 * minus_garm_vy_leg3);
-        let t360 = t129 * t143;
-        let t362 = 3.5599857600569598 * (rate_cross_leg3 * t360);
-        let gcross_vz_leg3 = s_arm_leg3 * t335;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t172 * garm_vx_leg4);
-        let t368 = 1.8867924528301887 * t197;
-        let t369 = rate_rod_leg4 * t368;
-        let t373 = 0.2 * s_cross_leg4;
-        let t375 = t173 * rate_cross_leg4;
-        let t379 = 0.2 * rate_dot_arm_leg4;
+                + t303 * t79 - t305 - t305 + c_cross_leg2 * t309);
+        let t313 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t315 = minus_rate_rod_leg2 * (1.8867924528301887 * t89);
+        let t317 = t315 - t313 + t315;
+        let t318 = c_rod_leg2 * t317;
+        let t319 = t59 * t318;
+        let t321 = t89 * t89;
+        let t322 = t59 * t321;
+        let t323 = 3.5599857600569598 * t322;
+        let t324 = minus_grod_vx_leg2 * t323;
+        let t326 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t326;
+        let gcross_vz_leg2 = s_arm_leg2 * t326;
+        let t331 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t331;
+        let t336 = t125 * minus_rate_arm_leg3;
+        let t337 = t124 * rate_cross_leg3;
+        let t342 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t336 + t337 + t337) - t127 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t342;
+        let t345 = minus_rate_rod_leg3 * (1.8867924528301887 * t137);
+        let t350 = s_rod_leg3 * t345 + c_rod_leg3 * (1.8867924528301887 * (t342 + t337));
+        let t351 = rate_dot_cross_leg3 - t350;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t127 * minus_garm_vy_leg3);
+        let t356 = t123 * t137;
+        let t358 = 3.5599857600569598 * (rate_cross_leg3 * t356);
+        let gcross_vz_leg3 = s_arm_leg3 * t331;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t179 * garm_vx_leg4);
+        let t364 = rate_rod_leg4 * t190;
+        let t368 = t177 * rate_arm_leg4;
+        let t370 = rate_rod_leg4 * (t163 * t189);
         let rate_dot_cross_leg4 = grod_vx_leg4
             * (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-                - (t373 * t187 - t375 - t375) - c_cross_leg4 * t379);
-        let t383 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t385 = t369 + t383 + t369;
-        let t386 = s_rod_leg4 * t385;
-        let t388 = s_rod_leg4 * rate_cross_leg4;
-        let t389 = t368 * t388;
-        let t390 = grod_vx_leg4 * t389;
-        let t392 = t165 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t392;
-        let gcross_vz_leg4 = s_arm_leg4 * t392;
-        let t401 = s_rod_leg1 * t276 + c_rod_leg1 * (1.8867924528301887 * (t284 - t288));
-        let t404 = t24 * t401 - c_rod_leg1 * t292;
-        let t406 = t298 * t298;
-        let t414 = minus_rate_dot_cross_leg2 + t324;
-        let t417 = c_rod_leg2 * t323 - t62 * t414;
-        let t419 = 0.53 * t326;
-        let t420 = t419 * t419;
-        let t432 = s_rod_leg3 * t352 + c_rod_leg3 * (1.8867924528301887 * (t348 + t342));
-        let t435 = t129 * t432 + c_rod_leg3 * t354;
-        let t438 = t360 * t360;
-        let t445 = 0.53 * t388;
-        let t446 = t445 * t445;
-        let t452 = rate_dot_cross_leg4 - t386;
-        let t454 = c_rod_leg4 * t385 + t170 * t452;
-        let t459 = t30 * t300;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t46;
-        let t463 = 3.5599857600569598 * t406;
-        let t466 = s_rod_leg1 * (t459 + rate_dot_rod_leg1) + c_rod_leg1 * (t40 - t463);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t100;
-        let t475 = 3.5599857600569598 * t420;
-        let t478 = s_rod_leg2 * (t327 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t87 - t475);
-        let t484 = t135 * t362;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t154;
-        let t488 = 3.5599857600569598 * t438;
-        let t491 = s_rod_leg3 * (t484 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t138 - t488);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t208;
-        let t501 = 3.5599857600569598 * t446;
-        let t504 = s_rod_leg4 * (t389 + rate_dot_rod_leg4) + c_rod_leg4 * (t192 - t501);
-        let t525 = 1.8867924528301887 * acceleration[1];
-        let t531 = 1.8867924528301887 * acceleration[0];
-        let t557 = t282 * (c_rod_leg1 * (t459 - rate_dot_rod_leg1))
-            + t282 * s_rod_leg1 * (t463 + t40) + t17 * t292;
-        let t560 = t233 + 0.2 * t28;
-        let t562 = t277 - t217;
-        let t565 = s_rod_leg1 * (s_cross_leg1 * t560 + c_cross_leg1 * t562);
-        let t573 = s_cross_leg1 * t562 - c_cross_leg1 * t560;
-        let t579 = t315 - t221;
-        let t582 = t237 + 0.2 * t82;
-        let t584 = s_cross_leg2 * t579 - c_cross_leg2 * t582;
-        let t594 = t309 * (c_rod_leg2 * (t327 + minus_rate_dot_rod_leg2))
-            + t309 * s_rod_leg2 * (t475 + t87) - t75 * t323;
-        let t599 = s_rod_leg2 * (s_cross_leg2 * t582 + c_cross_leg2 * t579);
-        let t617 = t340 * (c_rod_leg3 * (t484 + minus_rate_dot_rod_leg3))
-            + t340 * s_rod_leg3 * (t488 + t138) - t122 * t354;
-        let t620 = t241 + 0.2 * t133;
-        let t622 = t346 - t225;
-        let t625 = s_rod_leg3 * (s_cross_leg3 * t620 + c_cross_leg3 * t622);
-        let t630 = s_cross_leg3 * t622 - c_cross_leg3 * t620;
-        let t647 = t373 * (c_rod_leg4 * (t389 - rate_dot_rod_leg4))
-            + t373 * s_rod_leg4 * (t501 + t192) - t172 * t385;
-        let t650 = t245 + 0.2 * t187;
-        let t652 = t379 - t229;
-        let t655 = s_rod_leg4 * (s_cross_leg4 * t650 + c_cross_leg4 * t652);
-        let t660 = s_cross_leg4 * t652 - c_cross_leg4 * t650;
-        let t671 = t17 * t38 - t282 * minus_rate_dot_cross_leg1;
-        let t684 = t75 * t94 - t309 * minus_rate_dot_cross_leg2;
-        let t696 = t340 * rate_dot_cross_leg3 + t122 * t145;
-        let t707 = t373 * rate_dot_cross_leg4 + t172 * t199;
+                - (t368 - t370 - t370) - t179 * rate_dot_arm_leg4);
+        let t377 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t379 = t364 + t377 + t364;
+        let t380 = c_rod_leg4 * t379;
+        let t381 = t163 * t380;
+        let t383 = grod_vx_leg4 * t192;
+        let t385 = t159 * grod_vx_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t385;
+        let gcross_vz_leg4 = s_arm_leg4 * t385;
+        let t391 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t393 = t282 + t391 + t282;
+        let t395 = t21 * t287 - c_rod_leg1 * t393;
+        let t397 = t274 * t274;
+        let t405 = minus_rate_dot_cross_leg2 + t319;
+        let t407 = t318 - t59 * t405;
+        let t409 = t59 * t322;
+        let t417 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t419 = t417 - t345 - t345;
+        let t421 = t123 * t350 + c_rod_leg3 * t419;
+        let t424 = t356 * t356;
+        let t433 = rate_dot_cross_leg4 - t381;
+        let t435 = t380 + t163 * t433;
+        let t440 = t28 * t294;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
+        let t444 = 3.5599857600569598 * t397;
+        let t447 = s_rod_leg1 * (t440 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t444);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t97;
+        let t456 = 3.5599857600569598 * t409;
+        let t459 = s_rod_leg2 * (t323 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t84 - t456);
+        let t465 = t130 * t358;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t148;
+        let t469 = 3.5599857600569598 * t424;
+        let t472 = s_rod_leg3 * (t465 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t133 - t469);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t203;
+        let t484 = s_rod_leg4 * (t192 + rate_dot_rod_leg4) + c_rod_leg4 * (t185 - t193);
+        let t505 = 1.8867924528301887 * acceleration[1];
+        let t511 = 1.8867924528301887 * acceleration[0];
+        let t529 = 0.2 * s_cross_leg1;
+        let t538 = t529 * (c_rod_leg1 * (t440 - rate_dot_rod_leg1))
+            + t529 * s_rod_leg1 * (t444 + t39) + t30 * t393;
+        let t540 = t228 + t26;
+        let t543 = 0.2 * rate_dot_arm_leg1 - t212;
+        let t546 = s_rod_leg1 * (s_cross_leg1 * t540 + c_cross_leg1 * t543);
+        let t554 = s_cross_leg1 * t543 - c_cross_leg1 * t540;
+        let t560 = t309 - t216;
+        let t563 = t232 + 0.2 * t79;
+        let t565 = s_cross_leg2 * t560 - c_cross_leg2 * t563;
+        let t575 = t303 * (c_rod_leg2 * (t323 + minus_rate_dot_rod_leg2))
+            + t303 * s_rod_leg2 * (t456 + t84) - t72 * t317;
+        let t580 = s_rod_leg2 * (s_cross_leg2 * t563 + c_cross_leg2 * t560);
+        let t590 = 0.2 * s_cross_leg3;
+        let t599 = t590 * (c_rod_leg3 * (t465 + minus_rate_dot_rod_leg3))
+            + t590 * s_rod_leg3 * (t469 + t133) - t127 * t419;
+        let t602 = t236 + t336 / s_cross_leg3;
+        let t605 = 0.2 * rate_dot_arm_leg3 - t220;
+        let t608 = s_rod_leg3 * (s_cross_leg3 * t602 + c_cross_leg3 * t605);
+        let t613 = s_cross_leg3 * t605 - c_cross_leg3 * t602;
+        let t622 = 0.2 * s_cross_leg4;
+        let t631 = t622 * (c_rod_leg4 * (t192 - rate_dot_rod_leg4))
+            + t622 * s_rod_leg4 * (t193 + t185) - t179 * t379;
+        let t634 = t240 + t159 * t368;
+        let t637 = 0.2 * rate_dot_arm_leg4 - t224;
+        let t640 = s_rod_leg4 * (s_cross_leg4 * t634 + c_cross_leg4 * t637);
+        let t645 = s_cross_leg4 * t637 - c_cross_leg4 * t634;
+        let t656 = t30 * t37 - t529 * minus_rate_dot_cross_leg1;
+        let t669 = t72 * t91 - t303 * minus_rate_dot_cross_leg2;
+        let t681 = t590 * rate_dot_cross_leg3 + t127 * t139;
+        let t692 = t622 * rate_dot_cross_leg4 + t179 * t194;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vx_leg3 * rate_dot_arm_leg3), garm_vx_leg4 * rate_dot_arm_leg4,
-                -(garm_vx_leg1 * t217), minus_garm_vx_leg2 * t221, minus_garm_vx_leg3 * t225,
-                -(garm_vx_leg4 * t229), garm_vx_leg1 * t233, -(minus_garm_vx_leg2 * t237),
-                -(minus_garm_vx_leg3 * t241), garm_vx_leg4 * t245, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t212), minus_garm_vx_leg2 * t216, minus_garm_vx_leg3 * t220,
+                -(garm_vx_leg4 * t224), garm_vx_leg1 * t228, -(minus_garm_vx_leg2 * t232),
+                -(minus_garm_vx_leg3 * t236), garm_vx_leg4 * t240, garm_vx_leg1 * rate_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_arm_leg2), minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
-                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t293,
-                gcross_vx_leg2 * t324 + t328, gcross_vx_leg3 * t355,
-                -(minus_gcross_vx_leg4 * t386 + t390), -(minus_gcross_vx_leg1 * t404),
-                gcross_vx_leg2 * t417 - 6.716954264258415 * (t61 * (t420 - t92 * t92)),
-                gcross_vx_leg3 * t435,
-                6.716954264258415 * (t169 * (t446 - t197 * t197))
-                    - minus_gcross_vx_leg4 * t454,
-                -(minus_gcross_vx_leg1 * t466),
-                gcross_vx_leg2 * t478 + minus_grod_vx_leg2 * t319,
-                gcross_vx_leg3 * t491,
-                grod_vx_leg4 * t383 - minus_gcross_vx_leg4 * t504,
-                -(minus_gcross_vx_leg1 * t401),
-                -(gcross_vx_leg2 * t414 + t328),
-                gcross_vx_leg3 * t432,
-                t390 - minus_gcross_vx_leg4 * t452,
-                -(minus_gcross_vx_leg1 * t525),
-                -(gcross_vx_leg2 * t531
+                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t288,
+                gcross_vx_leg2 * t319 + t324, gcross_vx_leg3 * t351,
+                -(minus_gcross_vx_leg4 * t381 + t383), -(minus_gcross_vx_leg1 * t395),
+                gcross_vx_leg2 * t407 - 6.716954264258415 * ((t409 - t321) / c_rod_leg2),
+                gcross_vx_leg3 * t421, grod_vx_leg4 * (t193 - t191) - minus_gcross_vx_leg4 * t435,
+                -(minus_gcross_vx_leg1 * t447), gcross_vx_leg2 * t459 + minus_grod_vx_leg2 * t313,
+                gcross_vx_leg3 * t472, grod_vx_leg4 * t377 - minus_gcross_vx_leg4 * t484,
+                -(minus_gcross_vx_leg1 * t287), -(gcross_vx_leg2 * t405 + t324),
+                gcross_vx_leg3 * t350, t383 - minus_gcross_vx_leg4 * t433,
+                -(minus_gcross_vx_leg1 * t505),
+                -(gcross_vx_leg2 * t511
                     - 1.8867924528301887 * minus_rate_dot_cross_leg2),
-                -(gcross_vx_leg3 * t525),
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t531,
+                -(gcross_vx_leg3 * t505),
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t511,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t557 + minus_gcross_vx_leg1 * t565,
-                1.8867924528301887 * t584
-                    - (minus_garm_vx_leg2 * t594 + gcross_vx_leg2 * t599),
-                -(minus_garm_vx_leg3 * t617 + gcross_vx_leg3 * t625),
-                garm_vx_leg4 * t647 + minus_gcross_vx_leg4 * t655
-                    - 1.8867924528301887 * t660,
-                garm_vx_leg1 * t671 - minus_gcross_vx_leg1 * t573,
-                gcross_vx_leg2 * t584 - minus_garm_vx_leg2 * t684,
-                gcross_vx_leg3 * t630 - minus_garm_vx_leg3 * t696,
-                garm_vx_leg4 * t707 - minus_gcross_vx_leg4 * t660,
+                garm_vx_leg1 * t538 + minus_gcross_vx_leg1 * t546,
+                1.8867924528301887 * t565
+                    - (minus_garm_vx_leg2 * t575 + gcross_vx_leg2 * t580),
+                -(minus_garm_vx_leg3 * t599 + gcross_vx_leg3 * t608),
+                garm_vx_leg4 * t631 + minus_gcross_vx_leg4 * t640
+                    - 1.8867924528301887 * t645,
+                garm_vx_leg1 * t656 - minus_gcross_vx_leg1 * t554,
+                gcross_vx_leg2 * t565 - minus_garm_vx_leg2 * t669,
+                gcross_vx_leg3 * t613 - minus_garm_vx_leg3 * t681,
+                garm_vx_leg4 * t692 - minus_gcross_vx_leg4 * t645,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
                 -(minus_garm_vy_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t217),
-                -(garm_vy_leg2 * t221), minus_garm_vy_leg3 * t225, minus_garm_vy_leg4 * t229,
-                garm_vy_leg1 * t233, garm_vy_leg2 * t237, -(minus_garm_vy_leg3 * t241),
-                -(minus_garm_vy_leg4 * t245), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t212),
+                -(garm_vy_leg2 * t216), minus_garm_vy_leg3 * t220, minus_garm_vy_leg4 * t224,
+                garm_vy_leg1 * t228, garm_vy_leg2 * t232, -(minus_garm_vy_leg3 * t236),
+                -(minus_garm_vy_leg4 * t240), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
@@ -5954,48 +5910,48 @@ impl Delta4 {
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
-                minus_gcross_vy_leg1 * t293 - t300, -(minus_gcross_vy_leg2 * t324),
-                gcross_vy_leg3 * t355 + t362, gcross_vy_leg4 * t386,
-                6.716954264258415 * (t23 * (t406 - t36 * t36))
-                    - minus_gcross_vy_leg1 * t404,
-                -(minus_gcross_vy_leg2 * t417),
-                gcross_vy_leg3 * t435
-                    - 6.716954264258415 * (t128 * (t438 - t143 * t143)),
-                gcross_vy_leg4 * t454,
-                -(minus_gcross_vy_leg1 * t466 + grod_vy_leg1 * t290),
-                -(minus_gcross_vy_leg2 * t478),
-                gcross_vy_leg3 * t491 - minus_grod_vy_leg3 * t350,
-                gcross_vy_leg4 * t504,
-                t300 - minus_gcross_vy_leg1 * t401,
-                minus_gcross_vy_leg2 * t414,
-                gcross_vy_leg3 * t432 - t362,
-                gcross_vy_leg4 * t452,
-                -(minus_gcross_vy_leg1 * t525
+                minus_gcross_vy_leg1 * t288 - t294, -(minus_gcross_vy_leg2 * t319),
+                gcross_vy_leg3 * t351 + t358, gcross_vy_leg4 * t381,
+                6.716954264258415 * ((t397 - t35 * t35) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t395,
+                -(minus_gcross_vy_leg2 * t407),
+                gcross_vy_leg3 * t421
+                    - 6.716954264258415 * ((t424 - t137 * t137) / c_rod_leg3),
+                gcross_vy_leg4 * t435,
+                -(minus_gcross_vy_leg1 * t447 + grod_vy_leg1 * t391),
+                -(minus_gcross_vy_leg2 * t459),
+                gcross_vy_leg3 * t472 - minus_grod_vy_leg3 * t417,
+                gcross_vy_leg4 * t484,
+                t294 - minus_gcross_vy_leg1 * t287,
+                minus_gcross_vy_leg2 * t405,
+                gcross_vy_leg3 * t350 - t358,
+                gcross_vy_leg4 * t433,
+                -(minus_gcross_vy_leg1 * t505
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t531,
-                -(gcross_vy_leg3 * t525 + 1.8867924528301887 * rate_dot_cross_leg3),
-                gcross_vy_leg4 * t531,
+                minus_gcross_vy_leg2 * t511,
+                -(gcross_vy_leg3 * t505 + 1.8867924528301887 * rate_dot_cross_leg3),
+                gcross_vy_leg4 * t511,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t557 + minus_gcross_vy_leg1 * t565
-                    - 1.8867924528301887 * t573,
-                garm_vy_leg2 * t594 + minus_gcross_vy_leg2 * t599,
-                1.8867924528301887 * t630
-                    - (minus_garm_vy_leg3 * t617 + gcross_vy_leg3 * t625),
-                -(minus_garm_vy_leg4 * t647 + gcross_vy_leg4 * t655),
-                garm_vy_leg1 * t671 - minus_gcross_vy_leg1 * t573,
-                garm_vy_leg2 * t684 - minus_gcross_vy_leg2 * t584,
-                gcross_vy_leg3 * t630 - minus_garm_vy_leg3 * t696,
-                gcross_vy_leg4 * t660 - minus_garm_vy_leg4 * t707,
+                garm_vy_leg1 * t538 + minus_gcross_vy_leg1 * t546
+                    - 1.8867924528301887 * t554,
+                garm_vy_leg2 * t575 + minus_gcross_vy_leg2 * t580,
+                1.8867924528301887 * t613
+                    - (minus_garm_vy_leg3 * t599 + gcross_vy_leg3 * t608),
+                -(minus_garm_vy_leg4 * t631 + gcross_vy_leg4 * t640),
+                garm_vy_leg1 * t656 - minus_gcross_vy_leg1 * t554,
+                garm_vy_leg2 * t669 - minus_gcross_vy_leg2 * t565,
+                gcross_vy_leg3 * t613 - minus_garm_vy_leg3 * t681,
+                gcross_vy_leg4 * t645 - minus_garm_vy_leg4 * t692,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t217,
-                minus_garm_vz_leg2 * t221, minus_garm_vz_leg3 * t225, minus_garm_vz_leg4 * t229,
-                -(minus_garm_vz_leg1 * t233), -(minus_garm_vz_leg2 * t237),
-                -(minus_garm_vz_leg3 * t241), -(minus_garm_vz_leg4 * t245),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t212,
+                minus_garm_vz_leg2 * t216, minus_garm_vz_leg3 * t220, minus_garm_vz_leg4 * t224,
+                -(minus_garm_vz_leg1 * t228), -(minus_garm_vz_leg2 * t232),
+                -(minus_garm_vz_leg3 * t236), -(minus_garm_vz_leg4 * t240),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 minus_garm_vz_leg3 * minus_rate_arm_leg3, -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6003,21 +5959,21 @@ impl Delta4 {
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_minus_gcross_vz_leg1 * t293), gcross_vz_leg2 * t324, gcross_vz_leg3 * t355,
-                gcross_vz_leg4 * t386, minus_minus_gcross_vz_leg1 * t404, gcross_vz_leg2 * t417,
-                gcross_vz_leg3 * t435, gcross_vz_leg4 * t454, minus_minus_gcross_vz_leg1 * t466,
-                gcross_vz_leg2 * t478, gcross_vz_leg3 * t491, gcross_vz_leg4 * t504,
-                minus_minus_gcross_vz_leg1 * t401, -(gcross_vz_leg2 * t414), gcross_vz_leg3 * t432,
-                gcross_vz_leg4 * t452, minus_minus_gcross_vz_leg1 * t525, -(gcross_vz_leg2 * t531),
-                -(gcross_vz_leg3 * t525), gcross_vz_leg4 * t531, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t565 + minus_garm_vz_leg1 * t557),
-                -(minus_garm_vz_leg2 * t594 + gcross_vz_leg2 * t599),
-                -(minus_garm_vz_leg3 * t617 + gcross_vz_leg3 * t625),
-                -(minus_garm_vz_leg4 * t647 + gcross_vz_leg4 * t655),
-                -(minus_garm_vz_leg1 * t671 - minus_minus_gcross_vz_leg1 * t573),
-                gcross_vz_leg2 * t584 - minus_garm_vz_leg2 * t684,
-                gcross_vz_leg3 * t630 - minus_garm_vz_leg3 * t696,
-                gcross_vz_leg4 * t660 - minus_garm_vz_leg4 * t707,
+                -(minus_minus_gcross_vz_leg1 * t288), gcross_vz_leg2 * t319, gcross_vz_leg3 * t351,
+                gcross_vz_leg4 * t381, minus_minus_gcross_vz_leg1 * t395, gcross_vz_leg2 * t407,
+                gcross_vz_leg3 * t421, gcross_vz_leg4 * t435, minus_minus_gcross_vz_leg1 * t447,
+                gcross_vz_leg2 * t459, gcross_vz_leg3 * t472, gcross_vz_leg4 * t484,
+                minus_minus_gcross_vz_leg1 * t287, -(gcross_vz_leg2 * t405), gcross_vz_leg3 * t350,
+                gcross_vz_leg4 * t433, minus_minus_gcross_vz_leg1 * t505, -(gcross_vz_leg2 * t511),
+                -(gcross_vz_leg3 * t505), gcross_vz_leg4 * t511, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t546 + minus_garm_vz_leg1 * t538),
+                -(minus_garm_vz_leg2 * t575 + gcross_vz_leg2 * t580),
+                -(minus_garm_vz_leg3 * t599 + gcross_vz_leg3 * t608),
+                -(minus_garm_vz_leg4 * t631 + gcross_vz_leg4 * t640),
+                -(minus_garm_vz_leg1 * t656 - minus_minus_gcross_vz_leg1 * t554),
+                gcross_vz_leg2 * t565 - minus_garm_vz_leg2 * t669,
+                gcross_vz_leg3 * t613 - minus_garm_vz_leg3 * t681,
+                gcross_vz_leg4 * t645 - minus_garm_vz_leg4 * t692,
             ],
         ])
     }
@@ -6032,7 +5988,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 881 operations (275 additions, 585 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 739 intermediates.
+    /// 857 operations (273 additions, 547 multiplications, 37 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 715 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6044,477 +6000,458 @@ impl Delta4 {
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
-        let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.16 * t4;
-        let t6 = 1.0 / t5;
-        let t7 = 0.4 * t1;
-        let t9 = pose[1] * pose[1] + -0.2809;
-        let t10 = t4 + t9;
-        let t11 = t10 + 0.04;
-        let t13 = 0.4 * pose[2];
-        let t15 = t5 - t11 * t11;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t9));
+        let t2 = 0.4 * t1;
+        let t4 = pose[2] * pose[2];
+        let t5 = t1 * t1 + t4;
+        let t6 = pose[1] * pose[1];
+        let t7 = t6 + -0.2809;
+        let t8 = t5 + t7;
+        let t9 = t8 + 0.04;
+        let t11 = 0.4 * pose[2];
+        let t12 = 0.16 * t5;
+        let t14 = t12 - t9 * t9;
+        ::overact::guard::reach(t14, "leg1")?;
+        let t15 = ::overact::math::sqrt(t14);
+        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.212 * c_rod_leg1;
-        let c_cross_leg1 = (t10 + -0.04) / t24;
-        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
-        let s_cross_leg1 = t16 / t24;
+        let t23 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t8 + -0.04) / t23;
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
+        let t30 = 0.9433962264150944 * t15;
+        let t31 = t30 / c_rod_leg1;
+        let s_cross_leg1 = 5.0 * t31;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 1.0 / s_cross_leg1;
-        let t35 = 5.0 * t34;
+        let t35 = 5.0 / s_cross_leg1;
         let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t39 = pose[1] + 0.05 - 0.2;
-        let t41 = t39 * t39 + t3;
-        let t42 = 0.16 * t41;
-        let t43 = pose[0] * pose[0];
-        let t44 = 0.2809 - t43;
-        let t45 = t41 - t44;
-        let t46 = t45 + 0.04;
-        let t48 = t42 - t46 * t46;
-        ::overact::guard::reach(t48, "leg2")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let t50 = 3.5599857600569598 * t44;
-        ::overact::guard::reach(t50, "leg2")?;
-        ::overact::guard::reach(t50, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t50);
+        let t38 = pose[0] * pose[0];
+        let t39 = 0.2809 - t38;
+        let t40 = 3.5599857600569598 * t39;
+        ::overact::guard::reach(t40, "leg2")?;
+        ::overact::guard::reach(t40, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t40);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t52 = 0.212 * c_rod_leg2;
-        let s_cross_leg2 = t49 / t52;
+        let t42 = 1.0 / c_rod_leg2;
+        let t44 = pose[1] + 0.05 - 0.2;
+        let t46 = t44 * t44 + t4;
+        let t47 = 0.16 * t46;
+        let t48 = t46 - t39;
+        let t49 = t48 + 0.04;
+        let t51 = t47 - t49 * t49;
+        ::overact::guard::reach(t51, "leg2")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let t53 = 0.9433962264150944 * t52;
+        let t54 = t42 * t53;
+        let s_cross_leg2 = 5.0 * t54;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t54 = 1.0 / s_cross_leg2;
-        let t55 = 5.0 * t54;
-        let t56 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t56;
+        let t56 = 5.0 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t42;
         let t58 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t55 * t58;
+        let garm_vx_leg2 = t56 * t58;
         let t63 = pose[0] - 0.05 + 0.2;
-        let t65 = t63 * t63 + t3;
-        let t66 = 0.16 * t65;
-        let t67 = 1.0 / t66;
-        let t68 = 0.4 * t63;
-        let t69 = t65 + t9;
-        let t70 = t69 + 0.04;
-        let t73 = t66 - t70 * t70;
-        ::overact::guard::reach(t73, "leg3")?;
-        let t74 = ::overact::math::sqrt(t73);
-        let minus_c_arm_leg3 = t67 * (t68 * t70 + t13 * t74);
-        let c_cross_leg3 = (-0.04 + t69) / t24;
-        let s_arm_leg3 = t67 * (t68 * t74 - t13 * t70);
-        let s_cross_leg3 = t74 / t24;
+        let t64 = 0.4 * t63;
+        let t66 = t63 * t63 + t4;
+        let t67 = t66 + t7;
+        let t68 = t67 + 0.04;
+        let t70 = 0.16 * t66;
+        let t72 = t70 - t68 * t68;
+        ::overact::guard::reach(t72, "leg3")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let minus_c_arm_leg3 = (t64 * t68 + t11 * t73) / t70;
+        let c_cross_leg3 = (-0.04 + t67) / t23;
+        let s_arm_leg3 = (t64 * t73 - t11 * t68) / t70;
+        let t84 = 1.0 / c_rod_leg1;
+        let t85 = 0.9433962264150944 * t73;
+        let t86 = t84 * t85;
+        let s_cross_leg3 = 5.0 * t86;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t88 = 1.0 / s_cross_leg3;
-        let t89 = 5.0 * t88;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t89;
-        let t94 = pose[1] - 0.05 + 0.2;
-        let t96 = t94 * t94 + t3;
-        let t97 = 0.16 * t96;
-        let t98 = t96 - t44;
-        let t99 = t98 + 0.04;
-        let t101 = t97 - t99 * t99;
-        ::overact::guard::reach(t101, "leg4")?;
-        let t102 = ::overact::math::sqrt(t101);
-        let s_cross_leg4 = t102 / t52;
+        let t90 = 5.0 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t90;
+        let t95 = pose[1] - 0.05 + 0.2;
+        let t97 = t95 * t95 + t4;
+        let t98 = 0.16 * t97;
+        let t99 = t97 - t39;
+        let t100 = t99 + 0.04;
+        let t102 = t98 - t100 * t100;
+        ::overact::guard::reach(t102, "leg4")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t104 = 0.212 * c_rod_leg2;
+        let s_cross_leg4 = t103 / t104;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t104 = 1.0 / s_cross_leg4;
-        let t105 = 5.0 * t104;
-        let garm_vx_leg4 = t58 * t105;
-        let t108 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t108, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t108, 22.533170865545554, "actuators")?;
-        let t109 = 1.0 / t108;
-        let t110 = 0.2 * c_cross_leg1;
-        let t117 = garm_vx_leg1 * actuator_velocities[0]
+        let t106 = 5.0 / s_cross_leg4;
+        let garm_vx_leg4 = t58 * t106;
+        let t109 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t119 = 1.0 / c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 * t119;
-        let t121 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t121;
-        let t124 = 1.0 / t42;
-        let t125 = 0.4 * t39;
-        let c_arm_leg2 = t124 * (t125 * t46 - t13 * t49);
-        let c_cross_leg2 = (-0.04 + t45) / t52;
-        let minus_s_arm_leg2 = t124 * (t13 * t46 + t125 * t49);
+        let t116 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
+        let grod_vy_leg1 = 1.8867924528301887 * t84;
+        let t119 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t35 * t119;
+        let t122 = 0.4 * t44;
+        let c_arm_leg2 = (t122 * t49 - t11 * t52) / t47;
+        let c_cross_leg2 = (-0.04 + t48) / t104;
+        let minus_s_arm_leg2 = (t11 * t49 + t122 * t52) / t47;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t55;
-        let garm_vy_leg3 = t121 * t89;
-        let t145 = 1.0 / t97;
-        let t146 = 0.4 * t94;
-        let minus_c_arm_leg4 = t145 * (t146 * t99 + t13 * t102);
-        let c_cross_leg4 = (-0.04 + t98) / t52;
-        let s_arm_leg4 = t145 * (t146 * t102 - t13 * t99);
+        let garm_vy_leg2 = c_armcross_leg2 * t56;
+        let garm_vy_leg3 = t119 * t90;
+        let t142 = 0.4 * t95;
+        let minus_c_arm_leg4 = (t142 * t100 + t11 * t103) / t98;
+        let c_cross_leg4 = (-0.04 + t99) / t104;
+        let s_arm_leg4 = (t142 * t103 - t11 * t100) / t98;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t105;
-        let t162 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t106;
+        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t163 = t162 * t109;
-        let t172 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t162 * t163;
-        ::overact::guard::platform(t172, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t172, 22.533170865545554, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t182 = garm_vy_leg1 * actuator_velocities[0]
+        let t159 = t158 / t116;
+        let t168 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t117 * t163;
+            + garm_vy_leg4 * actuator_velocities[3] - t109 * t159;
+        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
+        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t55;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t89;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t90;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t105;
-        let t206 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t106;
+        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t207 = t206 * t109;
-        let t216 = t162 * t207
+        let t202 = t201 / t116;
+        let t211 = t158 * t202
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t217 = t216 * t173;
-        let t228 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t206 * t207 - t216 * t217;
-        ::overact::guard::platform(t228, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t228, 66.4019122371629, "actuators")?;
-        let t229 = 1.0 / t228;
-        let t240 = t117 * t207
+        let t212 = t211 / t177;
+        let t223 = t109 * t202
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t217 * t182;
-        let t241 = t229 * t240;
-        let t243 = t173 * t182 - t217 * t241;
-        let t247 = t117 * t109 - t163 * t243 + t207 * t241;
-        let t251 = t121 * t243;
-        let rate_arm_leg1 = t35
-            * (c_armcross_leg1 * t247 - s_armcross_leg1 * t241 + t251);
-        let t254 = rate_arm_leg1 * rate_arm_leg1;
-        let t256 = 0.53 * c_rod_leg1;
-        let t261 = t110 * rate_arm_leg1 + s_armcross_leg1 * t247
-            + c_armcross_leg1 * t241;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t261;
-        let t263 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t243;
-        let t265 = rate_rod_leg1 * rate_rod_leg1;
-        let t268 = t110 * t254 + t256 * (t263 + t265);
-        let t269 = pose[1] * t265;
-        let t270 = t121 * t269;
-        let rate_dot_arm_leg1 = t35 * (t268 + t270);
-        let t273 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t275 = 0.2 * c_cross_leg2;
-        let t279 = t58 * t247;
-        let rate_arm_leg2 = t55
-            * (c_armcross_leg2 * t243 - s_armcross_leg2 * t241 + t279);
-        let t282 = rate_arm_leg2 * rate_arm_leg2;
-        let t284 = 0.53 * c_rod_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t247;
-        let t286 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t291 = s_armcross_leg2 * t243 + c_armcross_leg2 * t241
-            + t275 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t291;
-        let t293 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t296 = t275 * t282 + t284 * (t286 + t293);
-        let t297 = pose[0] * t286;
-        let t298 = t58 * t297;
-        let rate_dot_arm_leg2 = t55 * (t296 + t298);
-        let t301 = actuator_accelerations[1] - rate_dot_arm_leg2;
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t212 * t168;
+        let t234 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t201 * t202 - t211 * t212;
+        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
+        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
+        let t235 = t223 / t234;
+        let t237 = t168 / t177 - t212 * t235;
+        let t241 = t109 / t116 - t159 * t237 + t202 * t235;
+        let t245 = t119 * t237;
+        let t246 = c_armcross_leg1 * t241 - s_armcross_leg1 * t235 + t245;
+        let rate_arm_leg1 = t35 * t246;
+        let t248 = 0.2 * c_cross_leg1;
+        let t249 = t248 * rate_arm_leg1;
+        let t251 = grod_vy_leg1 * t7;
+        let t255 = t249 + s_armcross_leg1 * t241 + c_armcross_leg1 * t235;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t255;
+        let t257 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t237;
+        let t259 = rate_rod_leg1 * rate_rod_leg1;
+        let t262 = rate_arm_leg1 * t249 - t251 * (t257 + t259);
+        let t263 = t245 * rate_rod_leg1;
+        let t264 = t119 * t263;
+        let rate_dot_arm_leg1 = t35 * (t262 + t264);
+        let t267 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t272 = t58 * t241;
+        let t273 = c_armcross_leg2 * t237 - s_armcross_leg2 * t235 + t272;
+        let rate_arm_leg2 = t56 * t273;
+        let t275 = t273 * rate_arm_leg2;
+        let t276 = t275 / s_cross_leg2;
+        let t278 = minus_grod_vx_leg2 * t39;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t241;
+        let t280 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t284 = 0.2 * c_cross_leg2;
+        let t286 = s_armcross_leg2 * t237 + c_armcross_leg2 * t235
+            + t284 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t286;
+        let t288 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t291 = c_cross_leg2 * t276 + t278 * (t280 + t288);
+        let t292 = t272 * minus_rate_rod_leg2;
+        let t293 = t58 * t292;
+        let rate_dot_arm_leg2 = t56 * (t291 + t293);
+        let t296 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t302 = minus_c_armcross_leg3 * t241 - s_armcross_leg3 * t235 + t245;
+        let rate_arm_leg3 = t90 * t302;
         let t304 = 0.2 * c_cross_leg3;
-        let rate_arm_leg3 = t89
-            * (minus_c_armcross_leg3 * t247 - s_armcross_leg3 * t241 + t251);
-        let t310 = rate_arm_leg3 * rate_arm_leg3;
-        let t316 = s_armcross_leg3 * t247 + minus_c_armcross_leg3 * t241
-            - t304 * rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t316;
-        let t318 = rate_cross_leg3 * rate_cross_leg3;
-        let t321 = t304 * t310 + t256 * (t265 + t318);
-        let rate_dot_arm_leg3 = t89 * (t321 + t270);
-        let t324 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t327 = 0.2 * c_cross_leg4;
-        let rate_arm_leg4 = t105
-            * (minus_c_armcross_leg4 * t243 - s_armcross_leg4 * t241 + t279);
-        let t333 = rate_arm_leg4 * rate_arm_leg4;
-        let t339 = s_armcross_leg4 * t243 + minus_c_armcross_leg4 * t241
-            - t327 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t339;
-        let t341 = rate_cross_leg4 * rate_cross_leg4;
-        let t342 = t286 + t341;
-        let t344 = t327 * t333 + t284 * t342;
-        let rate_dot_arm_leg4 = t105 * (t344 + t298);
-        let t347 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t349 = garm_vx_leg1 * t273 + garm_vx_leg2 * t301 + garm_vx_leg3 * t324
-            + garm_vx_leg4 * t347;
-        let t359 = garm_vy_leg1 * t273 + garm_vy_leg2 * t301 + garm_vy_leg3 * t324
-            + garm_vy_leg4 * t347 - t163 * t349;
-        let t371 = t207 * t349
-            - (minus_garm_vz_leg1 * t273 + minus_garm_vz_leg2 * t301
-                + minus_garm_vz_leg3 * t324 + minus_garm_vz_leg4 * t347) - t217 * t359;
-        let t372 = t229 * t371;
-        let t374 = t173 * t359 - t217 * t372;
-        let t378 = t109 * t349 - t163 * t374 + t207 * t372;
-        let t384 = t374 + t269;
-        let t385 = t121 * t384;
+        let t305 = t304 * rate_arm_leg3;
+        let t310 = s_armcross_leg3 * t241 + minus_c_armcross_leg3 * t235 - t305;
+        let rate_cross_leg3 = grod_vy_leg1 * t310;
+        let t312 = rate_cross_leg3 * rate_cross_leg3;
+        let t315 = rate_arm_leg3 * t305 - t251 * (t259 + t312);
+        let rate_dot_arm_leg3 = t90 * (t315 + t264);
+        let t318 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t324 = minus_c_armcross_leg4 * t237 - s_armcross_leg4 * t235 + t272;
+        let rate_arm_leg4 = t106 * t324;
+        let t326 = t324 * rate_arm_leg4;
+        let t327 = t326 / s_cross_leg4;
+        let t332 = 0.2 * c_cross_leg4;
+        let t334 = s_armcross_leg4 * t237 + minus_c_armcross_leg4 * t235
+            - t332 * rate_arm_leg4;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t334;
+        let t336 = rate_cross_leg4 * rate_cross_leg4;
+        let t337 = t280 + t336;
+        let t339 = c_cross_leg4 * t327 + t278 * t337;
+        let rate_dot_arm_leg4 = t106 * (t339 + t293);
+        let t342 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t344 = garm_vx_leg1 * t267 + garm_vx_leg2 * t296 + garm_vx_leg3 * t318
+            + garm_vx_leg4 * t342;
+        let t354 = garm_vy_leg1 * t267 + garm_vy_leg2 * t296 + garm_vy_leg3 * t318
+            + garm_vy_leg4 * t342 - t159 * t344;
+        let t366 = t202 * t344
+            - (minus_garm_vz_leg1 * t267 + minus_garm_vz_leg2 * t296
+                + minus_garm_vz_leg3 * t318 + minus_garm_vz_leg4 * t342) - t212 * t354;
+        let t367 = t366 / t234;
+        let t369 = t354 / t177 - t212 * t367;
+        let t373 = t344 / t116 - t159 * t369 + t202 * t367;
+        let t379 = t369 + t263;
+        let t380 = t119 * t379;
         let rate_dot_arm_leg1_2 = t35
-            * (c_armcross_leg1 * t378 - s_armcross_leg1 * t372 + t268 + t385);
-        let t395 = t378 + t297;
-        let t396 = t58 * t395;
-        let rate_dot_arm_leg2_2 = t55
-            * (c_armcross_leg2 * t374 - s_armcross_leg2 * t372 + t296 + t396);
-        let rate_dot_arm_leg3_2 = t89
-            * (minus_c_armcross_leg3 * t378 - s_armcross_leg3 * t372 + t321 + t385);
-        let rate_dot_arm_leg4_2 = t105
-            * (minus_c_armcross_leg4 * t374 - s_armcross_leg4 * t372 + t344 + t396);
-        let t420 = 9.81 * c_arm_leg1;
-        let t424 = 9.81 * c_arm_leg2;
-        let t428 = 9.81 * minus_c_arm_leg3;
-        let t432 = 9.81 * minus_c_arm_leg4;
-        let t436 = 9.81 * minus_s_arm_leg1;
-        let t440 = 9.81 * minus_s_arm_leg2;
-        let t444 = 9.81 * s_arm_leg3;
-        let t448 = 9.81 * s_arm_leg4;
-        let t476 = t34 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t476;
-        let t479 = rate_rod_leg1 * (1.8867924528301887 * t261);
+            * (c_armcross_leg1 * t373 - s_armcross_leg1 * t367 + t262 + t380);
+        let t390 = t373 + t292;
+        let t391 = t58 * t390;
+        let rate_dot_arm_leg2_2 = t56
+            * (c_armcross_leg2 * t369 - s_armcross_leg2 * t367 + t291 + t391);
+        let rate_dot_arm_leg3_2 = t90
+            * (minus_c_armcross_leg3 * t373 - s_armcross_leg3 * t367 + t315 + t380);
+        let rate_dot_arm_leg4_2 = t106
+            * (minus_c_armcross_leg4 * t369 - s_armcross_leg4 * t367 + t339 + t391);
+        let t415 = 9.81 * c_arm_leg1;
+        let t419 = 9.81 * c_arm_leg2;
+        let t423 = 9.81 * minus_c_arm_leg3;
+        let t427 = 9.81 * minus_c_arm_leg4;
+        let t431 = 9.81 * minus_s_arm_leg1;
+        let t435 = 9.81 * minus_s_arm_leg2;
+        let t439 = 9.81 * s_arm_leg3;
+        let t443 = 9.81 * s_arm_leg4;
+        let t471 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t471;
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t481 = 0.2 * rate_dot_arm_leg1_2;
-        let t486 = 0.2 * t254;
-        let t488 = t251 * minus_rate_cross_leg1;
+        let t475 = rate_rod_leg1 * (1.8867924528301887 * t255);
+        let t480 = t246 * rate_arm_leg1;
+        let t481 = t245 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t481 + s_armcross_leg1 * t378 + c_armcross_leg1 * t372
-                + s_cross_leg1 * t486 + t488 + t488);
-        let t494 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t496 = t479 + t494 + t479;
-        let t497 = c_rod_leg1 * t496;
-        let t498 = t121 * t497;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t110 * garm_vy_leg1);
-        let t503 = pose[1] * minus_rate_cross_leg1;
-        let t505 = 3.5599857600569598 * (minus_rate_cross_leg1 * t503);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t476;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t275 * garm_vx_leg2);
-        let t512 = minus_rate_rod_leg2 * (1.8867924528301887 * t291);
+            * (t248 * rate_dot_arm_leg1_2 + s_armcross_leg1 * t373
+                + c_armcross_leg1 * t367 + t480 + t481 + t481);
+        let t487 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t489 = t475 + t487 + t475;
+        let t490 = s_rod_leg1 * t489;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t248 * garm_vy_leg1);
+        let t496 = 3.5599857600569598 * (pose[1] * t257);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t471;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t284 * garm_vx_leg2);
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t517 = 0.2 * t282;
-        let t519 = t279 * minus_rate_cross_leg2;
-        let t523 = 0.2 * rate_dot_arm_leg2_2;
+        let t504 = minus_rate_rod_leg2 * (1.8867924528301887 * t286);
+        let t508 = t272 * minus_rate_cross_leg2;
+        let t512 = 0.2 * rate_dot_arm_leg2_2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t374 + c_armcross_leg2 * t372 + s_cross_leg2 * t517
-                + t519 + t519 + c_cross_leg2 * t523);
-        let t527 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t529 = t512 + t527 + t512;
-        let t530 = c_rod_leg2 * t529;
-        let t531 = t58 * t530;
-        let t533 = pose[0] * minus_rate_cross_leg2;
-        let t535 = 3.5599857600569598 * (t291 * t533);
-        let t536 = minus_grod_vx_leg2 * t535;
-        let t538 = t54 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t538;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t538;
-        let t543 = t88 * grod_vy_leg1;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t543;
-        let t546 = rate_rod_leg1 * (1.8867924528301887 * t316);
-        let t550 = 0.2 * t310;
-        let t552 = t251 * rate_cross_leg3;
-        let t556 = 0.2 * rate_dot_arm_leg3_2;
+            * (s_armcross_leg2 * t369 + c_armcross_leg2 * t367 + t275 + t508 + t508
+                + c_cross_leg2 * t512);
+        let t516 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t518 = t504 + t516 + t504;
+        let t519 = minus_s_rod_leg2 * t518;
+        let t522 = t40 * (t58 * t288);
+        let t523 = minus_grod_vx_leg2 * t522;
+        let t525 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t525;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t525;
+        let t530 = grod_vy_leg1 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t530;
+        let t533 = rate_rod_leg1 * (1.8867924528301887 * t310);
+        let t537 = t302 * rate_arm_leg3;
+        let t538 = t245 * rate_cross_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
-            * (s_armcross_leg3 * t378 + minus_c_armcross_leg3 * t372
-                - (s_cross_leg3 * t550 - t552 - t552) - c_cross_leg3 * t556);
-        let t560 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t562 = t546 + t560 + t546;
-        let t563 = c_rod_leg1 * t562;
-        let t564 = t121 * t563;
+            * (s_armcross_leg3 * t373 + minus_c_armcross_leg3 * t367
+                - (t537 - t538 - t538) - t304 * rate_dot_arm_leg3_2);
+        let t545 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t547 = t533 + t545 + t533;
+        let t548 = s_rod_leg1 * t547;
         let minus_gcross_vy_leg3 = grod_vy_leg1 * (t304 * garm_vy_leg3);
-        let t569 = pose[1] * rate_cross_leg3;
-        let t571 = 3.5599857600569598 * (rate_cross_leg3 * t569);
-        let gcross_vz_leg3 = s_arm_leg3 * t543;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t327 * garm_vx_leg4);
-        let t578 = minus_rate_rod_leg2 * (1.8867924528301887 * t339);
-        let t582 = 0.2 * t333;
-        let t584 = t279 * rate_cross_leg4;
-        let t588 = 0.2 * rate_dot_arm_leg4_2;
+        let t554 = 3.5599857600569598 * (pose[1] * t312);
+        let gcross_vz_leg3 = s_arm_leg3 * t530;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t332 * garm_vx_leg4);
+        let t560 = 1.8867924528301887 * t334;
+        let t561 = minus_rate_rod_leg2 * t560;
+        let t565 = t272 * rate_cross_leg4;
+        let t569 = 0.2 * rate_dot_arm_leg4_2;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
-            * (s_armcross_leg4 * t374 + minus_c_armcross_leg4 * t372
-                - (s_cross_leg4 * t582 - t584 - t584) - c_cross_leg4 * t588);
-        let t592 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t594 = t578 + t592 + t578;
-        let t595 = c_rod_leg2 * t594;
-        let t596 = t58 * t595;
-        let t598 = t339 * t339;
-        let t599 = 3.5599857600569598 * t598;
-        let t600 = t58 * t599;
-        let t601 = minus_grod_vx_leg2 * t600;
-        let t603 = minus_grod_vx_leg2 * t104;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t603;
-        let gcross_vz_leg4 = s_arm_leg4 * t603;
-        let t608 = t498 - minus_rate_dot_cross_leg1;
-        let t610 = t121 * t608 - t497;
-        let t612 = t503 * t503;
-        let t620 = t531 - minus_rate_dot_cross_leg2;
-        let t622 = t530 - t58 * t620;
-        let t624 = t533 * t533;
-        let t632 = rate_dot_cross_leg3 - t564;
-        let t634 = t121 * t632 + t563;
-        let t637 = t569 * t569;
-        let t648 = rate_dot_cross_leg4 - t596;
-        let t650 = t595 + t58 * t648;
-        let t655 = t256 * t505;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t384;
-        let t659 = 3.5599857600569598 * t612;
-        let t662 = s_rod_leg1 * (t655 + rate_dot_rod_leg1) + c_rod_leg1 * (t265 - t659);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t395;
-        let t671 = 3.5599857600569598 * t624;
-        let t674 = minus_s_rod_leg2 * (t535 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t286 - t671);
-        let t706 = 1.8867924528301887 * t374;
-        let t712 = 1.8867924528301887 * t378;
-        let t730 = 0.9433962264150944 * t16;
-        let t738 = t730 * (t655 - rate_dot_rod_leg1) + t121 * t730 * (t659 + t265)
-            + t110 * t496;
-        let t740 = t481 - t420;
-        let t742 = t436 - t486;
-        let t745 = s_rod_leg1 * (c_cross_leg1 * t740 - s_cross_leg1 * t742);
-        let t753 = c_cross_leg1 * t742 + s_cross_leg1 * t740;
-        let t759 = 0.9433962264150944 * t49;
-        let t767 = t759 * (minus_rate_dot_rod_leg2 - t535) - t58 * t759 * (t671 + t286)
-            - t275 * t529;
-        let t769 = t523 - t424;
-        let t771 = t440 - t517;
-        let t774 = minus_s_rod_leg2 * (c_cross_leg2 * t769 - s_cross_leg2 * t771);
-        let t779 = c_cross_leg2 * t771 + s_cross_leg2 * t769;
-        let t788 = 0.9433962264150944 * t74;
-        let t798 = t788 * (rate_dot_rod_leg1 - t256 * t571)
-            - t121 * t788 * (3.5599857600569598 * t637 + t265) + t304 * t562;
-        let t800 = t444 + t550;
-        let t802 = t428 + t556;
-        let t805 = s_rod_leg1 * (s_cross_leg3 * t800 + c_cross_leg3 * t802);
-        let t813 = s_cross_leg3 * t802 - c_cross_leg3 * t800;
-        let t819 = 0.9433962264150944 * t102;
-        let t827 = t819 * (t600 - minus_rate_dot_rod_leg2) + t58 * t819 * (t342 - t599)
-            - t327 * t594;
-        let t829 = t448 + t582;
-        let t831 = t432 + t588;
-        let t834 = minus_s_rod_leg2 * (s_cross_leg4 * t829 + c_cross_leg4 * t831);
-        let t839 = s_cross_leg4 * t831 - c_cross_leg4 * t829;
-        let t851 = t110 * t263 - minus_rate_dot_cross_leg1 * (0.2 * s_cross_leg1);
-        let t864 = t275 * t293 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
-        let t877 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t304 * t318;
-        let t890 = rate_dot_cross_leg4 * (0.2 * s_cross_leg4) + t327 * t341;
+            * (s_armcross_leg4 * t369 + minus_c_armcross_leg4 * t367
+                - (t326 - t565 - t565) - c_cross_leg4 * t569);
+        let t573 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t575 = t561 + t573 + t561;
+        let t576 = minus_s_rod_leg2 * t575;
+        let t578 = t560 * t560;
+        let t579 = t58 * t578;
+        let t580 = minus_grod_vx_leg2 * t579;
+        let t582 = minus_grod_vx_leg2 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t582;
+        let gcross_vz_leg4 = s_arm_leg4 * t582;
+        let t587 = t490 - minus_rate_dot_cross_leg1;
+        let t590 = t119 * t587 - c_rod_leg1 * t489;
+        let t592 = t6 + t7;
+        let t600 = t519 - minus_rate_dot_cross_leg2;
+        let t602 = c_rod_leg2 * t518 - t58 * t600;
+        let t604 = t38 - t39;
+        let t611 = rate_dot_cross_leg3 - t548;
+        let t614 = t119 * t611 + c_rod_leg1 * t547;
+        let t626 = rate_dot_cross_leg4 - t576;
+        let t628 = c_rod_leg2 * t575 + t58 * t626;
+        let t633 = t251 * t496;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t379;
+        let t637 = pose[1] * t496;
+        let t640 = s_rod_leg1 * (rate_dot_rod_leg1 - t633) + c_rod_leg1 * (t259 - t637);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t390;
+        let t649 = pose[0] * t523;
+        let t652 = minus_s_rod_leg2 * (t522 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t280 - t649);
+        let t684 = 1.8867924528301887 * t369;
+        let t690 = 1.8867924528301887 * t373;
+        let t715 = t119 * t30 * (t637 + t259) - t30 * (t633 + rate_dot_rod_leg1)
+            + t248 * t489;
+        let t718 = 0.2 * rate_dot_arm_leg1_2 - t415;
+        let t721 = t431 - t480 / s_cross_leg1;
+        let t724 = s_rod_leg1 * (c_cross_leg1 * t718 - s_cross_leg1 * t721);
+        let t732 = c_cross_leg1 * t721 + s_cross_leg1 * t718;
+        let t745 = t53 * (minus_rate_dot_rod_leg2 - t522)
+            - minus_s_rod_leg2 * t54 * (t649 + t280) - t284 * t518;
+        let t747 = t512 - t419;
+        let t749 = t435 - t276;
+        let t752 = minus_s_rod_leg2 * (c_cross_leg2 * t747 - s_cross_leg2 * t749);
+        let t757 = c_cross_leg2 * t749 + s_cross_leg2 * t747;
+        let t766 = t251 * t554;
+        let t775 = t85 * (rate_dot_rod_leg1 + t766) - t119 * t85 * (t259 - t119 * t766)
+            + t304 * t547;
+        let t778 = t439 + t537 / s_cross_leg3;
+        let t781 = t423 + 0.2 * rate_dot_arm_leg3_2;
+        let t784 = s_rod_leg1 * (s_cross_leg3 * t778 + c_cross_leg3 * t781);
+        let t792 = s_cross_leg3 * t781 - c_cross_leg3 * t778;
+        let t798 = 0.9433962264150944 * t103;
+        let t801 = t42 * t798;
+        let t807 = t798 * (t579 - minus_rate_dot_rod_leg2)
+            + minus_s_rod_leg2 * t801 * (t337 - t578) - t332 * t575;
+        let t809 = t443 + t327;
+        let t811 = t427 + t569;
+        let t814 = minus_s_rod_leg2 * (s_cross_leg4 * t809 + c_cross_leg4 * t811);
+        let t819 = s_cross_leg4 * t811 - c_cross_leg4 * t809;
+        let t830 = t248 * t257 - minus_rate_dot_cross_leg1 * t31;
+        let t842 = t284 * t288 - minus_rate_dot_cross_leg2 * t54;
+        let t854 = rate_dot_cross_leg3 * t86 + t304 * t312;
+        let t866 = rate_dot_cross_leg4 * t801 + t332 * t336;
         Ok([
             [
-                t378, garm_vx_leg1 * rate_dot_arm_leg1_2, garm_vx_leg2 * rate_dot_arm_leg2_2,
+                t373, garm_vx_leg1 * rate_dot_arm_leg1_2, garm_vx_leg2 * rate_dot_arm_leg2_2,
                 garm_vx_leg3 * rate_dot_arm_leg3_2, garm_vx_leg4 * rate_dot_arm_leg4_2,
-                -(garm_vx_leg1 * t420), -(garm_vx_leg2 * t424), garm_vx_leg3 * t428,
-                garm_vx_leg4 * t432, -(garm_vx_leg1 * t436), -(garm_vx_leg2 * t440),
-                garm_vx_leg3 * t444, garm_vx_leg4 * t448, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t415), -(garm_vx_leg2 * t419), garm_vx_leg3 * t423,
+                garm_vx_leg4 * t427, -(garm_vx_leg1 * t431), -(garm_vx_leg2 * t435),
+                garm_vx_leg3 * t439, garm_vx_leg4 * t443, garm_vx_leg1 * rate_arm_leg1,
                 garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t498,
-                minus_gcross_vx_leg2 * t531 - t536, -(minus_gcross_vx_leg3 * t564),
-                -(minus_gcross_vx_leg4 * t596 + t601), -(minus_gcross_vx_leg1 * t610),
-                -(minus_gcross_vx_leg2 * t622
-                    + 6.716954264258415 * (t56 * (t624 - t291 * t291))),
-                minus_gcross_vx_leg3 * t634,
-                6.716954264258415 * (t56 * (t43 * t341 - t598))
-                    - minus_gcross_vx_leg4 * t650,
-                -(minus_gcross_vx_leg1 * t662),
-                -(minus_gcross_vx_leg2 * t674 + minus_grod_vx_leg2 * t527),
-                -(minus_gcross_vx_leg3 * t662),
-                minus_grod_vx_leg2 * t592 - minus_gcross_vx_leg4 * t674,
-                -(minus_gcross_vx_leg1 * t608),
-                t536 - minus_gcross_vx_leg2 * t620,
-                -(minus_gcross_vx_leg3 * t632),
-                t601 - minus_gcross_vx_leg4 * t648,
-                -(minus_gcross_vx_leg1 * t706),
-                minus_gcross_vx_leg2 * t712
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t490,
+                minus_gcross_vx_leg2 * t519 - t523, -(minus_gcross_vx_leg3 * t548),
+                -(minus_gcross_vx_leg4 * t576 + t580), -(minus_gcross_vx_leg1 * t590),
+                -(minus_gcross_vx_leg2 * t602
+                    + 6.716954264258415 * (t42 * (t288 * t604))),
+                minus_gcross_vx_leg3 * t614,
+                6.716954264258415 * (t42 * (t336 * t604)) - minus_gcross_vx_leg4 * t628,
+                -(minus_gcross_vx_leg1 * t640),
+                -(minus_gcross_vx_leg2 * t652 + minus_grod_vx_leg2 * t516),
+                -(minus_gcross_vx_leg3 * t640),
+                minus_grod_vx_leg2 * t573 - minus_gcross_vx_leg4 * t652,
+                -(minus_gcross_vx_leg1 * t587),
+                t523 - minus_gcross_vx_leg2 * t600,
+                -(minus_gcross_vx_leg3 * t611),
+                t580 - minus_gcross_vx_leg4 * t626,
+                -(minus_gcross_vx_leg1 * t684),
+                minus_gcross_vx_leg2 * t690
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                minus_gcross_vx_leg3 * t706,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t712,
+                minus_gcross_vx_leg3 * t684,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t690,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t738 + minus_gcross_vx_leg1 * t745,
-                garm_vx_leg2 * t767 - minus_gcross_vx_leg2 * t774
-                    + 1.8867924528301887 * t779,
-                garm_vx_leg3 * t798 - minus_gcross_vx_leg3 * t805,
-                garm_vx_leg4 * t827 + minus_gcross_vx_leg4 * t834
-                    - 1.8867924528301887 * t839,
-                garm_vx_leg1 * t851 - minus_gcross_vx_leg1 * t753,
-                garm_vx_leg2 * t864 - minus_gcross_vx_leg2 * t779,
-                garm_vx_leg3 * t877 - minus_gcross_vx_leg3 * t813,
-                garm_vx_leg4 * t890 - minus_gcross_vx_leg4 * t839,
+                garm_vx_leg1 * t715 + minus_gcross_vx_leg1 * t724,
+                garm_vx_leg2 * t745 - minus_gcross_vx_leg2 * t752
+                    + 1.8867924528301887 * t757,
+                garm_vx_leg3 * t775 - minus_gcross_vx_leg3 * t784,
+                garm_vx_leg4 * t807 + minus_gcross_vx_leg4 * t814
+                    - 1.8867924528301887 * t819,
+                garm_vx_leg1 * t830 - minus_gcross_vx_leg1 * t732,
+                garm_vx_leg2 * t842 - minus_gcross_vx_leg2 * t757,
+                garm_vx_leg3 * t854 - minus_gcross_vx_leg3 * t792,
+                garm_vx_leg4 * t866 - minus_gcross_vx_leg4 * t819,
             ],
             [
-                t374, garm_vy_leg1 * rate_dot_arm_leg1_2, garm_vy_leg2 * rate_dot_arm_leg2_2,
+                t369, garm_vy_leg1 * rate_dot_arm_leg1_2, garm_vy_leg2 * rate_dot_arm_leg2_2,
                 garm_vy_leg3 * rate_dot_arm_leg3_2, garm_vy_leg4 * rate_dot_arm_leg4_2,
-                -(garm_vy_leg1 * t420), -(garm_vy_leg2 * t424), garm_vy_leg3 * t428,
-                garm_vy_leg4 * t432, -(garm_vy_leg1 * t436), -(garm_vy_leg2 * t440),
-                garm_vy_leg3 * t444, garm_vy_leg4 * t448, garm_vy_leg1 * rate_arm_leg1,
+                -(garm_vy_leg1 * t415), -(garm_vy_leg2 * t419), garm_vy_leg3 * t423,
+                garm_vy_leg4 * t427, -(garm_vy_leg1 * t431), -(garm_vy_leg2 * t435),
+                garm_vy_leg3 * t439, garm_vy_leg4 * t443, garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
                 garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t498 - t505,
-                minus_gcross_vy_leg2 * t531, -(minus_gcross_vy_leg3 * t564 + t571),
-                -(minus_gcross_vy_leg4 * t596),
-                6.716954264258415 * (t119 * (t612 - t261 * t261))
-                    - minus_gcross_vy_leg1 * t610,
-                -(minus_gcross_vy_leg2 * t622),
-                -(6.716954264258415 * (t119 * (t637 - t316 * t316))
-                    - minus_gcross_vy_leg3 * t634),
-                -(minus_gcross_vy_leg4 * t650),
-                -(minus_gcross_vy_leg1 * t662 + grod_vy_leg1 * t494),
-                -(minus_gcross_vy_leg2 * t674),
-                grod_vy_leg1 * t560 - minus_gcross_vy_leg3 * t662,
-                -(minus_gcross_vy_leg4 * t674),
-                t505 - minus_gcross_vy_leg1 * t608,
-                -(minus_gcross_vy_leg2 * t620),
-                t571 - minus_gcross_vy_leg3 * t632,
-                -(minus_gcross_vy_leg4 * t648),
-                -(minus_gcross_vy_leg1 * t706
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t490 - t496,
+                minus_gcross_vy_leg2 * t519, -(minus_gcross_vy_leg3 * t548 + t554),
+                -(minus_gcross_vy_leg4 * t576),
+                6.716954264258415 * (t84 * (t257 * t592)) - minus_gcross_vy_leg1 * t590,
+                -(minus_gcross_vy_leg2 * t602),
+                -(6.716954264258415 * (t84 * (t312 * t592))
+                    - minus_gcross_vy_leg3 * t614),
+                -(minus_gcross_vy_leg4 * t628),
+                -(minus_gcross_vy_leg1 * t640 + grod_vy_leg1 * t487),
+                -(minus_gcross_vy_leg2 * t652),
+                grod_vy_leg1 * t545 - minus_gcross_vy_leg3 * t640,
+                -(minus_gcross_vy_leg4 * t652),
+                t496 - minus_gcross_vy_leg1 * t587,
+                -(minus_gcross_vy_leg2 * t600),
+                t554 - minus_gcross_vy_leg3 * t611,
+                -(minus_gcross_vy_leg4 * t626),
+                -(minus_gcross_vy_leg1 * t684
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t712,
-                minus_gcross_vy_leg3 * t706 - 1.8867924528301887 * rate_dot_cross_leg3,
-                -(minus_gcross_vy_leg4 * t712),
+                minus_gcross_vy_leg2 * t690,
+                minus_gcross_vy_leg3 * t684 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t690),
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t738 + minus_gcross_vy_leg1 * t745
-                    - 1.8867924528301887 * t753,
-                garm_vy_leg2 * t767 - minus_gcross_vy_leg2 * t774,
-                garm_vy_leg3 * t798 - minus_gcross_vy_leg3 * t805
-                    + 1.8867924528301887 * t813,
-                garm_vy_leg4 * t827 + minus_gcross_vy_leg4 * t834,
-                garm_vy_leg1 * t851 - minus_gcross_vy_leg1 * t753,
-                garm_vy_leg2 * t864 - minus_gcross_vy_leg2 * t779,
-                garm_vy_leg3 * t877 - minus_gcross_vy_leg3 * t813,
-                garm_vy_leg4 * t890 - minus_gcross_vy_leg4 * t839,
+                garm_vy_leg1 * t715 + minus_gcross_vy_leg1 * t724
+                    - 1.8867924528301887 * t732,
+                garm_vy_leg2 * t745 - minus_gcross_vy_leg2 * t752,
+                garm_vy_leg3 * t775 - minus_gcross_vy_leg3 * t784
+                    + 1.8867924528301887 * t792,
+                garm_vy_leg4 * t807 + minus_gcross_vy_leg4 * t814,
+                garm_vy_leg1 * t830 - minus_gcross_vy_leg1 * t732,
+                garm_vy_leg2 * t842 - minus_gcross_vy_leg2 * t757,
+                garm_vy_leg3 * t854 - minus_gcross_vy_leg3 * t792,
+                garm_vy_leg4 * t866 - minus_gcross_vy_leg4 * t819,
             ],
             [
-                t372 + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1_2),
+                t367 + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1_2),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2_2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3_2),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4_2), minus_garm_vz_leg1 * t420,
-                minus_garm_vz_leg2 * t424, -(minus_garm_vz_leg3 * t428),
-                -(minus_garm_vz_leg4 * t432), minus_garm_vz_leg1 * t436, minus_garm_vz_leg2 * t440,
-                -(minus_garm_vz_leg3 * t444), -(minus_garm_vz_leg4 * t448),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4_2), minus_garm_vz_leg1 * t415,
+                minus_garm_vz_leg2 * t419, -(minus_garm_vz_leg3 * t423),
+                -(minus_garm_vz_leg4 * t427), minus_garm_vz_leg1 * t431, minus_garm_vz_leg2 * t435,
+                -(minus_garm_vz_leg3 * t439), -(minus_garm_vz_leg4 * t443),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6522,22 +6459,22 @@ impl Delta4 {
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t498, minus_gcross_vz_leg2 * t531, gcross_vz_leg3 * t564,
-                gcross_vz_leg4 * t596, -(minus_gcross_vz_leg1 * t610),
-                -(minus_gcross_vz_leg2 * t622), -(gcross_vz_leg3 * t634), gcross_vz_leg4 * t650,
-                -(minus_gcross_vz_leg1 * t662), -(minus_gcross_vz_leg2 * t674),
-                gcross_vz_leg3 * t662, gcross_vz_leg4 * t674, -(minus_gcross_vz_leg1 * t608),
-                -(minus_gcross_vz_leg2 * t620), gcross_vz_leg3 * t632, gcross_vz_leg4 * t648,
-                -(minus_gcross_vz_leg1 * t706), minus_gcross_vz_leg2 * t712,
-                -(gcross_vz_leg3 * t706), gcross_vz_leg4 * t712, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t745 - minus_garm_vz_leg1 * t738,
-                -(minus_gcross_vz_leg2 * t774 + minus_garm_vz_leg2 * t767),
-                gcross_vz_leg3 * t805 - minus_garm_vz_leg3 * t798,
-                -(minus_garm_vz_leg4 * t827 + gcross_vz_leg4 * t834),
-                -(minus_garm_vz_leg1 * t851 + minus_gcross_vz_leg1 * t753),
-                -(minus_gcross_vz_leg2 * t779 + minus_garm_vz_leg2 * t864),
-                gcross_vz_leg3 * t813 - minus_garm_vz_leg3 * t877,
-                gcross_vz_leg4 * t839 - minus_garm_vz_leg4 * t890,
+                minus_gcross_vz_leg1 * t490, minus_gcross_vz_leg2 * t519, gcross_vz_leg3 * t548,
+                gcross_vz_leg4 * t576, -(minus_gcross_vz_leg1 * t590),
+                -(minus_gcross_vz_leg2 * t602), -(gcross_vz_leg3 * t614), gcross_vz_leg4 * t628,
+                -(minus_gcross_vz_leg1 * t640), -(minus_gcross_vz_leg2 * t652),
+                gcross_vz_leg3 * t640, gcross_vz_leg4 * t652, -(minus_gcross_vz_leg1 * t587),
+                -(minus_gcross_vz_leg2 * t600), gcross_vz_leg3 * t611, gcross_vz_leg4 * t626,
+                -(minus_gcross_vz_leg1 * t684), minus_gcross_vz_leg2 * t690,
+                -(gcross_vz_leg3 * t684), gcross_vz_leg4 * t690, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t724 - minus_garm_vz_leg1 * t715,
+                -(minus_gcross_vz_leg2 * t752 + minus_garm_vz_leg2 * t745),
+                gcross_vz_leg3 * t784 - minus_garm_vz_leg3 * t775,
+                -(minus_garm_vz_leg4 * t807 + gcross_vz_leg4 * t814),
+                -(minus_garm_vz_leg1 * t830 + minus_gcross_vz_leg1 * t732),
+                -(minus_gcross_vz_leg2 * t757 + minus_garm_vz_leg2 * t842),
+                gcross_vz_leg3 * t792 - minus_garm_vz_leg3 * t854,
+                gcross_vz_leg4 * t819 - minus_garm_vz_leg4 * t866,
             ],
         ])
     }

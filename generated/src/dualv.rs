@@ -1410,7 +1410,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 420 operations (151 additions, 261 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 290 intermediates.
+    /// 418 operations (153 additions, 252 multiplications, 13 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 288 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1421,271 +1421,270 @@ impl DualV {
     ) -> Result<[[f64; 64]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
+        let t3 = pose[0] + t2;
         let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t7 = t6 + -0.10970563941232059;
-        let t8 = pose[1] + t7;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t21 = t2 * twist[2];
-        let t24 = twist[2] * t21 - t6 * acceleration[2];
-        let t25 = acceleration[0] + t24;
-        let t27 = 0.5 * t8;
-        let t29 = t27 - t4 * t14;
-        let t30 = t8 - t29;
-        let t31 = t6 * twist[2];
-        let t34 = twist[2] * t31 + t2 * acceleration[2];
-        let t35 = acceleration[1] - t34;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t39 = twist[0] - t31;
-        let minus_g2_vy_leg1 = t29 * t19;
-        let t42 = twist[1] - t21;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t39 + minus_g2_vy_leg1 * t42;
-        let t45 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t47 = t17 * t25 + t30 * t35 + 0.0784 * t45;
-        let g1_vy_leg1 = t30 * t19;
-        let rate_1_leg1 = g1_vx_leg1 * t39 + g1_vy_leg1 * t42;
-        let t52 = rate_1_leg1 * rate_1_leg1;
-        let t54 = 0.5 * (t11 - 0.1568);
-        let rate_dot_1_leg1 = t19 * (t47 + t52 * t54);
-        let t58 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t59 = g1_vy_leg1 * rate_dot_1_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t63 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t74 = t16 * t25 + t29 * t35 + 0.0784 * t52;
-        let minus_rate_dot_2_leg1 = t19 * (t74 + t45 * t54);
-        let t78 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t79 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t83 = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        let t84 = 3.5714285714285716 * t25;
-        let t88 = 3.5714285714285716 * t35;
-        let t94 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t95 = 0.11 * acceleration[2];
-        let t97 = 0.39285714285714285 * (t95 - t94);
-        let t101 = 3.5714285714285716 * t74;
-        let t103 = 3.5714285714285716 * t47;
-        let t115 = rate_1_leg1 + minus_rate_2_leg1;
-        let t116 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t118 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t120 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t125 = minus_rate_2_leg1 + twist[2];
-        let t128 = 1.0 - g2_wz_leg1;
-        let t133 = t3 + 0.3950502153918333;
-        let t136 = t133 * t133 + t10;
-        let t138 = 0.0784 / t136 - 0.25;
-        ::overact::guard::reach(t138, "leg2")?;
-        let t139 = ::overact::math::sqrt(t138);
-        let t141 = 0.5 * t133 - t8 * t139;
-        let t142 = t133 - t141;
-        let t143 = t136 * t139;
-        ::overact::guard::leg(t143, 0.07839913810297301, "leg2")?;
-        let t144 = 1.0 / t143;
-        let minus_g1_vx_leg2 = t142 * t144;
-        let t148 = t27 + t133 * t139;
-        let t149 = t8 - t148;
-        let g2_vx_leg2 = t141 * t144;
-        let g2_vy_leg2 = t148 * t144;
-        let rate_2_leg2 = g2_vx_leg2 * t39 + g2_vy_leg2 * t42;
-        let t157 = rate_2_leg2 * rate_2_leg2;
-        let t159 = t142 * t25 + t149 * t35 + 0.0784 * t157;
-        let minus_g1_vy_leg2 = t149 * t144;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t39 + minus_g1_vy_leg2 * t42;
-        let t164 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t166 = 0.5 * (t136 - 0.1568);
-        let minus_rate_dot_1_leg2 = t144 * (t159 + t164 * t166);
-        let t170 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t171 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t175 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t186 = t141 * t25 + t148 * t35 + 0.0784 * t164;
-        let rate_dot_2_leg2 = t144 * (t186 + t157 * t166);
-        let t190 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t191 = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t195 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t205 = 3.5714285714285716 * t186;
-        let t207 = 3.5714285714285716 * t159;
-        let t219 = minus_rate_1_leg2 + rate_2_leg2;
-        let t220 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t222 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t224 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t229 = twist[2] - rate_2_leg2;
-        let t232 = minus_g2_wz_leg2 + 1.0;
-        let t237 = pose[0] + t2;
-        let t238 = t237 + 0.3950502153918333;
-        let t240 = pose[1] - t7;
-        let t242 = t240 * t240;
-        let t243 = t238 * t238 + t242;
-        let t245 = 0.0784 / t243 - 0.25;
-        ::overact::guard::reach(t245, "leg3")?;
-        let t246 = ::overact::math::sqrt(t245);
-        let t248 = 0.5 * t238 + t240 * t246;
-        let t249 = t238 - t248;
-        let t250 = t243 * t246;
-        ::overact::guard::leg(t250, 0.07839913810297301, "leg3")?;
-        let t251 = 1.0 / t250;
-        let g1_vx_leg3 = t249 * t251;
-        let t253 = acceleration[0] - t24;
-        let t255 = 0.5 * t240;
-        let t257 = t255 - t238 * t246;
-        let t258 = t240 - t257;
-        let t259 = acceleration[1] + t34;
-        let minus_g2_vx_leg3 = t248 * t251;
-        let t263 = twist[0] + t31;
-        let minus_g2_vy_leg3 = t257 * t251;
-        let t266 = twist[1] + t21;
+        let t5 = 0.5 * t4;
+        let t6 = pose[0] - t5;
+        let t7 = -0.3950502153918333 + t6;
+        let t8 = t7 + t7;
+        let t9 = 0.11 * c_phi;
+        let t11 = pose[1] - (t9 + -0.10970563941232059);
+        let t12 = 0.5 * t11;
+        let t13 = pose[1] - t12;
+        let t14 = t13 + t13;
+        let t16 = t14 * t14;
+        let t17 = t8 * t8 + t16;
+        let t19 = 0.0784 / t17 - 0.25;
+        ::overact::guard::reach(t19, "leg1")?;
+        let t20 = ::overact::math::sqrt(t19);
+        let t22 = t7 + t14 * t20;
+        let t23 = t8 - t22;
+        let t24 = t17 * t20;
+        ::overact::guard::leg(t24, 0.07839913810297301, "leg1")?;
+        let t25 = 1.0 / t24;
+        let g1_vx_leg1 = t23 * t25;
+        let t27 = t2 * twist[2];
+        let t30 = twist[2] * t27 - t9 * acceleration[2];
+        let t31 = acceleration[0] + t30;
+        let t34 = t13 - t8 * t20;
+        let t35 = t14 - t34;
+        let t36 = t9 * twist[2];
+        let t39 = twist[2] * t36 + t2 * acceleration[2];
+        let t40 = acceleration[1] - t39;
+        let minus_g2_vx_leg1 = t22 * t25;
+        let t44 = twist[0] - t36;
+        let minus_g2_vy_leg1 = t34 * t25;
+        let t47 = twist[1] - t27;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t44 + minus_g2_vy_leg1 * t47;
+        let t50 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t52 = t23 * t31 + t35 * t40 + 0.0784 * t50;
+        let g1_vy_leg1 = t35 * t25;
+        let rate_1_leg1 = g1_vx_leg1 * t44 + g1_vy_leg1 * t47;
+        let t57 = rate_1_leg1 * rate_1_leg1;
+        let t59 = 0.5 * (t17 - 0.1568);
+        let rate_dot_1_leg1 = t25 * (t52 + t57 * t59);
+        let t63 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t64 = g1_vy_leg1 * rate_dot_1_leg1;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t9 * g1_vx_leg1;
+        let t68 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t79 = t22 * t31 + t34 * t40 + 0.0784 * t57;
+        let minus_rate_dot_2_leg1 = t25 * (t79 + t50 * t59);
+        let t83 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t84 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t9 * minus_g2_vx_leg1;
+        let t88 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t89 = 3.5714285714285716 * t31;
+        let t93 = 3.5714285714285716 * t40;
+        let t99 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t100 = 0.11 * acceleration[2];
+        let t102 = 0.39285714285714285 * (t100 - t99);
+        let t106 = 3.5714285714285716 * t79;
+        let t108 = 3.5714285714285716 * t52;
+        let t120 = rate_1_leg1 + minus_rate_2_leg1;
+        let t121 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t123 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t125 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t130 = minus_rate_2_leg1 + twist[2];
+        let t133 = 1.0 - g2_wz_leg1;
+        let t138 = t6 + t6;
+        let t140 = t138 * t138 + t16;
+        let t142 = 0.0784 / t140 - 0.25;
+        ::overact::guard::reach(t142, "leg2")?;
+        let t143 = ::overact::math::sqrt(t142);
+        let t145 = t6 - t14 * t143;
+        let t146 = t138 - t145;
+        let t147 = t140 * t143;
+        ::overact::guard::leg(t147, 0.07839913810297301, "leg2")?;
+        let t148 = 1.0 / t147;
+        let minus_g1_vx_leg2 = t146 * t148;
+        let t152 = t13 + t138 * t143;
+        let t153 = t14 - t152;
+        let g2_vx_leg2 = t145 * t148;
+        let g2_vy_leg2 = t152 * t148;
+        let rate_2_leg2 = g2_vx_leg2 * t44 + g2_vy_leg2 * t47;
+        let t161 = rate_2_leg2 * rate_2_leg2;
+        let t163 = t146 * t31 + t153 * t40 + 0.0784 * t161;
+        let minus_g1_vy_leg2 = t153 * t148;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t44 + minus_g1_vy_leg2 * t47;
+        let t168 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t170 = 0.5 * (t140 - 0.1568);
+        let minus_rate_dot_1_leg2 = t148 * (t163 + t168 * t170);
+        let t174 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t175 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
+        let t179 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t190 = t145 * t31 + t152 * t40 + 0.0784 * t168;
+        let rate_dot_2_leg2 = t148 * (t190 + t161 * t170);
+        let t194 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t195 = g2_vy_leg2 * rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t9 * g2_vx_leg2;
+        let t199 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t209 = 3.5714285714285716 * t190;
+        let t211 = 3.5714285714285716 * t163;
+        let t223 = minus_rate_1_leg2 + rate_2_leg2;
+        let t224 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t226 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t228 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t233 = twist[2] - rate_2_leg2;
+        let t236 = minus_g2_wz_leg2 + 1.0;
+        let t241 = t3 + 0.3950502153918333;
+        let t244 = t11 * t11;
+        let t245 = t241 * t241 + t244;
+        let t247 = 0.0784 / t245 - 0.25;
+        ::overact::guard::reach(t247, "leg3")?;
+        let t248 = ::overact::math::sqrt(t247);
+        let t250 = 0.5 * t241 + t11 * t248;
+        let t251 = t241 - t250;
+        let t252 = t245 * t248;
+        ::overact::guard::leg(t252, 0.07839913810297301, "leg3")?;
+        let g1_vx_leg3 = t251 / t252;
+        let t254 = acceleration[0] - t30;
+        let t257 = t12 - t241 * t248;
+        let t259 = acceleration[1] + t39;
+        let minus_g2_vx_leg3 = t250 / t252;
+        let t263 = twist[0] + t36;
+        let minus_g2_vy_leg3 = t257 / t252;
+        let t266 = twist[1] + t27;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * t263 + minus_g2_vy_leg3 * t266;
         let t269 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t271 = t249 * t253 + t258 * t259 + 0.0784 * t269;
-        let g1_vy_leg3 = t258 * t251;
+        let t271 = t251 * t254 + (t11 - t257) * t259 + 0.0784 * t269;
+        let t273 = t11 / t252;
+        let g1_vy_leg3 = t273 - minus_g2_vy_leg3;
         let rate_1_leg3 = g1_vx_leg3 * t263 + g1_vy_leg3 * t266;
-        let t276 = rate_1_leg3 * rate_1_leg3;
-        let t278 = 0.5 * (t243 - 0.1568);
-        let rate_dot_1_leg3 = t251 * (t271 + t276 * t278);
-        let t282 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t283 = g1_vy_leg3 * rate_dot_1_leg3;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t287 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t298 = t248 * t253 + t257 * t259 + 0.0784 * t276;
-        let minus_rate_dot_2_leg3 = t251 * (t298 + t269 * t278);
-        let t302 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t303 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t307 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t308 = 3.5714285714285716 * t253;
-        let t312 = 3.5714285714285716 * t259;
-        let t317 = 0.39285714285714285 * (t94 + t95);
-        let t321 = 3.5714285714285716 * t298;
-        let t323 = 3.5714285714285716 * t271;
-        let t335 = rate_1_leg3 + minus_rate_2_leg3;
-        let t336 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t338 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t277 = rate_1_leg3 * rate_1_leg3;
+        let t279 = 0.5 * (t245 - 0.1568);
+        let rate_dot_1_leg3 = (t271 + t277 * t279) / t252;
+        let t283 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t284 = g1_vy_leg3 * rate_dot_1_leg3;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t9 * g1_vx_leg3;
+        let t288 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t299 = t250 * t254 + t257 * t259 + 0.0784 * t277;
+        let minus_rate_dot_2_leg3 = (t299 + t269 * t279) / t252;
+        let t303 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t304 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t9 * minus_g2_vx_leg3;
+        let t308 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t309 = 3.5714285714285716 * t254;
+        let t313 = 3.5714285714285716 * t259;
+        let t318 = 0.39285714285714285 * (t99 + t100);
+        let t322 = 3.5714285714285716 * t299;
+        let t324 = 3.5714285714285716 * t271;
+        let t336 = rate_1_leg3 + minus_rate_2_leg3;
+        let t337 = g1_vx_leg3 + minus_g2_vx_leg3;
         let t340 = g1_wz_leg3 + minus_g2_wz_leg3;
         let t345 = minus_rate_2_leg3 + twist[2];
         let t348 = minus_g2_wz_leg3 + 1.0;
-        let t353 = t237 - 0.3950502153918333;
-        let t356 = t353 * t353 + t242;
-        let t358 = 0.0784 / t356 - 0.25;
-        ::overact::guard::reach(t358, "leg4")?;
-        let t359 = ::overact::math::sqrt(t358);
-        let t361 = 0.5 * t353 - t240 * t359;
-        let t362 = t353 - t361;
-        let t363 = t356 * t359;
-        ::overact::guard::leg(t363, 0.07839913810297301, "leg4")?;
-        let t364 = 1.0 / t363;
-        let minus_g1_vx_leg4 = t362 * t364;
-        let t368 = t255 + t353 * t359;
-        let t369 = t240 - t368;
-        let g2_vx_leg4 = t361 * t364;
-        let g2_vy_leg4 = t368 * t364;
+        let t354 = t4 * t4 + t244;
+        let t356 = 0.0784 / t354 - 0.25;
+        ::overact::guard::reach(t356, "leg4")?;
+        let t357 = ::overact::math::sqrt(t356);
+        let t359 = t5 - t11 * t357;
+        let t360 = t4 - t359;
+        let t361 = t354 * t357;
+        ::overact::guard::leg(t361, 0.07839913810297301, "leg4")?;
+        let t362 = 1.0 / t361;
+        let minus_g1_vx_leg4 = t360 * t362;
+        let t366 = t12 + t4 * t357;
+        let t367 = t11 - t366;
+        let g2_vx_leg4 = t359 * t362;
+        let g2_vy_leg4 = t366 * t362;
         let rate_2_leg4 = g2_vx_leg4 * t263 + g2_vy_leg4 * t266;
-        let t377 = rate_2_leg4 * rate_2_leg4;
-        let t379 = t362 * t253 + t369 * t259 + 0.0784 * t377;
-        let minus_g1_vy_leg4 = t369 * t364;
+        let t375 = rate_2_leg4 * rate_2_leg4;
+        let t377 = t360 * t254 + t367 * t259 + 0.0784 * t375;
+        let minus_g1_vy_leg4 = t367 * t362;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * t263 + minus_g1_vy_leg4 * t266;
-        let t384 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t386 = 0.5 * (t356 - 0.1568);
-        let minus_rate_dot_1_leg4 = t364 * (t379 + t384 * t386);
-        let t390 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t391 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t395 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t406 = t361 * t253 + t368 * t259 + 0.0784 * t384;
-        let rate_dot_2_leg4 = t364 * (t406 + t377 * t386);
-        let t410 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t411 = g2_vy_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t415 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t425 = 3.5714285714285716 * t406;
-        let t427 = 3.5714285714285716 * t379;
-        let t439 = minus_rate_1_leg4 + rate_2_leg4;
-        let t440 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t442 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t444 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t449 = twist[2] - rate_2_leg4;
-        let t452 = 1.0 - g2_wz_leg4;
-        let t457 = 9.090909090909092 * t34;
-        let t458 = 9.090909090909092 * t24;
+        let t382 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t384 = 0.5 * (t354 - 0.1568);
+        let minus_rate_dot_1_leg4 = t362 * (t377 + t382 * t384);
+        let t388 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t389 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t9 * minus_g1_vx_leg4;
+        let t393 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t404 = t359 * t254 + t366 * t259 + 0.0784 * t382;
+        let rate_dot_2_leg4 = t362 * (t404 + t375 * t384);
+        let t408 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t409 = g2_vy_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t9 * g2_vx_leg4;
+        let t413 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t423 = 3.5714285714285716 * t404;
+        let t425 = 3.5714285714285716 * t377;
+        let t437 = minus_rate_1_leg4 + rate_2_leg4;
+        let t438 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t440 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t442 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t447 = twist[2] - rate_2_leg4;
+        let t450 = 1.0 - g2_wz_leg4;
+        let t455 = 9.090909090909092 * t39;
+        let t456 = 9.090909090909092 * t30;
         Ok([
             [
-                t58, t58, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t78,
-                t84 - 0.28 * (t58 + t78), g1_vx_leg1 * t101 + minus_g2_vx_leg1 * t103, 0.0784 * t58,
-                t115 * t116, ::overact::math::signed(t116, t115), -t116, minus_g2_vx_leg1 * t125,
-                ::overact::math::signed(minus_g2_vx_leg1, t125), minus_g2_vx_leg1, t170, t170,
+                t63, t63, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t83,
+                t89 - 0.28 * (t63 + t83), g1_vx_leg1 * t106 + minus_g2_vx_leg1 * t108, 0.0784 * t63,
+                t120 * t121, ::overact::math::signed(t121, t120), -t121, minus_g2_vx_leg1 * t130,
+                ::overact::math::signed(minus_g2_vx_leg1, t130), minus_g2_vx_leg1, t174, t174,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t190, t84 - 0.28 * (t170 + t190), -(minus_g1_vx_leg2 * t205 + g2_vx_leg2 * t207),
-                0.0784 * t170, t219 * t220, ::overact::math::signed(t220, t219), t220,
-                -(g2_vx_leg2 * t229), -::overact::math::signed(g2_vx_leg2, t229), -g2_vx_leg2, t282,
-                t282, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t302, t308 - 0.28 * (t282 + t302),
-                g1_vx_leg3 * t321 + minus_g2_vx_leg3 * t323, 0.0784 * t282, t335 * t336,
-                ::overact::math::signed(t336, t335), -t336, minus_g2_vx_leg3 * t345,
-                ::overact::math::signed(minus_g2_vx_leg3, t345), minus_g2_vx_leg3, t390, t390,
+                t194, t89 - 0.28 * (t174 + t194), -(minus_g1_vx_leg2 * t209 + g2_vx_leg2 * t211),
+                0.0784 * t174, t223 * t224, ::overact::math::signed(t224, t223), t224,
+                -(g2_vx_leg2 * t233), -::overact::math::signed(g2_vx_leg2, t233), -g2_vx_leg2, t283,
+                t283, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t303, t309 - 0.28 * (t283 + t303),
+                g1_vx_leg3 * t322 + minus_g2_vx_leg3 * t324, 0.0784 * t283, t336 * t337,
+                ::overact::math::signed(t337, t336), -t337, minus_g2_vx_leg3 * t345,
+                ::overact::math::signed(minus_g2_vx_leg3, t345), minus_g2_vx_leg3, t388, t388,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t410, t308 - 0.28 * (t390 + t410), -(minus_g1_vx_leg4 * t425 + g2_vx_leg4 * t427),
-                0.0784 * t390, t439 * t440, ::overact::math::signed(t440, t439), t440,
-                -(g2_vx_leg4 * t449), -::overact::math::signed(g2_vx_leg4, t449), -g2_vx_leg4, 0.0,
-                -t457, t458, acceleration[0],
+                t408, t309 - 0.28 * (t388 + t408), -(minus_g1_vx_leg4 * t423 + g2_vx_leg4 * t425),
+                0.0784 * t388, t437 * t438, ::overact::math::signed(t438, t437), t438,
+                -(g2_vx_leg4 * t447), -::overact::math::signed(g2_vx_leg4, t447), -g2_vx_leg4, 0.0,
+                -t455, t456, acceleration[0],
             ],
             [
-                t59, t59, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t79,
-                t88 - 0.28 * (t59 + t79), g1_vy_leg1 * t101 + minus_g2_vy_leg1 * t103, 0.0784 * t59,
-                t115 * t118, ::overact::math::signed(t118, t115), -t118, minus_g2_vy_leg1 * t125,
-                ::overact::math::signed(minus_g2_vy_leg1, t125), minus_g2_vy_leg1, t171, t171,
+                t64, t64, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t84,
+                t93 - 0.28 * (t64 + t84), g1_vy_leg1 * t106 + minus_g2_vy_leg1 * t108, 0.0784 * t64,
+                t120 * t123, ::overact::math::signed(t123, t120), -t123, minus_g2_vy_leg1 * t130,
+                ::overact::math::signed(minus_g2_vy_leg1, t130), minus_g2_vy_leg1, t175, t175,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t191, t88 - 0.28 * (t171 + t191), -(minus_g1_vy_leg2 * t205 + g2_vy_leg2 * t207),
-                0.0784 * t171, t219 * t222, ::overact::math::signed(t222, t219), t222,
-                -(g2_vy_leg2 * t229), -::overact::math::signed(g2_vy_leg2, t229), -g2_vy_leg2, t283,
-                t283, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t303, t312 - 0.28 * (t283 + t303),
-                g1_vy_leg3 * t321 + minus_g2_vy_leg3 * t323, 0.0784 * t283, t335 * t338,
-                ::overact::math::signed(t338, t335), -t338, minus_g2_vy_leg3 * t345,
-                ::overact::math::signed(minus_g2_vy_leg3, t345), minus_g2_vy_leg3, t391, t391,
+                t195, t93 - 0.28 * (t175 + t195), -(minus_g1_vy_leg2 * t209 + g2_vy_leg2 * t211),
+                0.0784 * t175, t223 * t226, ::overact::math::signed(t226, t223), t226,
+                -(g2_vy_leg2 * t233), -::overact::math::signed(g2_vy_leg2, t233), -g2_vy_leg2, t284,
+                t284, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t304, t313 - 0.28 * (t284 + t304),
+                g1_vy_leg3 * t322 + minus_g2_vy_leg3 * t324, 0.0784 * t284, t336 * t273,
+                ::overact::math::signed(t273, t336), -t273, minus_g2_vy_leg3 * t345,
+                ::overact::math::signed(minus_g2_vy_leg3, t345), minus_g2_vy_leg3, t389, t389,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t411, t312 - 0.28 * (t391 + t411), -(minus_g1_vy_leg4 * t425 + g2_vy_leg4 * t427),
-                0.0784 * t391, t439 * t442, ::overact::math::signed(t442, t439), t442,
-                -(g2_vy_leg4 * t449), -::overact::math::signed(g2_vy_leg4, t449), -g2_vy_leg4, 0.0,
-                -t458, -t457, acceleration[1],
+                t409, t313 - 0.28 * (t389 + t409), -(minus_g1_vy_leg4 * t423 + g2_vy_leg4 * t425),
+                0.0784 * t389, t437 * t440, ::overact::math::signed(t440, t437), t440,
+                -(g2_vy_leg4 * t447), -::overact::math::signed(g2_vy_leg4, t447), -g2_vy_leg4, 0.0,
+                -t456, -t455, acceleration[1],
             ],
             [
-                -t63, -t63, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t83,
-                t97 + 0.28 * (t63 + t83), -(minus_g1_wz_leg1 * t101 + g2_wz_leg1 * t103),
-                -(0.0784 * t63), -(t115 * t120), -::overact::math::signed(t120, t115), t120,
-                t125 * t128, ::overact::math::signed(t128, t125), t128, -t175, -t175,
+                -t68, -t68, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t88,
+                t102 + 0.28 * (t68 + t88), -(minus_g1_wz_leg1 * t106 + g2_wz_leg1 * t108),
+                -(0.0784 * t68), -(t120 * t125), -::overact::math::signed(t125, t120), t125,
+                t130 * t133, ::overact::math::signed(t133, t130), t133, -t179, -t179,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t195,
-                t97 + 0.28 * (t175 + t195), g1_wz_leg2 * t205 + minus_g2_wz_leg2 * t207,
-                -(0.0784 * t175), -(t219 * t224), -::overact::math::signed(t224, t219), -t224,
-                t229 * t232, ::overact::math::signed(t232, t229), t232, t287, t287,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t199,
+                t102 + 0.28 * (t179 + t199), g1_wz_leg2 * t209 + minus_g2_wz_leg2 * t211,
+                -(0.0784 * t179), -(t223 * t228), -::overact::math::signed(t228, t223), -t228,
+                t233 * t236, ::overact::math::signed(t236, t233), t236, t288, t288,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t307, t317 - 0.28 * (t287 + t307),
-                g1_wz_leg3 * t321 + minus_g2_wz_leg3 * t323, 0.0784 * t287, t335 * t340,
-                ::overact::math::signed(t340, t335), -t340, t345 * t348,
-                ::overact::math::signed(t348, t345), t348, t395, t395,
+                g1_wz_leg3, t308, t318 - 0.28 * (t288 + t308),
+                g1_wz_leg3 * t322 + minus_g2_wz_leg3 * t324, 0.0784 * t288, t336 * t340,
+                ::overact::math::signed(t340, t336), -t340, t345 * t348,
+                ::overact::math::signed(t348, t345), t348, t393, t393,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t415, t317 - 0.28 * (t395 + t415), -(minus_g1_wz_leg4 * t425 + g2_wz_leg4 * t427),
-                0.0784 * t395, t439 * t444, ::overact::math::signed(t444, t439), t444, t449 * t452,
-                ::overact::math::signed(t452, t449), t452, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t94, 0.0,
+                t413, t318 - 0.28 * (t393 + t413), -(minus_g1_wz_leg4 * t423 + g2_wz_leg4 * t425),
+                0.0784 * t393, t437 * t442, ::overact::math::signed(t442, t437), t442, t447 * t450,
+                ::overact::math::signed(t450, t447), t450, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t99, 0.0,
             ],
         ])
     }
@@ -1700,7 +1699,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 371 operations (122 additions, 245 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 253 intermediates.
+    /// 367 operations (122 additions, 241 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 249 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1737,201 +1736,197 @@ impl DualV {
         let minus_g2_vy_leg1 = s1_leg1 * t10;
         let t33 = twist[1] - t15;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t30 + minus_g2_vy_leg1 * t33;
-        let t36 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + 0.28 * t36;
+        let t37 = 0.28 * (minus_rate_2_leg1 * minus_rate_2_leg1);
+        let t38 = c12_leg1 * t20 + s12_leg1 * t26 + t37;
         let g1_vy_leg1 = s12_leg1 * t10;
         let rate_1_leg1 = g1_vx_leg1 * t30 + g1_vy_leg1 * t33;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let t44 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
+        let t44 = 0.28 * (rate_1_leg1 * rate_1_leg1);
+        let rate_dot_1_leg1 = t10 * (t38 + c2_leg1 * t44);
         let t48 = g1_vx_leg1 * rate_dot_1_leg1;
         let t49 = g1_vy_leg1 * rate_dot_1_leg1;
         let minus_g1_wz_leg1 = g1_vy_leg1 * t14 + g1_vx_leg1 * t17;
         let t53 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t64 = c1_leg1 * t20 + s1_leg1 * t26 + 0.28 * t43;
-        let minus_rate_dot_2_leg1 = t10 * (t64 + t36 * t44);
-        let t68 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t69 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let t63 = c1_leg1 * t20 + s1_leg1 * t26 + t44;
+        let minus_rate_dot_2_leg1 = t10 * (t63 + t37 * c2_leg1);
+        let t67 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t68 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t14 + minus_g2_vx_leg1 * t17;
-        let t73 = g2_wz_leg1 * minus_rate_dot_2_leg1;
-        let t74 = 3.5714285714285716 * t20;
-        let t78 = 3.5714285714285716 * t26;
-        let t84 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t85 = 9.090909090909092 * t84;
-        let t87 = 0.04321428571428571 * (acceleration[2] - t85);
-        let t103 = rate_1_leg1 + minus_rate_2_leg1;
-        let t104 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t106 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t108 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t113 = minus_rate_2_leg1 + twist[2];
-        let t116 = 1.0 - g2_wz_leg1;
+        let t72 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t73 = 3.5714285714285716 * t20;
+        let t77 = 3.5714285714285716 * t26;
+        let t83 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t84 = 9.090909090909092 * t83;
+        let t86 = 0.04321428571428571 * (acceleration[2] - t84);
+        let t102 = rate_1_leg1 + minus_rate_2_leg1;
+        let t103 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t105 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t107 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t112 = minus_rate_2_leg1 + twist[2];
+        let t115 = 1.0 - g2_wz_leg1;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t131 = 3.5714285714285716 / s2_leg2;
-        let g1_vx_leg2 = c12_leg2 * t131;
-        let minus_g2_vx_leg2 = c1_leg2 * t131;
-        let minus_g2_vy_leg2 = s1_leg2 * t131;
+        let t130 = 3.5714285714285716 / s2_leg2;
+        let g1_vx_leg2 = c12_leg2 * t130;
+        let minus_g2_vx_leg2 = c1_leg2 * t130;
+        let minus_g2_vy_leg2 = s1_leg2 * t130;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * t30 + minus_g2_vy_leg2 * t33;
-        let t141 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t143 = c12_leg2 * t20 + s12_leg2 * t26 + 0.28 * t141;
-        let g1_vy_leg2 = s12_leg2 * t131;
+        let t141 = 0.28 * (minus_rate_2_leg2 * minus_rate_2_leg2);
+        let t142 = c12_leg2 * t20 + s12_leg2 * t26 + t141;
+        let g1_vy_leg2 = s12_leg2 * t130;
         let rate_1_leg2 = g1_vx_leg2 * t30 + g1_vy_leg2 * t33;
-        let t148 = rate_1_leg2 * rate_1_leg2;
-        let t149 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t131 * (t143 + t148 * t149);
-        let t153 = g1_vx_leg2 * rate_dot_1_leg2;
-        let t154 = g1_vy_leg2 * rate_dot_1_leg2;
+        let t148 = 0.28 * (rate_1_leg2 * rate_1_leg2);
+        let rate_dot_1_leg2 = t130 * (t142 + c2_leg2 * t148);
+        let t152 = g1_vx_leg2 * rate_dot_1_leg2;
+        let t153 = g1_vy_leg2 * rate_dot_1_leg2;
         let minus_g1_wz_leg2 = t14 * g1_vy_leg2 + t17 * g1_vx_leg2;
-        let t158 = minus_g1_wz_leg2 * rate_dot_1_leg2;
-        let t169 = c1_leg2 * t20 + s1_leg2 * t26 + 0.28 * t148;
-        let minus_rate_dot_2_leg2 = t131 * (t169 + t141 * t149);
-        let t173 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t174 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t157 = minus_g1_wz_leg2 * rate_dot_1_leg2;
+        let t167 = c1_leg2 * t20 + s1_leg2 * t26 + t148;
+        let minus_rate_dot_2_leg2 = t130 * (t167 + t141 * c2_leg2);
+        let t171 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t172 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
         let g2_wz_leg2 = t14 * minus_g2_vy_leg2 + t17 * minus_g2_vx_leg2;
-        let t178 = g2_wz_leg2 * minus_rate_dot_2_leg2;
-        let t200 = rate_1_leg2 + minus_rate_2_leg2;
-        let t201 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t203 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t205 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t210 = minus_rate_2_leg2 + twist[2];
-        let t213 = 1.0 - g2_wz_leg2;
+        let t176 = g2_wz_leg2 * minus_rate_dot_2_leg2;
+        let t198 = rate_1_leg2 + minus_rate_2_leg2;
+        let t199 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t201 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let t203 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t208 = minus_rate_2_leg2 + twist[2];
+        let t211 = 1.0 - g2_wz_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t228 = 3.5714285714285716 / s2_leg3;
-        let g1_vx_leg3 = c12_leg3 * t228;
-        let t230 = acceleration[0] - t19;
-        let t232 = acceleration[1] + t25;
-        let minus_g2_vx_leg3 = c1_leg3 * t228;
-        let t236 = twist[0] + t22;
-        let minus_g2_vy_leg3 = s1_leg3 * t228;
-        let t239 = twist[1] + t15;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t244 = c12_leg3 * t230 + s12_leg3 * t232 + 0.28 * t242;
-        let g1_vy_leg3 = s12_leg3 * t228;
-        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t239;
-        let t249 = rate_1_leg3 * rate_1_leg3;
-        let t250 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t228 * (t244 + t249 * t250);
-        let t254 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t255 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t226 = 3.5714285714285716 / s2_leg3;
+        let g1_vx_leg3 = c12_leg3 * t226;
+        let t228 = acceleration[0] - t19;
+        let t230 = acceleration[1] + t25;
+        let minus_g2_vx_leg3 = c1_leg3 * t226;
+        let t234 = twist[0] + t22;
+        let minus_g2_vy_leg3 = s1_leg3 * t226;
+        let t237 = twist[1] + t15;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t234 + minus_g2_vy_leg3 * t237;
+        let t241 = 0.28 * (minus_rate_2_leg3 * minus_rate_2_leg3);
+        let t242 = c12_leg3 * t228 + s12_leg3 * t230 + t241;
+        let g1_vy_leg3 = s12_leg3 * t226;
+        let rate_1_leg3 = g1_vx_leg3 * t234 + g1_vy_leg3 * t237;
+        let t248 = 0.28 * (rate_1_leg3 * rate_1_leg3);
+        let rate_dot_1_leg3 = t226 * (t242 + c2_leg3 * t248);
+        let t252 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t253 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
-        let t259 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t270 = c1_leg3 * t230 + s1_leg3 * t232 + 0.28 * t249;
-        let minus_rate_dot_2_leg3 = t228 * (t270 + t242 * t250);
-        let t274 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t275 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t257 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t267 = c1_leg3 * t228 + s1_leg3 * t230 + t248;
+        let minus_rate_dot_2_leg3 = t226 * (t267 + t241 * c2_leg3);
+        let t271 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t272 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
-        let t279 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t280 = 3.5714285714285716 * t230;
-        let t284 = 3.5714285714285716 * t232;
-        let t289 = 0.04321428571428571 * (acceleration[2] + t85);
-        let t305 = rate_1_leg3 + minus_rate_2_leg3;
-        let t306 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t308 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t310 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t315 = minus_rate_2_leg3 + twist[2];
-        let t318 = minus_g2_wz_leg3 + 1.0;
+        let t276 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t277 = 3.5714285714285716 * t228;
+        let t281 = 3.5714285714285716 * t230;
+        let t286 = 0.04321428571428571 * (acceleration[2] + t84);
+        let t302 = rate_1_leg3 + minus_rate_2_leg3;
+        let t303 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t305 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t307 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t312 = minus_rate_2_leg3 + twist[2];
+        let t315 = minus_g2_wz_leg3 + 1.0;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t333 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t333;
-        let minus_g2_vx_leg4 = c1_leg4 * t333;
-        let minus_g2_vy_leg4 = s1_leg4 * t333;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t236 + minus_g2_vy_leg4 * t239;
-        let t343 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t345 = c12_leg4 * t230 + s12_leg4 * t232 + 0.28 * t343;
-        let g1_vy_leg4 = s12_leg4 * t333;
-        let rate_1_leg4 = g1_vx_leg4 * t236 + g1_vy_leg4 * t239;
-        let t350 = rate_1_leg4 * rate_1_leg4;
-        let t351 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t333 * (t345 + t350 * t351);
-        let t355 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t356 = g1_vy_leg4 * rate_dot_1_leg4;
+        let t330 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t330;
+        let minus_g2_vx_leg4 = c1_leg4 * t330;
+        let minus_g2_vy_leg4 = s1_leg4 * t330;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * t234 + minus_g2_vy_leg4 * t237;
+        let t341 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
+        let t342 = c12_leg4 * t228 + s12_leg4 * t230 + t341;
+        let g1_vy_leg4 = s12_leg4 * t330;
+        let rate_1_leg4 = g1_vx_leg4 * t234 + g1_vy_leg4 * t237;
+        let t348 = 0.28 * (rate_1_leg4 * rate_1_leg4);
+        let rate_dot_1_leg4 = t330 * (t342 + c2_leg4 * t348);
+        let t352 = g1_vx_leg4 * rate_dot_1_leg4;
+        let t353 = g1_vy_leg4 * rate_dot_1_leg4;
         let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
-        let t360 = g1_wz_leg4 * rate_dot_1_leg4;
-        let t371 = c1_leg4 * t230 + s1_leg4 * t232 + 0.28 * t350;
-        let minus_rate_dot_2_leg4 = t333 * (t371 + t343 * t351);
-        let t375 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let t376 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+        let t357 = g1_wz_leg4 * rate_dot_1_leg4;
+        let t367 = c1_leg4 * t228 + s1_leg4 * t230 + t348;
+        let minus_rate_dot_2_leg4 = t330 * (t367 + t341 * c2_leg4);
+        let t371 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let t372 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
         let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
-        let t380 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-        let t402 = rate_1_leg4 + minus_rate_2_leg4;
-        let t403 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t405 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t407 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t412 = minus_rate_2_leg4 + twist[2];
-        let t415 = minus_g2_wz_leg4 + 1.0;
-        let t420 = 9.090909090909092 * t25;
-        let t421 = 9.090909090909092 * t19;
+        let t376 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+        let t398 = rate_1_leg4 + minus_rate_2_leg4;
+        let t399 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t401 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t403 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t408 = minus_rate_2_leg4 + twist[2];
+        let t411 = minus_g2_wz_leg4 + 1.0;
+        let t416 = 9.090909090909092 * t25;
+        let t417 = 9.090909090909092 * t19;
         Ok([
             [
                 t48, t48, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t68,
-                t74 - 0.28 * (t48 + t68), g1_vx_leg1 * t64 + minus_g2_vx_leg1 * t38, 0.0784 * t48,
-                t103 * t104, ::overact::math::signed(t104, t103), -t104, minus_g2_vx_leg1 * t113,
-                ::overact::math::signed(minus_g2_vx_leg1, t113), minus_g2_vx_leg1, t153, t153,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t67,
+                t73 - 0.28 * (t48 + t67), g1_vx_leg1 * t63 + minus_g2_vx_leg1 * t38, 0.0784 * t48,
+                t102 * t103, ::overact::math::signed(t103, t102), -t103, minus_g2_vx_leg1 * t112,
+                ::overact::math::signed(minus_g2_vx_leg1, t112), minus_g2_vx_leg1, t152, t152,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, t173, t74 - 0.28 * (t153 + t173),
-                g1_vx_leg2 * t169 + minus_g2_vx_leg2 * t143, 0.0784 * t153, t200 * t201,
-                ::overact::math::signed(t201, t200), -t201, minus_g2_vx_leg2 * t210,
-                ::overact::math::signed(minus_g2_vx_leg2, t210), minus_g2_vx_leg2, t254, t254,
+                g1_vx_leg2, t171, t73 - 0.28 * (t152 + t171),
+                g1_vx_leg2 * t167 + minus_g2_vx_leg2 * t142, 0.0784 * t152, t198 * t199,
+                ::overact::math::signed(t199, t198), -t199, minus_g2_vx_leg2 * t208,
+                ::overact::math::signed(minus_g2_vx_leg2, t208), minus_g2_vx_leg2, t252, t252,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t274, t280 - 0.28 * (t254 + t274),
-                g1_vx_leg3 * t270 + minus_g2_vx_leg3 * t244, 0.0784 * t254, t305 * t306,
-                ::overact::math::signed(t306, t305), -t306, minus_g2_vx_leg3 * t315,
-                ::overact::math::signed(minus_g2_vx_leg3, t315), minus_g2_vx_leg3, t355, t355,
+                g1_vx_leg3, t271, t277 - 0.28 * (t252 + t271),
+                g1_vx_leg3 * t267 + minus_g2_vx_leg3 * t242, 0.0784 * t252, t302 * t303,
+                ::overact::math::signed(t303, t302), -t303, minus_g2_vx_leg3 * t312,
+                ::overact::math::signed(minus_g2_vx_leg3, t312), minus_g2_vx_leg3, t352, t352,
                 g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, t375, t280 - 0.28 * (t355 + t375),
-                g1_vx_leg4 * t371 + minus_g2_vx_leg4 * t345, 0.0784 * t355, t402 * t403,
-                ::overact::math::signed(t403, t402), -t403, minus_g2_vx_leg4 * t412,
-                ::overact::math::signed(minus_g2_vx_leg4, t412), minus_g2_vx_leg4, 0.0, -t420, t421,
+                g1_vx_leg4, t371, t277 - 0.28 * (t352 + t371),
+                g1_vx_leg4 * t367 + minus_g2_vx_leg4 * t342, 0.0784 * t352, t398 * t399,
+                ::overact::math::signed(t399, t398), -t399, minus_g2_vx_leg4 * t408,
+                ::overact::math::signed(minus_g2_vx_leg4, t408), minus_g2_vx_leg4, 0.0, -t416, t417,
                 acceleration[0],
             ],
             [
                 t49, t49, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t69,
-                t78 - 0.28 * (t49 + t69), g1_vy_leg1 * t64 + minus_g2_vy_leg1 * t38, 0.0784 * t49,
-                t103 * t106, ::overact::math::signed(t106, t103), -t106, minus_g2_vy_leg1 * t113,
-                ::overact::math::signed(minus_g2_vy_leg1, t113), minus_g2_vy_leg1, t154, t154,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t68,
+                t77 - 0.28 * (t49 + t68), g1_vy_leg1 * t63 + minus_g2_vy_leg1 * t38, 0.0784 * t49,
+                t102 * t105, ::overact::math::signed(t105, t102), -t105, minus_g2_vy_leg1 * t112,
+                ::overact::math::signed(minus_g2_vy_leg1, t112), minus_g2_vy_leg1, t153, t153,
                 g1_vy_leg2 * rate_1_leg2, ::overact::math::signed(g1_vy_leg2, rate_1_leg2),
-                g1_vy_leg2, t174, t78 - 0.28 * (t154 + t174),
-                g1_vy_leg2 * t169 + minus_g2_vy_leg2 * t143, 0.0784 * t154, t200 * t203,
-                ::overact::math::signed(t203, t200), -t203, minus_g2_vy_leg2 * t210,
-                ::overact::math::signed(minus_g2_vy_leg2, t210), minus_g2_vy_leg2, t255, t255,
+                g1_vy_leg2, t172, t77 - 0.28 * (t153 + t172),
+                g1_vy_leg2 * t167 + minus_g2_vy_leg2 * t142, 0.0784 * t153, t198 * t201,
+                ::overact::math::signed(t201, t198), -t201, minus_g2_vy_leg2 * t208,
+                ::overact::math::signed(minus_g2_vy_leg2, t208), minus_g2_vy_leg2, t253, t253,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t275, t284 - 0.28 * (t255 + t275),
-                g1_vy_leg3 * t270 + minus_g2_vy_leg3 * t244, 0.0784 * t255, t305 * t308,
-                ::overact::math::signed(t308, t305), -t308, minus_g2_vy_leg3 * t315,
-                ::overact::math::signed(minus_g2_vy_leg3, t315), minus_g2_vy_leg3, t356, t356,
+                g1_vy_leg3, t272, t281 - 0.28 * (t253 + t272),
+                g1_vy_leg3 * t267 + minus_g2_vy_leg3 * t242, 0.0784 * t253, t302 * t305,
+                ::overact::math::signed(t305, t302), -t305, minus_g2_vy_leg3 * t312,
+                ::overact::math::signed(minus_g2_vy_leg3, t312), minus_g2_vy_leg3, t353, t353,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, t376, t284 - 0.28 * (t356 + t376),
-                g1_vy_leg4 * t371 + minus_g2_vy_leg4 * t345, 0.0784 * t356, t402 * t405,
-                ::overact::math::signed(t405, t402), -t405, minus_g2_vy_leg4 * t412,
-                ::overact::math::signed(minus_g2_vy_leg4, t412), minus_g2_vy_leg4, 0.0, -t421,
-                -t420, acceleration[1],
+                g1_vy_leg4, t372, t281 - 0.28 * (t353 + t372),
+                g1_vy_leg4 * t367 + minus_g2_vy_leg4 * t342, 0.0784 * t353, t398 * t401,
+                ::overact::math::signed(t401, t398), -t401, minus_g2_vy_leg4 * t408,
+                ::overact::math::signed(minus_g2_vy_leg4, t408), minus_g2_vy_leg4, 0.0, -t417,
+                -t416, acceleration[1],
             ],
             [
                 -t53, -t53, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t73,
-                t87 + 0.28 * (t53 + t73), -(minus_g1_wz_leg1 * t64 + g2_wz_leg1 * t38),
-                -(0.0784 * t53), -(t103 * t108), -::overact::math::signed(t108, t103), t108,
-                t113 * t116, ::overact::math::signed(t116, t113), t116, -t158, -t158,
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t72,
+                t86 + 0.28 * (t53 + t72), -(minus_g1_wz_leg1 * t63 + g2_wz_leg1 * t38),
+                -(0.0784 * t53), -(t102 * t107), -::overact::math::signed(t107, t102), t107,
+                t112 * t115, ::overact::math::signed(t115, t112), t115, -t157, -t157,
                 -(minus_g1_wz_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, -t178,
-                t87 + 0.28 * (t158 + t178), -(minus_g1_wz_leg2 * t169 + g2_wz_leg2 * t143),
-                -(0.0784 * t158), -(t200 * t205), -::overact::math::signed(t205, t200), t205,
-                t210 * t213, ::overact::math::signed(t213, t210), t213, t259, t259,
+                -::overact::math::signed(minus_g1_wz_leg2, rate_1_leg2), -minus_g1_wz_leg2, -t176,
+                t86 + 0.28 * (t157 + t176), -(minus_g1_wz_leg2 * t167 + g2_wz_leg2 * t142),
+                -(0.0784 * t157), -(t198 * t203), -::overact::math::signed(t203, t198), t203,
+                t208 * t211, ::overact::math::signed(t211, t208), t211, t257, t257,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t279, t289 - 0.28 * (t259 + t279),
-                g1_wz_leg3 * t270 + minus_g2_wz_leg3 * t244, 0.0784 * t259, t305 * t310,
-                ::overact::math::signed(t310, t305), -t310, t315 * t318,
-                ::overact::math::signed(t318, t315), t318, t360, t360, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t380,
-                t289 - 0.28 * (t360 + t380), g1_wz_leg4 * t371 + minus_g2_wz_leg4 * t345,
-                0.0784 * t360, t402 * t407, ::overact::math::signed(t407, t402), -t407, t412 * t415,
-                ::overact::math::signed(t415, t412), t415, acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t84, 0.0,
+                g1_wz_leg3, t276, t286 - 0.28 * (t257 + t276),
+                g1_wz_leg3 * t267 + minus_g2_wz_leg3 * t242, 0.0784 * t257, t302 * t307,
+                ::overact::math::signed(t307, t302), -t307, t312 * t315,
+                ::overact::math::signed(t315, t312), t315, t357, t357, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t376,
+                t286 - 0.28 * (t357 + t376), g1_wz_leg4 * t367 + minus_g2_wz_leg4 * t342,
+                0.0784 * t357, t398 * t403, ::overact::math::signed(t403, t398), -t403, t408 * t411,
+                ::overact::math::signed(t411, t408), t411, acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t83, 0.0,
             ],
         ])
     }
@@ -1946,7 +1941,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 594 operations (224 additions, 359 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 461 intermediates.
+    /// 587 operations (224 additions, 340 multiplications, 23 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 454 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1973,337 +1968,336 @@ impl DualV {
         let t17 = t4 - t16;
         let t18 = t11 * t14;
         ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t22 = t3 + 0.3950502153918333;
-        let t25 = t22 * t22 + t10;
-        let t27 = 0.0784 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t30 = 0.5 * t22 - t8 * t28;
-        let t31 = t22 - t30;
-        let t32 = t25 * t28;
-        ::overact::guard::leg(t32, 0.07839913810297301, "leg2")?;
-        let t33 = 1.0 / t32;
-        let minus_g1_vx_leg2 = t31 * t33;
-        let t37 = pose[0] + t2;
-        let t38 = t37 + 0.3950502153918333;
-        let t40 = pose[1] - t7;
-        let t42 = t40 * t40;
-        let t43 = t38 * t38 + t42;
-        let t45 = 0.0784 / t43 - 0.25;
-        ::overact::guard::reach(t45, "leg3")?;
-        let t46 = ::overact::math::sqrt(t45);
-        let t48 = 0.5 * t38 + t40 * t46;
-        let t49 = t38 - t48;
-        let t50 = t43 * t46;
-        ::overact::guard::leg(t50, 0.07839913810297301, "leg3")?;
-        let t51 = 1.0 / t50;
-        let g1_vx_leg3 = t49 * t51;
-        let t55 = t37 - 0.3950502153918333;
-        let t58 = t55 * t55 + t42;
-        let t60 = 0.0784 / t58 - 0.25;
-        ::overact::guard::reach(t60, "leg4")?;
-        let t61 = ::overact::math::sqrt(t60);
-        let t63 = 0.5 * t55 - t40 * t61;
-        let t64 = t55 - t63;
-        let t65 = t58 * t61;
-        ::overact::guard::leg(t65, 0.07839913810297301, "leg4")?;
-        let t66 = 1.0 / t65;
-        let minus_g1_vx_leg4 = t64 * t66;
-        let t69 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t69, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t69, 25.429161076750646, "actuators")?;
-        let t70 = 1.0 / t69;
-        let t71 = 0.5 * t8;
-        let t73 = t71 - t4 * t14;
-        let t74 = t8 - t73;
-        let g1_vy_leg1 = t74 * t19;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t81 = t71 + t22 * t28;
-        let t82 = t8 - t81;
-        let minus_g1_vy_leg2 = t82 * t33;
+        let g1_vx_leg1 = t17 / t18;
+        let t20 = 0.5 * t8;
+        let t22 = t20 - t4 * t14;
+        let t23 = t8 - t22;
+        let t24 = t3 + 0.3950502153918333;
+        let t26 = t24 * t24 + t10;
+        let t28 = 0.0784 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t31 = t20 + t24 * t29;
+        let t32 = t8 - t31;
+        let t33 = t26 * t29;
+        ::overact::guard::leg(t33, 0.07839913810297301, "leg2")?;
+        let t34 = 1.0 / t33;
+        let minus_g1_vy_leg2 = t32 * t34;
+        let t37 = 0.5 * t24;
+        let t39 = t37 - t8 * t29;
+        let t40 = t24 - t39;
+        let minus_g1_vx_leg2 = t40 * t34;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t89 = 0.5 * t40;
-        let t91 = t89 - t38 * t46;
-        let t92 = t40 - t91;
-        let g1_vy_leg3 = t92 * t51;
+        let minus_g2_vy_leg1 = t22 / t18;
+        let t46 = t8 / t18;
+        let g1_vy_leg1 = t46 - minus_g2_vy_leg1;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
+        let t53 = pose[1] - t7;
+        let t54 = 0.5 * t53;
+        let t55 = t2 + t37;
+        let t56 = t55 + t55;
+        let t58 = t53 * t53;
+        let t59 = t56 * t56 + t58;
+        let t61 = 0.0784 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg3")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = t54 - t56 * t62;
+        let t65 = t53 - t64;
+        let t66 = t59 * t62;
+        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
+        let t67 = 1.0 / t66;
+        let g1_vy_leg3 = t65 * t67;
+        let t71 = t55 + t53 * t62;
+        let t72 = t56 - t71;
+        let g1_vx_leg3 = t72 * t67;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t100 = t89 + t55 * t61;
-        let t101 = t40 - t100;
-        let minus_g1_vy_leg4 = t101 * t66;
+        let t78 = pose[0] - t37;
+        let t79 = t78 + t78;
+        let t81 = t79 * t79 + t58;
+        let t83 = 0.0784 / t81 - 0.25;
+        ::overact::guard::reach(t83, "leg4")?;
+        let t84 = ::overact::math::sqrt(t83);
+        let t86 = t54 + t79 * t84;
+        let t87 = t53 - t86;
+        let t88 = t81 * t84;
+        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
+        let t89 = 1.0 / t88;
+        let minus_g1_vy_leg4 = t87 * t89;
+        let t93 = t78 - t53 * t84;
+        let t94 = t79 - t93;
+        let minus_g1_vx_leg4 = t94 * t89;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t114 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t115 = t114 * t70;
-        let t131 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t133 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t131 * t115;
-        let t141 = t131 * t70;
-        let t143 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t131 * t141;
-        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
-        let t144 = 1.0 / t143;
-        let t145 = t133 * t144;
-        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t114 * t115
-            - t133 * t145;
-        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
-        let t148 = 1.0 / t147;
-        let t162 = g1_vx_leg1 * actuator_velocities[0]
+        let t106 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t173 = g1_vy_leg1 * actuator_velocities[0]
+        let t113 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t120 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t120, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t120, 25.429161076750646, "actuators")?;
+        let t121 = t113 / t120;
+        let t137 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t139 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t137 * t121;
+        let t147 = t137 / t120;
+        let t149 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t137 * t147;
+        ::overact::guard::platform(t149, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t149, 25.592368899353342, "actuators")?;
+        let t150 = t139 / t149;
+        let t159 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t162 * t141;
-        let t175 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t106 * t147;
+        let t161 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t162 * t115 - t145 * t173;
-        let rate_3_leg1 = t148 * t175;
-        let t177 = t6 * rate_3_leg1;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t106 * t121 - t150 * t159;
+        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t113 * t121
+            - t139 * t150;
+        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
+        let rate_3_leg1 = t161 / t172;
+        let t174 = t6 * rate_3_leg1;
+        let t175 = rate_3_leg1 * t174;
+        let t177 = t2 * rate_3_leg1;
         let t178 = rate_3_leg1 * t177;
-        let t180 = t2 * rate_3_leg1;
-        let t181 = rate_3_leg1 * t180;
-        let minus_g2_vx_leg1 = t16 * t19;
-        let t188 = t144 * t173 - t145 * rate_3_leg1;
-        let t192 = t162 * t70 - t141 * t188 - t115 * rate_3_leg1;
-        let t193 = t192 - t177;
-        let minus_g2_vy_leg1 = t73 * t19;
-        let t196 = t188 - t180;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t193 + minus_g2_vy_leg1 * t196;
-        let t199 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t200 = 0.0784 * t199;
-        let rate_1_leg1 = g1_vx_leg1 * t193 + g1_vy_leg1 * t196;
-        let t205 = rate_1_leg1 * rate_1_leg1;
-        let t206 = t11 - 0.1568;
-        let t207 = 0.5 * t206;
-        let t208 = t205 * t207;
-        let minus_rate_dot_1_leg1 = t19 * (t74 * t178 - t17 * t181 - t200 - t208);
-        let t211 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let g2_vx_leg2 = t30 * t33;
-        let g2_vy_leg2 = t81 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t193 + g2_vy_leg2 * t196;
-        let t221 = rate_2_leg2 * rate_2_leg2;
-        let t222 = 0.0784 * t221;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t196;
-        let t227 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t229 = 0.5 * (t25 - 0.1568);
-        let t230 = t227 * t229;
-        let rate_dot_1_leg2 = t33 * (t82 * t178 - t31 * t181 - t222 - t230);
-        let t233 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t48 * t51;
-        let t240 = t192 + t177;
-        let minus_g2_vy_leg3 = t91 * t51;
-        let t243 = t188 + t180;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t240 + minus_g2_vy_leg3 * t243;
-        let t246 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t247 = 0.0784 * t246;
-        let rate_1_leg3 = g1_vx_leg3 * t240 + g1_vy_leg3 * t243;
-        let t252 = rate_1_leg3 * rate_1_leg3;
-        let t254 = 0.5 * (t43 - 0.1568);
-        let t255 = t252 * t254;
-        let minus_rate_dot_1_leg3 = t51 * (t49 * t181 - t92 * t178 - t247 - t255);
-        let t258 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t63 * t66;
-        let g2_vy_leg4 = t100 * t66;
-        let rate_2_leg4 = g2_vx_leg4 * t240 + g2_vy_leg4 * t243;
-        let t269 = rate_2_leg4 * rate_2_leg4;
-        let t270 = 0.0784 * t269;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t240 + minus_g1_vy_leg4 * t243;
-        let t275 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t277 = 0.5 * (t58 - 0.1568);
-        let t278 = t275 * t277;
-        let rate_dot_1_leg4 = t66 * (t64 * t181 - t101 * t178 - t270 - t278);
-        let t281 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t283 = g1_vx_leg1 * t211 - minus_g1_vx_leg2 * t233 + g1_vx_leg3 * t258
-            - minus_g1_vx_leg4 * t281;
-        let t293 = g1_vy_leg1 * t211 - minus_g1_vy_leg2 * t233 + g1_vy_leg3 * t258
-            - minus_g1_vy_leg4 * t281 - t141 * t283;
-        let t305 = g1_wz_leg2 * t233 - minus_g1_wz_leg1 * t211 + g1_wz_leg3 * t258
-            - minus_g1_wz_leg4 * t281 - t115 * t283 - t145 * t293;
-        let rate_dot_3_leg1 = t148 * t305;
-        let t308 = t144 * t293 - t145 * rate_dot_3_leg1;
-        let t312 = t70 * t283 - t141 * t308 - t115 * rate_dot_3_leg1;
-        let t314 = t181 - t6 * rate_dot_3_leg1;
-        let t315 = t312 + t314;
-        let t318 = t178 + t2 * rate_dot_3_leg1;
-        let t319 = t308 - t318;
-        let t321 = t17 * t315 + t74 * t319;
-        let t322 = t321 + t200;
-        let rate_dot_1_leg1 = t19 * (t322 + t208);
-        let t325 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t326 = g1_vy_leg1 * rate_dot_1_leg1;
-        let t327 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t338 = t16 * t315 + t73 * t319 + 0.0784 * t205;
-        let minus_rate_dot_2_leg1 = t19 * (t338 + t199 * t207);
-        let t342 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t343 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let minus_g2_vx_leg1 = t16 / t18;
+        let t185 = t159 / t149 - t150 * rate_3_leg1;
+        let t189 = t106 / t120 - t147 * t185 - t121 * rate_3_leg1;
+        let t190 = t189 - t174;
+        let t192 = t185 - t177;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t190 + minus_g2_vy_leg1 * t192;
+        let t195 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t196 = 0.0784 * t195;
+        let rate_1_leg1 = g1_vx_leg1 * t190 + g1_vy_leg1 * t192;
+        let t201 = rate_1_leg1 * rate_1_leg1;
+        let t203 = 0.5 * (t11 - 0.1568);
+        let t204 = t201 * t203;
+        let minus_rate_dot_1_leg1 = (t23 * t175 - t17 * t178 - t196 - t204) / t18;
+        let t207 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let g2_vx_leg2 = t39 * t34;
+        let g2_vy_leg2 = t31 * t34;
+        let rate_2_leg2 = g2_vx_leg2 * t190 + g2_vy_leg2 * t192;
+        let t217 = rate_2_leg2 * rate_2_leg2;
+        let t218 = 0.0784 * t217;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t190 + minus_g1_vy_leg2 * t192;
+        let t223 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t225 = 0.5 * (t26 - 0.1568);
+        let t226 = t223 * t225;
+        let rate_dot_1_leg2 = t34 * (t32 * t175 - t40 * t178 - t218 - t226);
+        let t229 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = t71 * t67;
+        let t236 = t189 + t174;
+        let minus_g2_vy_leg3 = t64 * t67;
+        let t239 = t185 + t177;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.0784 * t242;
+        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t239;
+        let t248 = rate_1_leg3 * rate_1_leg3;
+        let t249 = t59 - 0.1568;
+        let t250 = 0.5 * t249;
+        let t251 = t248 * t250;
+        let minus_rate_dot_1_leg3 = t67 * (t72 * t178 - t65 * t175 - t243 - t251);
+        let t254 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t93 * t89;
+        let g2_vy_leg4 = t86 * t89;
+        let rate_2_leg4 = g2_vx_leg4 * t236 + g2_vy_leg4 * t239;
+        let t265 = rate_2_leg4 * rate_2_leg4;
+        let t266 = 0.0784 * t265;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t236 + minus_g1_vy_leg4 * t239;
+        let t271 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t273 = 0.5 * (t81 - 0.1568);
+        let t274 = t271 * t273;
+        let rate_dot_1_leg4 = t89 * (t94 * t178 - t87 * t175 - t266 - t274);
+        let t277 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t279 = g1_vx_leg1 * t207 - minus_g1_vx_leg2 * t229 + g1_vx_leg3 * t254
+            - minus_g1_vx_leg4 * t277;
+        let t289 = g1_vy_leg1 * t207 - minus_g1_vy_leg2 * t229 + g1_vy_leg3 * t254
+            - minus_g1_vy_leg4 * t277 - t147 * t279;
+        let t301 = g1_wz_leg2 * t229 - minus_g1_wz_leg1 * t207 + g1_wz_leg3 * t254
+            - minus_g1_wz_leg4 * t277 - t121 * t279 - t150 * t289;
+        let rate_dot_3_leg1 = t301 / t172;
+        let t304 = t289 / t149 - t150 * rate_dot_3_leg1;
+        let t308 = t279 / t120 - t147 * t304 - t121 * rate_dot_3_leg1;
+        let t310 = t178 - t6 * rate_dot_3_leg1;
+        let t311 = t308 + t310;
+        let t314 = t175 + t2 * rate_dot_3_leg1;
+        let t315 = t304 - t314;
+        let t318 = t17 * t311 + t23 * t315 + t196;
+        let rate_dot_1_leg1 = (t318 + t204) / t18;
+        let t321 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t322 = g1_vy_leg1 * rate_dot_1_leg1;
+        let t323 = minus_g1_wz_leg1 * rate_dot_1_leg1;
+        let t334 = t16 * t311 + t22 * t315 + 0.0784 * t201;
+        let minus_rate_dot_2_leg1 = (t334 + t195 * t203) / t18;
+        let t338 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t339 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t347 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t343 = g2_wz_leg1 * minus_rate_dot_2_leg1;
+        let t344 = 3.5714285714285716 * t311;
         let t348 = 3.5714285714285716 * t315;
-        let t352 = 3.5714285714285716 * t319;
-        let s12_leg1 = 3.5714285714285716 * t74;
-        let c12_leg1 = 3.5714285714285716 * t17;
-        let s3_leg1 = c_phi * s12_leg1 - s_phi * c12_leg1;
-        let minus_c3_leg1 = c_phi * c12_leg1 + s_phi * s12_leg1;
-        let t374 = s3_leg1
-            * (3.5714285714285716 * (t18 * t205)
-                + 1.7857142857142858 * (t206 * rate_dot_1_leg1)
-                - 0.28 * minus_rate_dot_2_leg1)
-            - minus_c3_leg1 * (3.5714285714285716 * t321);
-        let t375 = 0.39285714285714285 * t374;
-        let t379 = 3.5714285714285716 * t338;
-        let t381 = 3.5714285714285716 * t322;
-        let t393 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t394 = rate_1_leg1 + minus_rate_2_leg1;
-        let t396 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t398 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t403 = minus_rate_2_leg1 + rate_3_leg1;
-        let t406 = 1.0 - g2_wz_leg1;
-        let t414 = t31 * t315 + t82 * t319 + t222;
-        let minus_rate_dot_1_leg2 = t33 * (t414 + t230);
-        let t417 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t418 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t419 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t430 = t30 * t315 + t81 * t319 + 0.0784 * t227;
-        let rate_dot_2_leg2 = t33 * (t430 + t221 * t229);
-        let t434 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t435 = g2_vy_leg2 * rate_dot_2_leg2;
+        let c12_leg3 = 3.5714285714285716 * t72;
+        let s12_leg3 = 3.5714285714285716 * t65;
+        let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
+        let t357 = t308 - t310;
+        let t359 = t304 + t314;
+        let t361 = t72 * t357 + t65 * t359;
+        let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
+        let t369 = t361 + t243;
+        let rate_dot_1_leg3 = t67 * (t369 + t251);
+        let t379 = t71 * t357 + t64 * t359 + 0.0784 * t248;
+        let minus_rate_dot_2_leg3 = t67 * (t379 + t242 * t250);
+        let t386 = c3_leg3 * (3.5714285714285716 * t361)
+            + s3_leg3
+                * (3.5714285714285716 * (t66 * t248)
+                    + 1.7857142857142858 * (t249 * rate_dot_1_leg3)
+                    - 0.28 * minus_rate_dot_2_leg3);
+        let t387 = 0.11 * rate_dot_3_leg1;
+        let t388 = t386 - t387;
+        let t390 = 0.39285714285714285 * (t387 - t388);
+        let t394 = 3.5714285714285716 * t334;
+        let t396 = 3.5714285714285716 * t318;
+        let t408 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t409 = rate_1_leg1 + minus_rate_2_leg1;
+        let t412 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t417 = minus_rate_2_leg1 + rate_3_leg1;
+        let t420 = 1.0 - g2_wz_leg1;
+        let t428 = t40 * t311 + t32 * t315 + t218;
+        let minus_rate_dot_1_leg2 = t34 * (t428 + t226);
+        let t431 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t432 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t433 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t444 = t39 * t311 + t31 * t315 + 0.0784 * t223;
+        let rate_dot_2_leg2 = t34 * (t444 + t217 * t225);
+        let t448 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t449 = g2_vy_leg2 * rate_dot_2_leg2;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t439 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t449 = 3.5714285714285716 * t430;
-        let t451 = 3.5714285714285716 * t414;
-        let t463 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t464 = minus_rate_1_leg2 + rate_2_leg2;
-        let t466 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t468 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t473 = rate_3_leg1 - rate_2_leg2;
-        let t476 = minus_g2_wz_leg2 + 1.0;
-        let t481 = t312 - t314;
-        let t483 = t308 + t318;
-        let t486 = t49 * t481 + t92 * t483 + t247;
-        let rate_dot_1_leg3 = t51 * (t486 + t255);
-        let t489 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t490 = g1_vy_leg3 * rate_dot_1_leg3;
-        let t491 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t502 = t48 * t481 + t91 * t483 + 0.0784 * t252;
-        let minus_rate_dot_2_leg3 = t51 * (t502 + t246 * t254);
-        let t506 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t507 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t453 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t463 = 3.5714285714285716 * t444;
+        let t465 = 3.5714285714285716 * t428;
+        let t477 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t478 = minus_rate_1_leg2 + rate_2_leg2;
+        let t480 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t482 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t487 = rate_3_leg1 - rate_2_leg2;
+        let t490 = minus_g2_wz_leg2 + 1.0;
+        let t495 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t496 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t497 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t504 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t505 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t511 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t512 = 3.5714285714285716 * t481;
-        let t516 = 3.5714285714285716 * t483;
-        let t522 = s_phi * t308 + c_phi * t312;
-        let t525 = 0.39285714285714285 * (t522 + t374 + t522);
-        let t529 = 3.5714285714285716 * t502;
-        let t531 = 3.5714285714285716 * t486;
-        let t543 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t544 = rate_1_leg3 + minus_rate_2_leg3;
-        let t546 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t548 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t553 = minus_rate_2_leg3 + rate_3_leg1;
-        let t556 = minus_g2_wz_leg3 + 1.0;
-        let t564 = t64 * t481 + t101 * t483 + t270;
-        let minus_rate_dot_1_leg4 = t66 * (t564 + t278);
-        let t567 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t568 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let t569 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t580 = t63 * t481 + t100 * t483 + 0.0784 * t275;
-        let rate_dot_2_leg4 = t66 * (t580 + t269 * t277);
-        let t584 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t585 = g2_vy_leg4 * rate_dot_2_leg4;
+        let t509 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t510 = 3.5714285714285716 * t357;
+        let t514 = 3.5714285714285716 * t359;
+        let t518 = 0.39285714285714285 * t386;
+        let t522 = 3.5714285714285716 * t379;
+        let t524 = 3.5714285714285716 * t369;
+        let t536 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t537 = rate_1_leg3 + minus_rate_2_leg3;
+        let t539 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t541 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t546 = minus_rate_2_leg3 + rate_3_leg1;
+        let t549 = minus_g2_wz_leg3 + 1.0;
+        let t557 = t94 * t357 + t87 * t359 + t266;
+        let minus_rate_dot_1_leg4 = t89 * (t557 + t274);
+        let t560 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t561 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t562 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t573 = t93 * t357 + t86 * t359 + 0.0784 * t271;
+        let rate_dot_2_leg4 = t89 * (t573 + t265 * t273);
+        let t577 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t578 = g2_vy_leg4 * rate_dot_2_leg4;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t589 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t599 = 3.5714285714285716 * t580;
-        let t601 = 3.5714285714285716 * t564;
-        let t613 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t614 = minus_rate_1_leg4 + rate_2_leg4;
-        let t616 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t618 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t623 = rate_3_leg1 - rate_2_leg4;
-        let t626 = 1.0 - g2_wz_leg4;
-        let t631 = 9.090909090909092 * t318;
-        let t632 = 9.090909090909092 * t314;
+        let t582 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t592 = 3.5714285714285716 * t573;
+        let t594 = 3.5714285714285716 * t557;
+        let t606 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t607 = minus_rate_1_leg4 + rate_2_leg4;
+        let t609 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t611 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t616 = rate_3_leg1 - rate_2_leg4;
+        let t619 = 1.0 - g2_wz_leg4;
+        let t624 = 9.090909090909092 * t314;
+        let t625 = 9.090909090909092 * t310;
         Ok([
             [
-                t325, t325, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t342,
-                t348 - 0.28 * (t325 + t342), g1_vx_leg1 * t379 + minus_g2_vx_leg1 * t381,
-                0.0784 * t325, t393 * t394, ::overact::math::signed(t393, t394), -t393,
-                minus_g2_vx_leg1 * t403, ::overact::math::signed(minus_g2_vx_leg1, t403),
-                minus_g2_vx_leg1, t417, t417, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                t321, t321, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t338,
+                t344 - 0.28 * (t321 + t338), g1_vx_leg1 * t394 + minus_g2_vx_leg1 * t396,
+                0.0784 * t321, t408 * t409, ::overact::math::signed(t408, t409), -t408,
+                minus_g2_vx_leg1 * t417, ::overact::math::signed(minus_g2_vx_leg1, t417),
+                minus_g2_vx_leg1, t431, t431, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t434, t348 - 0.28 * (t417 + t434), -(minus_g1_vx_leg2 * t449 + g2_vx_leg2 * t451),
-                0.0784 * t417, t463 * t464, ::overact::math::signed(t463, t464), t463,
-                -(g2_vx_leg2 * t473), -::overact::math::signed(g2_vx_leg2, t473), -g2_vx_leg2, t489,
-                t489, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t506, t512 - 0.28 * (t489 + t506),
-                g1_vx_leg3 * t529 + minus_g2_vx_leg3 * t531, 0.0784 * t489, t543 * t544,
-                ::overact::math::signed(t543, t544), -t543, minus_g2_vx_leg3 * t553,
-                ::overact::math::signed(minus_g2_vx_leg3, t553), minus_g2_vx_leg3, t567, t567,
+                t448, t344 - 0.28 * (t431 + t448), -(minus_g1_vx_leg2 * t463 + g2_vx_leg2 * t465),
+                0.0784 * t431, t477 * t478, ::overact::math::signed(t477, t478), t477,
+                -(g2_vx_leg2 * t487), -::overact::math::signed(g2_vx_leg2, t487), -g2_vx_leg2, t495,
+                t495, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t504, t510 - 0.28 * (t495 + t504),
+                g1_vx_leg3 * t522 + minus_g2_vx_leg3 * t524, 0.0784 * t495, t536 * t537,
+                ::overact::math::signed(t536, t537), -t536, minus_g2_vx_leg3 * t546,
+                ::overact::math::signed(minus_g2_vx_leg3, t546), minus_g2_vx_leg3, t560, t560,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t584, t512 - 0.28 * (t567 + t584), -(minus_g1_vx_leg4 * t599 + g2_vx_leg4 * t601),
-                0.0784 * t567, t613 * t614, ::overact::math::signed(t613, t614), t613,
-                -(g2_vx_leg4 * t623), -::overact::math::signed(g2_vx_leg4, t623), -g2_vx_leg4, 0.0,
-                -t631, t632, t312,
+                t577, t510 - 0.28 * (t560 + t577), -(minus_g1_vx_leg4 * t592 + g2_vx_leg4 * t594),
+                0.0784 * t560, t606 * t607, ::overact::math::signed(t606, t607), t606,
+                -(g2_vx_leg4 * t616), -::overact::math::signed(g2_vx_leg4, t616), -g2_vx_leg4, 0.0,
+                -t624, t625, t308,
             ],
             [
-                t326, t326, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t343,
-                t352 - 0.28 * (t326 + t343), g1_vy_leg1 * t379 + minus_g2_vy_leg1 * t381,
-                0.0784 * t326, t396 * t394, ::overact::math::signed(t396, t394), -t396,
-                minus_g2_vy_leg1 * t403, ::overact::math::signed(minus_g2_vy_leg1, t403),
-                minus_g2_vy_leg1, t418, t418, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                t322, t322, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t339,
+                t348 - 0.28 * (t322 + t339), g1_vy_leg1 * t394 + minus_g2_vy_leg1 * t396,
+                0.0784 * t322, t46 * t409, ::overact::math::signed(t46, t409), -t46,
+                minus_g2_vy_leg1 * t417, ::overact::math::signed(minus_g2_vy_leg1, t417),
+                minus_g2_vy_leg1, t432, t432, minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t435, t352 - 0.28 * (t418 + t435), -(minus_g1_vy_leg2 * t449 + g2_vy_leg2 * t451),
-                0.0784 * t418, t466 * t464, ::overact::math::signed(t466, t464), t466,
-                -(g2_vy_leg2 * t473), -::overact::math::signed(g2_vy_leg2, t473), -g2_vy_leg2, t490,
-                t490, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t507, t516 - 0.28 * (t490 + t507),
-                g1_vy_leg3 * t529 + minus_g2_vy_leg3 * t531, 0.0784 * t490, t546 * t544,
-                ::overact::math::signed(t546, t544), -t546, minus_g2_vy_leg3 * t553,
-                ::overact::math::signed(minus_g2_vy_leg3, t553), minus_g2_vy_leg3, t568, t568,
+                t449, t348 - 0.28 * (t432 + t449), -(minus_g1_vy_leg2 * t463 + g2_vy_leg2 * t465),
+                0.0784 * t432, t480 * t478, ::overact::math::signed(t480, t478), t480,
+                -(g2_vy_leg2 * t487), -::overact::math::signed(g2_vy_leg2, t487), -g2_vy_leg2, t496,
+                t496, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t505, t514 - 0.28 * (t496 + t505),
+                g1_vy_leg3 * t522 + minus_g2_vy_leg3 * t524, 0.0784 * t496, t539 * t537,
+                ::overact::math::signed(t539, t537), -t539, minus_g2_vy_leg3 * t546,
+                ::overact::math::signed(minus_g2_vy_leg3, t546), minus_g2_vy_leg3, t561, t561,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t585, t516 - 0.28 * (t568 + t585), -(minus_g1_vy_leg4 * t599 + g2_vy_leg4 * t601),
-                0.0784 * t568, t616 * t614, ::overact::math::signed(t616, t614), t616,
-                -(g2_vy_leg4 * t623), -::overact::math::signed(g2_vy_leg4, t623), -g2_vy_leg4, 0.0,
-                -t632, -t631, t308,
+                t578, t514 - 0.28 * (t561 + t578), -(minus_g1_vy_leg4 * t592 + g2_vy_leg4 * t594),
+                0.0784 * t561, t609 * t607, ::overact::math::signed(t609, t607), t609,
+                -(g2_vy_leg4 * t616), -::overact::math::signed(g2_vy_leg4, t616), -g2_vy_leg4, 0.0,
+                -t625, -t624, t304,
             ],
             [
-                -t327, -t327, -(minus_g1_wz_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t347,
-                t375 + 0.28 * (t327 + t347), -(minus_g1_wz_leg1 * t379 + g2_wz_leg1 * t381),
-                -(0.0784 * t327), -(t398 * t394), -::overact::math::signed(t398, t394), t398,
-                t406 * t403, ::overact::math::signed(t406, t403), t406, -t419, -t419,
+                -t323, -t323, -(minus_g1_wz_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t343,
+                t390 + 0.28 * (t323 + t343), -(minus_g1_wz_leg1 * t394 + g2_wz_leg1 * t396),
+                -(0.0784 * t323), -(t412 * t409), -::overact::math::signed(t412, t409), t412,
+                t420 * t417, ::overact::math::signed(t420, t417), t420, -t433, -t433,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t439,
-                t375 + 0.28 * (t419 + t439), g1_wz_leg2 * t449 + minus_g2_wz_leg2 * t451,
-                -(0.0784 * t419), -(t468 * t464), -::overact::math::signed(t468, t464), -t468,
-                t476 * t473, ::overact::math::signed(t476, t473), t476, t491, t491,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t453,
+                t390 + 0.28 * (t433 + t453), g1_wz_leg2 * t463 + minus_g2_wz_leg2 * t465,
+                -(0.0784 * t433), -(t482 * t478), -::overact::math::signed(t482, t478), -t482,
+                t490 * t487, ::overact::math::signed(t490, t487), t490, t497, t497,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t511, t525 - 0.28 * (t491 + t511),
-                g1_wz_leg3 * t529 + minus_g2_wz_leg3 * t531, 0.0784 * t491, t548 * t544,
-                ::overact::math::signed(t548, t544), -t548, t556 * t553,
-                ::overact::math::signed(t556, t553), t556, t569, t569,
+                g1_wz_leg3, t509, t518 - 0.28 * (t497 + t509),
+                g1_wz_leg3 * t522 + minus_g2_wz_leg3 * t524, 0.0784 * t497, t541 * t537,
+                ::overact::math::signed(t541, t537), -t541, t549 * t546,
+                ::overact::math::signed(t549, t546), t549, t562, t562,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t589, t525 - 0.28 * (t569 + t589), -(minus_g1_wz_leg4 * t599 + g2_wz_leg4 * t601),
-                0.0784 * t569, t618 * t614, ::overact::math::signed(t618, t614), t618, t626 * t623,
-                ::overact::math::signed(t626, t623), t626, rate_dot_3_leg1,
-                c_phi * t308 - s_phi * t312, -t522, 0.0,
+                t582, t518 - 0.28 * (t562 + t582), -(minus_g1_wz_leg4 * t592 + g2_wz_leg4 * t594),
+                0.0784 * t562, t611 * t607, ::overact::math::signed(t611, t607), t611, t619 * t616,
+                ::overact::math::signed(t619, t616), t619, rate_dot_3_leg1,
+                c_phi * t304 - s_phi * t308, -t388, 0.0,
             ],
         ])
     }
@@ -3259,7 +3253,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 363 operations (125 additions, 230 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 266 intermediates.
+    /// 360 operations (127 additions, 215 multiplications, 18 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 263 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3277,163 +3271,163 @@ impl DualV {
         let t9 = t5 * twist[2];
         let t12 = twist[2] * t9 - t2 * acceleration[2];
         let t13 = 9.090909090909092 * t12;
-        let t20 = pose[0] - t5;
-        let t21 = t20 - 0.3950502153918333;
-        let t23 = t2 + -0.10970563941232059;
-        let t24 = pose[1] + t23;
-        let t26 = t24 * t24;
-        let t27 = t21 * t21 + t26;
-        let t29 = 0.0784 / t27 - 0.25;
-        ::overact::guard::reach(t29, "leg1")?;
-        let t30 = ::overact::math::sqrt(t29);
-        let t32 = 0.5 * t21 + t24 * t30;
-        let t33 = t21 - t32;
-        let t34 = t27 * t30;
-        ::overact::guard::leg(t34, 0.07839913810297301, "leg1")?;
-        let t35 = 1.0 / t34;
-        let g1_vx_leg1 = t33 * t35;
-        let t37 = t12 + acceleration[0];
-        let t39 = 0.5 * t24;
-        let t41 = t39 - t21 * t30;
-        let t42 = t24 - t41;
-        let t43 = acceleration[1] - t7;
-        let minus_g2_vx_leg1 = t32 * t35;
-        let t47 = twist[0] - t3;
-        let minus_g2_vy_leg1 = t41 * t35;
-        let t50 = twist[1] - t9;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t47 + minus_g2_vy_leg1 * t50;
-        let t53 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t55 = t33 * t37 + t42 * t43 + 0.0784 * t53;
-        let g1_vy_leg1 = t42 * t35;
-        let rate_1_leg1 = g1_vx_leg1 * t47 + g1_vy_leg1 * t50;
-        let t60 = rate_1_leg1 * rate_1_leg1;
-        let t62 = 0.5 * (t27 - 0.1568);
-        let rate_dot_1_leg1 = t35 * (t55 + t60 * t62);
+        let t20 = pose[0] + t5;
+        let t21 = t20 + 0.3950502153918333;
+        let t22 = 0.5 * t21;
+        let t23 = t22 - t5;
+        let t24 = -0.3950502153918333 + t23;
+        let t25 = t24 + t24;
+        let t26 = t2 + -0.10970563941232059;
+        let t27 = pose[1] + t26;
+        let t29 = t27 * t27;
+        let t30 = t25 * t25 + t29;
+        let t32 = 0.0784 / t30 - 0.25;
+        ::overact::guard::reach(t32, "leg1")?;
+        let t33 = ::overact::math::sqrt(t32);
+        let t35 = t24 + t27 * t33;
+        let t36 = t25 - t35;
+        let t37 = t30 * t33;
+        ::overact::guard::leg(t37, 0.07839913810297301, "leg1")?;
+        let g1_vx_leg1 = t36 / t37;
+        let t39 = t12 + acceleration[0];
+        let t41 = 0.5 * t27;
+        let t43 = t41 - t25 * t33;
+        let t44 = t27 - t43;
+        let t45 = acceleration[1] - t7;
+        let minus_g2_vx_leg1 = t35 / t37;
+        let t49 = twist[0] - t3;
+        let minus_g2_vy_leg1 = t43 / t37;
+        let t52 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t49 + minus_g2_vy_leg1 * t52;
+        let t55 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t57 = t36 * t39 + t44 * t45 + 0.0784 * t55;
+        let g1_vy_leg1 = t44 / t37;
+        let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
+        let t62 = rate_1_leg1 * rate_1_leg1;
+        let t64 = 0.5 * (t30 - 0.1568);
+        let rate_dot_1_leg1 = (t57 + t62 * t64) / t37;
         let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t72 = t20 + 0.3950502153918333;
-        let t75 = t72 * t72 + t26;
-        let t77 = 0.0784 / t75 - 0.25;
-        ::overact::guard::reach(t77, "leg2")?;
-        let t78 = ::overact::math::sqrt(t77);
-        let t80 = 0.5 * t72 - t24 * t78;
-        let t81 = t72 - t80;
-        let t82 = t75 * t78;
-        ::overact::guard::leg(t82, 0.07839913810297301, "leg2")?;
-        let t83 = 1.0 / t82;
-        let minus_g1_vx_leg2 = t81 * t83;
-        let t87 = t39 + t72 * t78;
-        let t88 = t24 - t87;
-        let g2_vx_leg2 = t80 * t83;
-        let g2_vy_leg2 = t87 * t83;
-        let rate_2_leg2 = g2_vx_leg2 * t47 + g2_vy_leg2 * t50;
+        let t74 = t23 + t23;
+        let t76 = t74 * t74 + t29;
+        let t78 = 0.0784 / t76 - 0.25;
+        ::overact::guard::reach(t78, "leg2")?;
+        let t79 = ::overact::math::sqrt(t78);
+        let t81 = t23 - t27 * t79;
+        let t82 = t74 - t81;
+        let t83 = t76 * t79;
+        ::overact::guard::leg(t83, 0.07839913810297301, "leg2")?;
+        let minus_g1_vx_leg2 = t82 / t83;
+        let t87 = t41 + t74 * t79;
+        let t88 = t27 - t87;
+        let g2_vx_leg2 = t81 / t83;
+        let g2_vy_leg2 = t87 / t83;
+        let rate_2_leg2 = g2_vx_leg2 * t49 + g2_vy_leg2 * t52;
         let t96 = rate_2_leg2 * rate_2_leg2;
-        let t98 = t81 * t37 + t88 * t43 + 0.0784 * t96;
-        let minus_g1_vy_leg2 = t88 * t83;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t47 + minus_g1_vy_leg2 * t50;
+        let t98 = t82 * t39 + t88 * t45 + 0.0784 * t96;
+        let minus_g1_vy_leg2 = t88 / t83;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t49 + minus_g1_vy_leg2 * t52;
         let t103 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t105 = 0.5 * (t75 - 0.1568);
-        let minus_rate_dot_1_leg2 = t83 * (t98 + t103 * t105);
+        let t105 = 0.5 * (t76 - 0.1568);
+        let minus_rate_dot_1_leg2 = (t98 + t103 * t105) / t83;
         let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t115 = pose[0] + t5;
-        let t116 = t115 + 0.3950502153918333;
-        let t118 = pose[1] - t23;
-        let t120 = t118 * t118;
-        let t121 = t116 * t116 + t120;
-        let t123 = 0.0784 / t121 - 0.25;
-        ::overact::guard::reach(t123, "leg3")?;
-        let t124 = ::overact::math::sqrt(t123);
-        let t126 = 0.5 * t116 + t118 * t124;
-        let t127 = t116 - t126;
-        let t128 = t121 * t124;
-        ::overact::guard::leg(t128, 0.07839913810297301, "leg3")?;
-        let t129 = 1.0 / t128;
-        let g1_vx_leg3 = t127 * t129;
-        let t131 = acceleration[0] - t12;
-        let t133 = 0.5 * t118;
-        let t135 = t133 - t116 * t124;
-        let t136 = t118 - t135;
-        let t137 = t7 + acceleration[1];
-        let minus_g2_vx_leg3 = t126 * t129;
-        let t141 = twist[0] + t3;
-        let minus_g2_vy_leg3 = t135 * t129;
-        let t144 = twist[1] + t9;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t141 + minus_g2_vy_leg3 * t144;
-        let t147 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t149 = t127 * t131 + t136 * t137 + 0.0784 * t147;
-        let g1_vy_leg3 = t136 * t129;
-        let rate_1_leg3 = g1_vx_leg3 * t141 + g1_vy_leg3 * t144;
-        let t154 = rate_1_leg3 * rate_1_leg3;
-        let t156 = 0.5 * (t121 - 0.1568);
-        let rate_dot_1_leg3 = t129 * (t149 + t154 * t156);
+        let t115 = t41 - t26;
+        let t116 = t115 + t115;
+        let t118 = t116 * t116;
+        let t119 = t21 * t21 + t118;
+        let t121 = 0.0784 / t119 - 0.25;
+        ::overact::guard::reach(t121, "leg3")?;
+        let t122 = ::overact::math::sqrt(t121);
+        let t124 = t22 + t116 * t122;
+        let t125 = t21 - t124;
+        let t126 = t119 * t122;
+        ::overact::guard::leg(t126, 0.07839913810297301, "leg3")?;
+        let t127 = 1.0 / t126;
+        let g1_vx_leg3 = t125 * t127;
+        let t129 = acceleration[0] - t12;
+        let t132 = t115 - t21 * t122;
+        let t133 = t116 - t132;
+        let t134 = t7 + acceleration[1];
+        let minus_g2_vx_leg3 = t124 * t127;
+        let t138 = twist[0] + t3;
+        let minus_g2_vy_leg3 = t132 * t127;
+        let t141 = twist[1] + t9;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t138 + minus_g2_vy_leg3 * t141;
+        let t144 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t146 = t125 * t129 + t133 * t134 + 0.0784 * t144;
+        let g1_vy_leg3 = t133 * t127;
+        let rate_1_leg3 = g1_vx_leg3 * t138 + g1_vy_leg3 * t141;
+        let t151 = rate_1_leg3 * rate_1_leg3;
+        let t153 = 0.5 * (t119 - 0.1568);
+        let rate_dot_1_leg3 = t127 * (t146 + t151 * t153);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t166 = t115 - 0.3950502153918333;
-        let t169 = t166 * t166 + t120;
-        let t171 = 0.0784 / t169 - 0.25;
-        ::overact::guard::reach(t171, "leg4")?;
-        let t172 = ::overact::math::sqrt(t171);
-        let t174 = 0.5 * t166 - t118 * t172;
-        let t175 = t166 - t174;
-        let t176 = t169 * t172;
-        ::overact::guard::leg(t176, 0.07839913810297301, "leg4")?;
-        let t177 = 1.0 / t176;
-        let minus_g1_vx_leg4 = t175 * t177;
-        let t181 = t133 + t166 * t172;
-        let t182 = t118 - t181;
-        let g2_vx_leg4 = t174 * t177;
-        let g2_vy_leg4 = t181 * t177;
-        let rate_2_leg4 = g2_vx_leg4 * t141 + g2_vy_leg4 * t144;
-        let t190 = rate_2_leg4 * rate_2_leg4;
-        let t192 = t175 * t131 + t182 * t137 + 0.0784 * t190;
-        let minus_g1_vy_leg4 = t182 * t177;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t141 + minus_g1_vy_leg4 * t144;
-        let t197 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t199 = 0.5 * (t169 - 0.1568);
-        let minus_rate_dot_1_leg4 = t177 * (t192 + t197 * t199);
+        let t163 = t20 - 0.3950502153918333;
+        let t166 = t163 * t163 + t118;
+        let t168 = 0.0784 / t166 - 0.25;
+        ::overact::guard::reach(t168, "leg4")?;
+        let t169 = ::overact::math::sqrt(t168);
+        let t171 = 0.5 * t163 - t116 * t169;
+        let t172 = t163 - t171;
+        let t173 = t166 * t169;
+        ::overact::guard::leg(t173, 0.07839913810297301, "leg4")?;
+        let t174 = 1.0 / t173;
+        let minus_g1_vx_leg4 = t172 * t174;
+        let t178 = t115 + t163 * t169;
+        let t179 = t116 - t178;
+        let g2_vx_leg4 = t171 * t174;
+        let g2_vy_leg4 = t178 * t174;
+        let rate_2_leg4 = g2_vx_leg4 * t138 + g2_vy_leg4 * t141;
+        let t187 = rate_2_leg4 * rate_2_leg4;
+        let t189 = t172 * t129 + t179 * t134 + 0.0784 * t187;
+        let minus_g1_vy_leg4 = t179 * t174;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t138 + minus_g1_vy_leg4 * t141;
+        let t194 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t196 = 0.5 * (t166 - 0.1568);
+        let minus_rate_dot_1_leg4 = t174 * (t189 + t194 * t196);
         let minus_g1_wz_leg4 = t5 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t237 = t32 * t37 + t41 * t43 + 0.0784 * t60;
-        let minus_rate_dot_2_leg1 = t35 * (t237 + t53 * t62);
+        let t234 = t35 * t39 + t43 * t45 + 0.0784 * t62;
+        let minus_rate_dot_2_leg1 = (t234 + t55 * t64) / t37;
         let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t251 = t80 * t37 + t87 * t43 + 0.0784 * t103;
-        let rate_dot_2_leg2 = t83 * (t251 + t96 * t105);
+        let t248 = t81 * t39 + t87 * t45 + 0.0784 * t103;
+        let rate_dot_2_leg2 = (t248 + t96 * t105) / t83;
         let minus_g2_wz_leg2 = t5 * g2_vy_leg2 + t2 * g2_vx_leg2;
-        let t265 = t126 * t131 + t135 * t137 + 0.0784 * t154;
-        let minus_rate_dot_2_leg3 = t129 * (t265 + t147 * t156);
+        let t262 = t124 * t129 + t132 * t134 + 0.0784 * t151;
+        let minus_rate_dot_2_leg3 = t127 * (t262 + t144 * t153);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t279 = t174 * t131 + t181 * t137 + 0.0784 * t197;
-        let rate_dot_2_leg4 = t177 * (t279 + t190 * t199);
+        let t276 = t171 * t129 + t178 * t134 + 0.0784 * t194;
+        let rate_dot_2_leg4 = t174 * (t276 + t187 * t196);
         let g2_wz_leg4 = t5 * g2_vy_leg4 + t2 * g2_vx_leg4;
-        let t289 = 3.5714285714285716 * t237;
-        let t291 = 3.5714285714285716 * t55;
-        let t300 = 3.5714285714285716 * t251;
-        let t302 = 3.5714285714285716 * t98;
-        let t311 = 3.5714285714285716 * t265;
-        let t313 = 3.5714285714285716 * t149;
-        let t322 = 3.5714285714285716 * t279;
-        let t324 = 3.5714285714285716 * t192;
-        let t333 = rate_1_leg1 + minus_rate_2_leg1;
-        let t334 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t336 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t338 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t340 = minus_rate_1_leg2 + rate_2_leg2;
-        let t341 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t343 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t345 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t347 = rate_1_leg3 + minus_rate_2_leg3;
-        let t348 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t350 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t352 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t354 = minus_rate_1_leg4 + rate_2_leg4;
-        let t355 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t357 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t359 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t373 = minus_rate_2_leg1 + twist[2];
-        let t376 = 1.0 - g2_wz_leg1;
-        let t378 = twist[2] - rate_2_leg2;
-        let t381 = minus_g2_wz_leg2 + 1.0;
-        let t383 = minus_rate_2_leg3 + twist[2];
-        let t386 = minus_g2_wz_leg3 + 1.0;
-        let t388 = twist[2] - rate_2_leg4;
-        let t391 = 1.0 - g2_wz_leg4;
+        let t286 = 3.5714285714285716 * t234;
+        let t288 = 3.5714285714285716 * t57;
+        let t297 = 3.5714285714285716 * t248;
+        let t299 = 3.5714285714285716 * t98;
+        let t308 = 3.5714285714285716 * t262;
+        let t310 = 3.5714285714285716 * t146;
+        let t319 = 3.5714285714285716 * t276;
+        let t321 = 3.5714285714285716 * t189;
+        let t330 = rate_1_leg1 + minus_rate_2_leg1;
+        let t331 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t333 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t335 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t337 = minus_rate_1_leg2 + rate_2_leg2;
+        let t338 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t340 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t342 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t344 = rate_1_leg3 + minus_rate_2_leg3;
+        let t345 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t347 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t349 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t351 = minus_rate_1_leg4 + rate_2_leg4;
+        let t352 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t354 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t356 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t370 = minus_rate_2_leg1 + twist[2];
+        let t373 = 1.0 - g2_wz_leg1;
+        let t375 = twist[2] - rate_2_leg2;
+        let t378 = minus_g2_wz_leg2 + 1.0;
+        let t380 = minus_rate_2_leg3 + twist[2];
+        let t383 = minus_g2_wz_leg3 + 1.0;
+        let t385 = twist[2] - rate_2_leg4;
+        let t388 = 1.0 - g2_wz_leg4;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3448,18 +3442,18 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t289 + minus_g2_vx_leg1 * t291,
-                -(minus_g1_vx_leg2 * t300 + g2_vx_leg2 * t302),
-                g1_vx_leg3 * t311 + minus_g2_vx_leg3 * t313,
-                -(minus_g1_vx_leg4 * t322 + g2_vx_leg4 * t324), t333 * t334, t340 * t341,
-                t347 * t348, t354 * t355, ::overact::math::signed(t334, t333),
-                ::overact::math::signed(t341, t340), ::overact::math::signed(t348, t347),
-                ::overact::math::signed(t355, t354), -t334, t341, -t348, t355,
-                minus_g2_vx_leg1 * t373, -(g2_vx_leg2 * t378), minus_g2_vx_leg3 * t383,
-                -(g2_vx_leg4 * t388), ::overact::math::signed(minus_g2_vx_leg1, t373),
-                -::overact::math::signed(g2_vx_leg2, t378),
-                ::overact::math::signed(minus_g2_vx_leg3, t383),
-                -::overact::math::signed(g2_vx_leg4, t388), minus_g2_vx_leg1,
+                g1_vx_leg1 * t286 + minus_g2_vx_leg1 * t288,
+                -(minus_g1_vx_leg2 * t297 + g2_vx_leg2 * t299),
+                g1_vx_leg3 * t308 + minus_g2_vx_leg3 * t310,
+                -(minus_g1_vx_leg4 * t319 + g2_vx_leg4 * t321), t330 * t331, t337 * t338,
+                t344 * t345, t351 * t352, ::overact::math::signed(t331, t330),
+                ::overact::math::signed(t338, t337), ::overact::math::signed(t345, t344),
+                ::overact::math::signed(t352, t351), -t331, t338, -t345, t352,
+                minus_g2_vx_leg1 * t370, -(g2_vx_leg2 * t375), minus_g2_vx_leg3 * t380,
+                -(g2_vx_leg4 * t385), ::overact::math::signed(minus_g2_vx_leg1, t370),
+                -::overact::math::signed(g2_vx_leg2, t375),
+                ::overact::math::signed(minus_g2_vx_leg3, t380),
+                -::overact::math::signed(g2_vx_leg4, t385), minus_g2_vx_leg1,
             ],
             [
                 0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3474,18 +3468,18 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t289 + minus_g2_vy_leg1 * t291,
-                -(minus_g1_vy_leg2 * t300 + g2_vy_leg2 * t302),
-                g1_vy_leg3 * t311 + minus_g2_vy_leg3 * t313,
-                -(minus_g1_vy_leg4 * t322 + g2_vy_leg4 * t324), t333 * t336, t340 * t343,
-                t347 * t350, t354 * t357, ::overact::math::signed(t336, t333),
-                ::overact::math::signed(t343, t340), ::overact::math::signed(t350, t347),
-                ::overact::math::signed(t357, t354), -t336, t343, -t350, t357,
-                minus_g2_vy_leg1 * t373, -(g2_vy_leg2 * t378), minus_g2_vy_leg3 * t383,
-                -(g2_vy_leg4 * t388), ::overact::math::signed(minus_g2_vy_leg1, t373),
-                -::overact::math::signed(g2_vy_leg2, t378),
-                ::overact::math::signed(minus_g2_vy_leg3, t383),
-                -::overact::math::signed(g2_vy_leg4, t388), minus_g2_vy_leg1,
+                g1_vy_leg1 * t286 + minus_g2_vy_leg1 * t288,
+                -(minus_g1_vy_leg2 * t297 + g2_vy_leg2 * t299),
+                g1_vy_leg3 * t308 + minus_g2_vy_leg3 * t310,
+                -(minus_g1_vy_leg4 * t319 + g2_vy_leg4 * t321), t330 * t333, t337 * t340,
+                t344 * t347, t351 * t354, ::overact::math::signed(t333, t330),
+                ::overact::math::signed(t340, t337), ::overact::math::signed(t347, t344),
+                ::overact::math::signed(t354, t351), -t333, t340, -t347, t354,
+                minus_g2_vy_leg1 * t370, -(g2_vy_leg2 * t375), minus_g2_vy_leg3 * t380,
+                -(g2_vy_leg4 * t385), ::overact::math::signed(minus_g2_vy_leg1, t370),
+                -::overact::math::signed(g2_vy_leg2, t375),
+                ::overact::math::signed(minus_g2_vy_leg3, t380),
+                -::overact::math::signed(g2_vy_leg4, t385), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3500,16 +3494,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t289 + g2_wz_leg1 * t291),
-                g1_wz_leg2 * t300 + minus_g2_wz_leg2 * t302,
-                g1_wz_leg3 * t311 + minus_g2_wz_leg3 * t313,
-                -(minus_g1_wz_leg4 * t322 + g2_wz_leg4 * t324), -(t333 * t338), -(t340 * t345),
-                t347 * t352, t354 * t359, -::overact::math::signed(t338, t333),
-                -::overact::math::signed(t345, t340), ::overact::math::signed(t352, t347),
-                ::overact::math::signed(t359, t354), t338, -t345, -t352, t359, t373 * t376,
-                t378 * t381, t383 * t386, t388 * t391, ::overact::math::signed(t376, t373),
-                ::overact::math::signed(t381, t378), ::overact::math::signed(t386, t383),
-                ::overact::math::signed(t391, t388), t376,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t286 + g2_wz_leg1 * t288),
+                g1_wz_leg2 * t297 + minus_g2_wz_leg2 * t299,
+                g1_wz_leg3 * t308 + minus_g2_wz_leg3 * t310,
+                -(minus_g1_wz_leg4 * t319 + g2_wz_leg4 * t321), -(t330 * t335), -(t337 * t342),
+                t344 * t349, t351 * t356, -::overact::math::signed(t335, t330),
+                -::overact::math::signed(t342, t337), ::overact::math::signed(t349, t344),
+                ::overact::math::signed(t356, t351), t335, -t342, -t349, t356, t370 * t373,
+                t375 * t378, t380 * t383, t385 * t388, ::overact::math::signed(t373, t370),
+                ::overact::math::signed(t378, t375), ::overact::math::signed(t383, t380),
+                ::overact::math::signed(t388, t385), t373,
             ],
         ])
     }
@@ -3524,7 +3518,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 314 operations (96 additions, 214 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 229 intermediates.
+    /// 310 operations (96 additions, 210 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 225 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3563,13 +3557,12 @@ impl DualV {
         let minus_g2_vy_leg1 = s1_leg1 * t30;
         let t41 = twist[1] - t9;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t38 + minus_g2_vy_leg1 * t41;
-        let t44 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t46 = c12_leg1 * t32 + s12_leg1 * t34 + 0.28 * t44;
+        let t45 = 0.28 * (minus_rate_2_leg1 * minus_rate_2_leg1);
+        let t46 = c12_leg1 * t32 + s12_leg1 * t34 + t45;
         let g1_vy_leg1 = s12_leg1 * t30;
         let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t41;
-        let t51 = rate_1_leg1 * rate_1_leg1;
-        let t52 = 0.28 * c2_leg1;
-        let rate_dot_1_leg1 = t30 * (t46 + t51 * t52);
+        let t52 = 0.28 * (rate_1_leg1 * rate_1_leg1);
+        let rate_dot_1_leg1 = t30 * (t46 + c2_leg1 * t52);
         let minus_g1_wz_leg1 = g1_vy_leg1 * t5 + g1_vx_leg1 * t2;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -3578,13 +3571,12 @@ impl DualV {
         let minus_g2_vx_leg2 = c1_leg2 * t72;
         let minus_g2_vy_leg2 = s1_leg2 * t72;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * t38 + minus_g2_vy_leg2 * t41;
-        let t82 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t84 = c12_leg2 * t32 + s12_leg2 * t34 + 0.28 * t82;
+        let t83 = 0.28 * (minus_rate_2_leg2 * minus_rate_2_leg2);
+        let t84 = c12_leg2 * t32 + s12_leg2 * t34 + t83;
         let g1_vy_leg2 = s12_leg2 * t72;
         let rate_1_leg2 = g1_vx_leg2 * t38 + g1_vy_leg2 * t41;
-        let t89 = rate_1_leg2 * rate_1_leg2;
-        let t90 = 0.28 * c2_leg2;
-        let rate_dot_1_leg2 = t72 * (t84 + t89 * t90);
+        let t90 = 0.28 * (rate_1_leg2 * rate_1_leg2);
+        let rate_dot_1_leg2 = t72 * (t84 + c2_leg2 * t90);
         let minus_g1_wz_leg2 = t5 * g1_vy_leg2 + t2 * g1_vx_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -3597,13 +3589,12 @@ impl DualV {
         let minus_g2_vy_leg3 = s1_leg3 * t110;
         let t121 = twist[1] + t9;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * t118 + minus_g2_vy_leg3 * t121;
-        let t124 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t126 = c12_leg3 * t112 + s12_leg3 * t114 + 0.28 * t124;
+        let t125 = 0.28 * (minus_rate_2_leg3 * minus_rate_2_leg3);
+        let t126 = c12_leg3 * t112 + s12_leg3 * t114 + t125;
         let g1_vy_leg3 = s12_leg3 * t110;
         let rate_1_leg3 = g1_vx_leg3 * t118 + g1_vy_leg3 * t121;
-        let t131 = rate_1_leg3 * rate_1_leg3;
-        let t132 = 0.28 * c2_leg3;
-        let rate_dot_1_leg3 = t110 * (t126 + t131 * t132);
+        let t132 = 0.28 * (rate_1_leg3 * rate_1_leg3);
+        let rate_dot_1_leg3 = t110 * (t126 + c2_leg3 * t132);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
@@ -3612,50 +3603,49 @@ impl DualV {
         let minus_g2_vx_leg4 = c1_leg4 * t152;
         let minus_g2_vy_leg4 = s1_leg4 * t152;
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * t118 + minus_g2_vy_leg4 * t121;
-        let t162 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t164 = c12_leg4 * t112 + s12_leg4 * t114 + 0.28 * t162;
+        let t163 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
+        let t164 = c12_leg4 * t112 + s12_leg4 * t114 + t163;
         let g1_vy_leg4 = s12_leg4 * t152;
         let rate_1_leg4 = g1_vx_leg4 * t118 + g1_vy_leg4 * t121;
-        let t169 = rate_1_leg4 * rate_1_leg4;
-        let t170 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t152 * (t164 + t169 * t170);
+        let t170 = 0.28 * (rate_1_leg4 * rate_1_leg4);
+        let rate_dot_1_leg4 = t152 * (t164 + c2_leg4 * t170);
         let g1_wz_leg4 = t5 * g1_vy_leg4 + t2 * g1_vx_leg4;
-        let t208 = c1_leg1 * t32 + s1_leg1 * t34 + 0.28 * t51;
-        let minus_rate_dot_2_leg1 = t30 * (t208 + t44 * t52);
+        let t207 = c1_leg1 * t32 + s1_leg1 * t34 + t52;
+        let minus_rate_dot_2_leg1 = t30 * (t207 + t45 * c2_leg1);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t5 + minus_g2_vx_leg1 * t2;
-        let t222 = c1_leg2 * t32 + s1_leg2 * t34 + 0.28 * t89;
-        let minus_rate_dot_2_leg2 = t72 * (t222 + t82 * t90);
+        let t220 = c1_leg2 * t32 + s1_leg2 * t34 + t90;
+        let minus_rate_dot_2_leg2 = t72 * (t220 + t83 * c2_leg2);
         let g2_wz_leg2 = t5 * minus_g2_vy_leg2 + t2 * minus_g2_vx_leg2;
-        let t236 = c1_leg3 * t112 + s1_leg3 * t114 + 0.28 * t131;
-        let minus_rate_dot_2_leg3 = t110 * (t236 + t124 * t132);
+        let t233 = c1_leg3 * t112 + s1_leg3 * t114 + t132;
+        let minus_rate_dot_2_leg3 = t110 * (t233 + t125 * c2_leg3);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t250 = c1_leg4 * t112 + s1_leg4 * t114 + 0.28 * t169;
-        let minus_rate_dot_2_leg4 = t152 * (t250 + t162 * t170);
+        let t246 = c1_leg4 * t112 + s1_leg4 * t114 + t170;
+        let minus_rate_dot_2_leg4 = t152 * (t246 + t163 * c2_leg4);
         let minus_g2_wz_leg4 = t5 * minus_g2_vy_leg4 + t2 * minus_g2_vx_leg4;
-        let t296 = rate_1_leg1 + minus_rate_2_leg1;
-        let t297 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t299 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t301 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t303 = rate_1_leg2 + minus_rate_2_leg2;
-        let t304 = g1_vx_leg2 + minus_g2_vx_leg2;
-        let t306 = g1_vy_leg2 + minus_g2_vy_leg2;
-        let t308 = minus_g1_wz_leg2 + g2_wz_leg2;
-        let t310 = rate_1_leg3 + minus_rate_2_leg3;
-        let t311 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t313 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t315 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t317 = rate_1_leg4 + minus_rate_2_leg4;
-        let t318 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t320 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t322 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t336 = minus_rate_2_leg1 + twist[2];
-        let t339 = 1.0 - g2_wz_leg1;
-        let t341 = minus_rate_2_leg2 + twist[2];
-        let t344 = 1.0 - g2_wz_leg2;
-        let t346 = minus_rate_2_leg3 + twist[2];
-        let t349 = minus_g2_wz_leg3 + 1.0;
-        let t351 = minus_rate_2_leg4 + twist[2];
-        let t354 = minus_g2_wz_leg4 + 1.0;
+        let t292 = rate_1_leg1 + minus_rate_2_leg1;
+        let t293 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t295 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t297 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t299 = rate_1_leg2 + minus_rate_2_leg2;
+        let t300 = g1_vx_leg2 + minus_g2_vx_leg2;
+        let t302 = g1_vy_leg2 + minus_g2_vy_leg2;
+        let t304 = minus_g1_wz_leg2 + g2_wz_leg2;
+        let t306 = rate_1_leg3 + minus_rate_2_leg3;
+        let t307 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t309 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t311 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t313 = rate_1_leg4 + minus_rate_2_leg4;
+        let t314 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t316 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t318 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t332 = minus_rate_2_leg1 + twist[2];
+        let t335 = 1.0 - g2_wz_leg1;
+        let t337 = minus_rate_2_leg2 + twist[2];
+        let t340 = 1.0 - g2_wz_leg2;
+        let t342 = minus_rate_2_leg3 + twist[2];
+        let t345 = minus_g2_wz_leg3 + 1.0;
+        let t347 = minus_rate_2_leg4 + twist[2];
+        let t350 = minus_g2_wz_leg4 + 1.0;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3669,18 +3659,18 @@ impl DualV {
                 g1_vx_leg3, g1_vx_leg4, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vx_leg4 * minus_rate_dot_2_leg4,
-                g1_vx_leg1 * t208 + minus_g2_vx_leg1 * t46,
-                g1_vx_leg2 * t222 + minus_g2_vx_leg2 * t84,
-                g1_vx_leg3 * t236 + minus_g2_vx_leg3 * t126,
-                g1_vx_leg4 * t250 + minus_g2_vx_leg4 * t164, t296 * t297, t303 * t304, t310 * t311,
-                t317 * t318, ::overact::math::signed(t297, t296),
-                ::overact::math::signed(t304, t303), ::overact::math::signed(t311, t310),
-                ::overact::math::signed(t318, t317), -t297, -t304, -t311, -t318,
-                minus_g2_vx_leg1 * t336, minus_g2_vx_leg2 * t341, minus_g2_vx_leg3 * t346,
-                minus_g2_vx_leg4 * t351, ::overact::math::signed(minus_g2_vx_leg1, t336),
-                ::overact::math::signed(minus_g2_vx_leg2, t341),
-                ::overact::math::signed(minus_g2_vx_leg3, t346),
-                ::overact::math::signed(minus_g2_vx_leg4, t351), minus_g2_vx_leg1,
+                g1_vx_leg1 * t207 + minus_g2_vx_leg1 * t46,
+                g1_vx_leg2 * t220 + minus_g2_vx_leg2 * t84,
+                g1_vx_leg3 * t233 + minus_g2_vx_leg3 * t126,
+                g1_vx_leg4 * t246 + minus_g2_vx_leg4 * t164, t292 * t293, t299 * t300, t306 * t307,
+                t313 * t314, ::overact::math::signed(t293, t292),
+                ::overact::math::signed(t300, t299), ::overact::math::signed(t307, t306),
+                ::overact::math::signed(t314, t313), -t293, -t300, -t307, -t314,
+                minus_g2_vx_leg1 * t332, minus_g2_vx_leg2 * t337, minus_g2_vx_leg3 * t342,
+                minus_g2_vx_leg4 * t347, ::overact::math::signed(minus_g2_vx_leg1, t332),
+                ::overact::math::signed(minus_g2_vx_leg2, t337),
+                ::overact::math::signed(minus_g2_vx_leg3, t342),
+                ::overact::math::signed(minus_g2_vx_leg4, t347), minus_g2_vx_leg1,
             ],
             [
                 0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3694,18 +3684,18 @@ impl DualV {
                 g1_vy_leg3, g1_vy_leg4, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_vy_leg4 * minus_rate_dot_2_leg4,
-                g1_vy_leg1 * t208 + minus_g2_vy_leg1 * t46,
-                g1_vy_leg2 * t222 + minus_g2_vy_leg2 * t84,
-                g1_vy_leg3 * t236 + minus_g2_vy_leg3 * t126,
-                g1_vy_leg4 * t250 + minus_g2_vy_leg4 * t164, t296 * t299, t303 * t306, t310 * t313,
-                t317 * t320, ::overact::math::signed(t299, t296),
-                ::overact::math::signed(t306, t303), ::overact::math::signed(t313, t310),
-                ::overact::math::signed(t320, t317), -t299, -t306, -t313, -t320,
-                minus_g2_vy_leg1 * t336, minus_g2_vy_leg2 * t341, minus_g2_vy_leg3 * t346,
-                minus_g2_vy_leg4 * t351, ::overact::math::signed(minus_g2_vy_leg1, t336),
-                ::overact::math::signed(minus_g2_vy_leg2, t341),
-                ::overact::math::signed(minus_g2_vy_leg3, t346),
-                ::overact::math::signed(minus_g2_vy_leg4, t351), minus_g2_vy_leg1,
+                g1_vy_leg1 * t207 + minus_g2_vy_leg1 * t46,
+                g1_vy_leg2 * t220 + minus_g2_vy_leg2 * t84,
+                g1_vy_leg3 * t233 + minus_g2_vy_leg3 * t126,
+                g1_vy_leg4 * t246 + minus_g2_vy_leg4 * t164, t292 * t295, t299 * t302, t306 * t309,
+                t313 * t316, ::overact::math::signed(t295, t292),
+                ::overact::math::signed(t302, t299), ::overact::math::signed(t309, t306),
+                ::overact::math::signed(t316, t313), -t295, -t302, -t309, -t316,
+                minus_g2_vy_leg1 * t332, minus_g2_vy_leg2 * t337, minus_g2_vy_leg3 * t342,
+                minus_g2_vy_leg4 * t347, ::overact::math::signed(minus_g2_vy_leg1, t332),
+                ::overact::math::signed(minus_g2_vy_leg2, t337),
+                ::overact::math::signed(minus_g2_vy_leg3, t342),
+                ::overact::math::signed(minus_g2_vy_leg4, t347), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3721,16 +3711,16 @@ impl DualV {
                 -minus_g1_wz_leg2, g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
                 minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
-                -(minus_g1_wz_leg1 * t208 + g2_wz_leg1 * t46),
-                -(minus_g1_wz_leg2 * t222 + g2_wz_leg2 * t84),
-                g1_wz_leg3 * t236 + minus_g2_wz_leg3 * t126,
-                g1_wz_leg4 * t250 + minus_g2_wz_leg4 * t164, -(t296 * t301), -(t303 * t308),
-                t310 * t315, t317 * t322, -::overact::math::signed(t301, t296),
-                -::overact::math::signed(t308, t303), ::overact::math::signed(t315, t310),
-                ::overact::math::signed(t322, t317), t301, t308, -t315, -t322, t336 * t339,
-                t341 * t344, t346 * t349, t351 * t354, ::overact::math::signed(t339, t336),
-                ::overact::math::signed(t344, t341), ::overact::math::signed(t349, t346),
-                ::overact::math::signed(t354, t351), t339,
+                -(minus_g1_wz_leg1 * t207 + g2_wz_leg1 * t46),
+                -(minus_g1_wz_leg2 * t220 + g2_wz_leg2 * t84),
+                g1_wz_leg3 * t233 + minus_g2_wz_leg3 * t126,
+                g1_wz_leg4 * t246 + minus_g2_wz_leg4 * t164, -(t292 * t297), -(t299 * t304),
+                t306 * t311, t313 * t318, -::overact::math::signed(t297, t292),
+                -::overact::math::signed(t304, t299), ::overact::math::signed(t311, t306),
+                ::overact::math::signed(t318, t313), t297, t304, -t311, -t318, t332 * t335,
+                t337 * t340, t342 * t345, t347 * t350, ::overact::math::signed(t335, t332),
+                ::overact::math::signed(t340, t337), ::overact::math::signed(t345, t342),
+                ::overact::math::signed(t350, t347), t335,
             ],
         ])
     }
@@ -3745,7 +3735,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 519 operations (193 additions, 315 multiplications, 11 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 419 intermediates.
+    /// 513 operations (195 additions, 289 multiplications, 29 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 413 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3760,241 +3750,238 @@ impl DualV {
         let t2 = 0.11 * s_phi;
         let t3 = 0.11 * c_phi;
         let t4 = t3 + -0.10970563941232059;
-        let t5 = pose[1] + t4;
+        let t5 = pose[1] - t4;
         let t6 = 0.5 * t5;
-        let t7 = pose[0] - t2;
-        let t8 = t7 - 0.3950502153918333;
-        let t10 = t5 * t5;
-        let t11 = t8 * t8 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = t6 - t8 * t14;
-        let t17 = t5 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let t19 = 1.0 / t18;
-        let g1_vy_leg1 = t17 * t19;
-        let t24 = 0.5 * t8 + t5 * t14;
-        let t25 = t8 - t24;
-        let g1_vx_leg1 = t25 * t19;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t30 = t7 + 0.3950502153918333;
-        let t32 = t30 * t30 + t10;
-        let t34 = 0.0784 / t32 - 0.25;
-        ::overact::guard::reach(t34, "leg2")?;
-        let t35 = ::overact::math::sqrt(t34);
-        let t37 = t6 + t30 * t35;
-        let t38 = t5 - t37;
-        let t39 = t32 * t35;
-        ::overact::guard::leg(t39, 0.07839913810297301, "leg2")?;
-        let t40 = 1.0 / t39;
-        let minus_g1_vy_leg2 = t38 * t40;
-        let t45 = 0.5 * t30 - t5 * t35;
-        let t46 = t30 - t45;
-        let minus_g1_vx_leg2 = t46 * t40;
+        let t7 = t6 + t4;
+        let t8 = t7 + t7;
+        let t9 = pose[0] - t2;
+        let t10 = t9 + 0.3950502153918333;
+        let t12 = t8 * t8;
+        let t13 = t10 * t10 + t12;
+        let t15 = 0.0784 / t13 - 0.25;
+        ::overact::guard::reach(t15, "leg2")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let t18 = t7 + t10 * t16;
+        let t19 = t8 - t18;
+        let t20 = t13 * t16;
+        ::overact::guard::leg(t20, 0.07839913810297301, "leg2")?;
+        let t21 = 1.0 / t20;
+        let minus_g1_vy_leg2 = t19 * t21;
+        let t26 = 0.5 * t10 - t8 * t16;
+        let t27 = t10 - t26;
+        let minus_g1_vx_leg2 = t27 * t21;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t52 = pose[1] - t4;
-        let t53 = 0.5 * t52;
-        let t54 = pose[0] + t2;
-        let t55 = t54 + 0.3950502153918333;
-        let t57 = t52 * t52;
+        let t32 = t9 - 0.3950502153918333;
+        let t34 = t32 * t32 + t12;
+        let t36 = 0.0784 / t34 - 0.25;
+        ::overact::guard::reach(t36, "leg1")?;
+        let t37 = ::overact::math::sqrt(t36);
+        let t39 = t7 - t32 * t37;
+        let t40 = t8 - t39;
+        let t41 = t34 * t37;
+        ::overact::guard::leg(t41, 0.07839913810297301, "leg1")?;
+        let g1_vy_leg1 = t40 / t41;
+        let t44 = 0.5 * t32;
+        let t46 = t44 + t8 * t37;
+        let minus_g2_vx_leg1 = t46 / t41;
+        let t48 = t32 / t41;
+        let g1_vx_leg1 = t48 - minus_g2_vx_leg1;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
+        let t54 = pose[0] - t44;
+        let t55 = t54 + t54;
+        let t57 = t5 * t5;
         let t58 = t55 * t55 + t57;
         let t60 = 0.0784 / t58 - 0.25;
         ::overact::guard::reach(t60, "leg3")?;
         let t61 = ::overact::math::sqrt(t60);
-        let t63 = t53 - t55 * t61;
-        let t64 = t52 - t63;
-        let t65 = t58 * t61;
-        ::overact::guard::leg(t65, 0.07839913810297301, "leg3")?;
-        let t66 = 1.0 / t65;
-        let g1_vy_leg3 = t64 * t66;
-        let t71 = 0.5 * t55 + t52 * t61;
-        let t72 = t55 - t71;
-        let g1_vx_leg3 = t72 * t66;
+        let t63 = t6 - t55 * t61;
+        let t64 = t58 * t61;
+        ::overact::guard::leg(t64, 0.07839913810297301, "leg3")?;
+        let minus_g2_vy_leg3 = t63 / t64;
+        let t66 = t5 / t64;
+        let g1_vy_leg3 = t66 - minus_g2_vy_leg3;
+        let t70 = t54 + t5 * t61;
+        let t71 = t55 - t70;
+        let g1_vx_leg3 = t71 / t64;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t78 = t54 - 0.3950502153918333;
+        let t77 = -0.3950502153918333 + t54;
+        let t78 = t77 + t77;
         let t80 = t78 * t78 + t57;
         let t82 = 0.0784 / t80 - 0.25;
         ::overact::guard::reach(t82, "leg4")?;
         let t83 = ::overact::math::sqrt(t82);
-        let t85 = t53 + t78 * t83;
-        let t86 = t52 - t85;
+        let t85 = t6 + t78 * t83;
+        let t86 = t5 - t85;
         let t87 = t80 * t83;
         ::overact::guard::leg(t87, 0.07839913810297301, "leg4")?;
         let t88 = 1.0 / t87;
         let minus_g1_vy_leg4 = t86 * t88;
-        let t93 = 0.5 * t78 - t52 * t83;
-        let t94 = t78 - t93;
-        let minus_g1_vx_leg4 = t94 * t88;
+        let t92 = t77 - t5 * t83;
+        let t93 = t78 - t92;
+        let minus_g1_vx_leg4 = t93 * t88;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
-        let t106 = g1_vx_leg3 * g1_wz_leg3
-            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
-            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t113 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t113, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t113, 25.429161076750646, "actuators")?;
-        let t114 = 1.0 / t113;
-        let t115 = t106 * t114;
-        let t131 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t133 = g1_vy_leg3 * g1_wz_leg3
-            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t131 * t115;
-        let t141 = t131 * t114;
-        let t143 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t131 * t141;
-        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t143, 25.592368899353342, "actuators")?;
-        let t144 = 1.0 / t143;
-        let t145 = t133 * t144;
-        let t147 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t106 * t115
-            - t133 * t145;
-        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t147, 0.3076928490286828, "actuators")?;
-        let t148 = 1.0 / t147;
-        let t162 = g1_vx_leg1 * actuator_velocities[0]
+        let t105 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t173 = g1_vy_leg1 * actuator_velocities[0]
+        let t112 = g1_vx_leg3 * g1_wz_leg3
+            - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
+            + minus_g1_vx_leg4 * minus_g1_wz_leg4;
+        let t119 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
+        let t120 = t112 / t119;
+        let t136 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
+        let t138 = g1_vy_leg3 * g1_wz_leg3
+            - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t136 * t120;
+        let t146 = t136 / t119;
+        let t148 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
+            - t136 * t146;
+        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
+        let t149 = t138 / t148;
+        let t158 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t162 * t141;
-        let t175 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t105 * t146;
+        let t160 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t162 * t115 - t145 * t173;
-        let rate_3_leg1 = t148 * t175;
-        let t177 = t3 * rate_3_leg1;
-        let t178 = rate_3_leg1 * t177;
-        let t180 = t2 * rate_3_leg1;
-        let t181 = rate_3_leg1 * t180;
-        let g2_vx_leg2 = t45 * t40;
-        let t188 = t144 * t173 - t145 * rate_3_leg1;
-        let t192 = t162 * t114 - t141 * t188 - t115 * rate_3_leg1;
-        let t193 = t192 - t177;
-        let g2_vy_leg2 = t37 * t40;
-        let t196 = t188 - t180;
-        let rate_2_leg2 = g2_vx_leg2 * t193 + g2_vy_leg2 * t196;
-        let t199 = rate_2_leg2 * rate_2_leg2;
-        let t200 = 0.0784 * t199;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t196;
-        let t205 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t207 = 0.5 * (t32 - 0.1568);
-        let t208 = t205 * t207;
-        let rate_dot_1_leg2 = t40 * (t38 * t178 - t46 * t181 - t200 - t208);
-        let t211 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t24 * t19;
-        let minus_g2_vy_leg1 = t16 * t19;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t193 + minus_g2_vy_leg1 * t196;
-        let t221 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t222 = 0.0784 * t221;
-        let rate_1_leg1 = g1_vx_leg1 * t193 + g1_vy_leg1 * t196;
-        let t227 = rate_1_leg1 * rate_1_leg1;
-        let t229 = 0.5 * (t11 - 0.1568);
-        let t230 = t227 * t229;
-        let minus_rate_dot_1_leg1 = t19 * (t17 * t178 - t25 * t181 - t222 - t230);
-        let t233 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let minus_g2_vx_leg3 = t71 * t66;
-        let t240 = t192 + t177;
-        let minus_g2_vy_leg3 = t63 * t66;
-        let t243 = t188 + t180;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t240 + minus_g2_vy_leg3 * t243;
-        let t246 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t247 = 0.0784 * t246;
-        let rate_1_leg3 = g1_vx_leg3 * t240 + g1_vy_leg3 * t243;
-        let t252 = rate_1_leg3 * rate_1_leg3;
-        let t254 = 0.5 * (t58 - 0.1568);
-        let t255 = t252 * t254;
-        let minus_rate_dot_1_leg3 = t66 * (t72 * t181 - t64 * t178 - t247 - t255);
-        let t258 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t93 * t88;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t105 * t120 - t149 * t158;
+        let t171 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t112 * t120
+            - t138 * t149;
+        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
+        let rate_3_leg1 = t160 / t171;
+        let t173 = t3 * rate_3_leg1;
+        let t174 = rate_3_leg1 * t173;
+        let t176 = t2 * rate_3_leg1;
+        let t177 = rate_3_leg1 * t176;
+        let g2_vx_leg2 = t26 * t21;
+        let t184 = t158 / t148 - t149 * rate_3_leg1;
+        let t188 = t105 / t119 - t146 * t184 - t120 * rate_3_leg1;
+        let t189 = t188 - t173;
+        let g2_vy_leg2 = t18 * t21;
+        let t192 = t184 - t176;
+        let rate_2_leg2 = g2_vx_leg2 * t189 + g2_vy_leg2 * t192;
+        let t195 = rate_2_leg2 * rate_2_leg2;
+        let t196 = 0.0784 * t195;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t189 + minus_g1_vy_leg2 * t192;
+        let t201 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t203 = 0.5 * (t13 - 0.1568);
+        let t204 = t201 * t203;
+        let rate_dot_1_leg2 = t21 * (t19 * t174 - t27 * t177 - t196 - t204);
+        let t207 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t210 = t32 - t46;
+        let minus_g2_vy_leg1 = t39 / t41;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t189 + minus_g2_vy_leg1 * t192;
+        let t217 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t218 = 0.0784 * t217;
+        let rate_1_leg1 = g1_vx_leg1 * t189 + g1_vy_leg1 * t192;
+        let t223 = rate_1_leg1 * rate_1_leg1;
+        let t225 = 0.5 * (t34 - 0.1568);
+        let t226 = t223 * t225;
+        let minus_rate_dot_1_leg1 = (t40 * t174 - t210 * t177 - t218 - t226) / t41;
+        let t229 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t233 = t5 - t63;
+        let minus_g2_vx_leg3 = t70 / t64;
+        let t237 = t188 + t173;
+        let t239 = t184 + t176;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t239;
+        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t243 = 0.0784 * t242;
+        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t239;
+        let t248 = rate_1_leg3 * rate_1_leg3;
+        let t250 = 0.5 * (t58 - 0.1568);
+        let t251 = t248 * t250;
+        let minus_rate_dot_1_leg3 = (t71 * t177 - t233 * t174 - t243 - t251) / t64;
+        let t254 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t92 * t88;
         let g2_vy_leg4 = t85 * t88;
-        let rate_2_leg4 = g2_vx_leg4 * t240 + g2_vy_leg4 * t243;
-        let t269 = rate_2_leg4 * rate_2_leg4;
-        let t270 = 0.0784 * t269;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t240 + minus_g1_vy_leg4 * t243;
-        let t275 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t277 = 0.5 * (t80 - 0.1568);
-        let t278 = t275 * t277;
-        let rate_dot_1_leg4 = t88 * (t94 * t181 - t86 * t178 - t270 - t278);
-        let t281 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t290 = g1_vx_leg1 * t233 - minus_g1_vx_leg2 * t211 + g1_vx_leg3 * t258
-            - minus_g1_vx_leg4 * t281;
-        let t301 = g1_vy_leg1 * t233 - minus_g1_vy_leg2 * t211 + g1_vy_leg3 * t258
-            - minus_g1_vy_leg4 * t281 - t141 * t290;
-        let t303 = g1_wz_leg2 * t211 - minus_g1_wz_leg1 * t233 + g1_wz_leg3 * t258
-            - minus_g1_wz_leg4 * t281 - t115 * t290 - t145 * t301;
-        let rate_dot_3_leg1 = t148 * t303;
-        let t306 = t178 + t2 * rate_dot_3_leg1;
-        let t307 = 9.090909090909092 * t306;
-        let t309 = t181 - t3 * rate_dot_3_leg1;
-        let t310 = 9.090909090909092 * t309;
-        let t313 = t144 * t301 - t145 * rate_dot_3_leg1;
-        let t319 = t114 * t290 - t141 * t313 - t115 * rate_dot_3_leg1;
-        let t325 = t309 + t319;
-        let t327 = t313 - t306;
-        let t330 = t25 * t325 + t17 * t327 + t222;
-        let rate_dot_1_leg1 = t19 * (t330 + t230);
-        let t339 = t46 * t325 + t38 * t327 + t200;
-        let minus_rate_dot_1_leg2 = t40 * (t339 + t208);
-        let t345 = t319 - t309;
-        let t347 = t306 + t313;
-        let t350 = t72 * t345 + t64 * t347 + t247;
-        let rate_dot_1_leg3 = t66 * (t350 + t255);
-        let t359 = t94 * t345 + t86 * t347 + t270;
-        let minus_rate_dot_1_leg4 = t88 * (t359 + t278);
-        let t393 = t24 * t325 + t16 * t327 + 0.0784 * t227;
-        let minus_rate_dot_2_leg1 = t19 * (t393 + t221 * t229);
+        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t239;
+        let t265 = rate_2_leg4 * rate_2_leg4;
+        let t266 = 0.0784 * t265;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t239;
+        let t271 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t273 = 0.5 * (t80 - 0.1568);
+        let t274 = t271 * t273;
+        let rate_dot_1_leg4 = t88 * (t93 * t177 - t86 * t174 - t266 - t274);
+        let t277 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t286 = g1_vx_leg1 * t229 - minus_g1_vx_leg2 * t207 + g1_vx_leg3 * t254
+            - minus_g1_vx_leg4 * t277;
+        let t297 = g1_vy_leg1 * t229 - minus_g1_vy_leg2 * t207 + g1_vy_leg3 * t254
+            - minus_g1_vy_leg4 * t277 - t146 * t286;
+        let t299 = g1_wz_leg2 * t207 - minus_g1_wz_leg1 * t229 + g1_wz_leg3 * t254
+            - minus_g1_wz_leg4 * t277 - t120 * t286 - t149 * t297;
+        let rate_dot_3_leg1 = t299 / t171;
+        let t302 = t174 + t2 * rate_dot_3_leg1;
+        let t303 = 9.090909090909092 * t302;
+        let t305 = t177 - t3 * rate_dot_3_leg1;
+        let t306 = 9.090909090909092 * t305;
+        let t309 = t297 / t148 - t149 * rate_dot_3_leg1;
+        let t315 = t286 / t119 - t146 * t309 - t120 * rate_dot_3_leg1;
+        let t321 = t305 + t315;
+        let t323 = t309 - t302;
+        let t326 = t210 * t321 + t40 * t323 + t218;
+        let rate_dot_1_leg1 = (t326 + t226) / t41;
+        let t335 = t27 * t321 + t19 * t323 + t196;
+        let minus_rate_dot_1_leg2 = t21 * (t335 + t204);
+        let t341 = t315 - t305;
+        let t343 = t302 + t309;
+        let t346 = t71 * t341 + t233 * t343 + t243;
+        let rate_dot_1_leg3 = (t346 + t251) / t64;
+        let t355 = t93 * t341 + t86 * t343 + t266;
+        let minus_rate_dot_1_leg4 = t88 * (t355 + t274);
+        let t389 = t46 * t321 + t39 * t323 + 0.0784 * t223;
+        let minus_rate_dot_2_leg1 = (t389 + t217 * t225) / t41;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t3 * minus_g2_vx_leg1;
-        let t407 = t45 * t325 + t37 * t327 + 0.0784 * t205;
-        let rate_dot_2_leg2 = t40 * (t407 + t199 * t207);
+        let t403 = t26 * t321 + t18 * t323 + 0.0784 * t201;
+        let rate_dot_2_leg2 = t21 * (t403 + t195 * t203);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t3 * g2_vx_leg2;
-        let t421 = t71 * t345 + t63 * t347 + 0.0784 * t252;
-        let minus_rate_dot_2_leg3 = t66 * (t421 + t246 * t254);
+        let t417 = t70 * t341 + t63 * t343 + 0.0784 * t248;
+        let minus_rate_dot_2_leg3 = (t417 + t242 * t250) / t64;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t3 * minus_g2_vx_leg3;
-        let t435 = t93 * t345 + t85 * t347 + 0.0784 * t275;
-        let rate_dot_2_leg4 = t88 * (t435 + t269 * t277);
+        let t431 = t92 * t341 + t85 * t343 + 0.0784 * t271;
+        let rate_dot_2_leg4 = t88 * (t431 + t265 * t273);
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t3 * g2_vx_leg4;
-        let t445 = 3.5714285714285716 * t393;
-        let t447 = 3.5714285714285716 * t330;
-        let t456 = 3.5714285714285716 * t407;
-        let t458 = 3.5714285714285716 * t339;
-        let t467 = 3.5714285714285716 * t421;
-        let t469 = 3.5714285714285716 * t350;
-        let t478 = 3.5714285714285716 * t435;
-        let t480 = 3.5714285714285716 * t359;
-        let t489 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t490 = rate_1_leg1 + minus_rate_2_leg1;
-        let t492 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t494 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t496 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t497 = minus_rate_1_leg2 + rate_2_leg2;
-        let t499 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t501 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t503 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t504 = rate_1_leg3 + minus_rate_2_leg3;
-        let t506 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t508 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t510 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t511 = minus_rate_1_leg4 + rate_2_leg4;
-        let t513 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t515 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t529 = minus_rate_2_leg1 + rate_3_leg1;
-        let t532 = 1.0 - g2_wz_leg1;
-        let t534 = rate_3_leg1 - rate_2_leg2;
-        let t537 = minus_g2_wz_leg2 + 1.0;
-        let t539 = minus_rate_2_leg3 + rate_3_leg1;
-        let t542 = minus_g2_wz_leg3 + 1.0;
-        let t544 = rate_3_leg1 - rate_2_leg4;
-        let t547 = 1.0 - g2_wz_leg4;
+        let t441 = 3.5714285714285716 * t389;
+        let t443 = 3.5714285714285716 * t326;
+        let t452 = 3.5714285714285716 * t403;
+        let t454 = 3.5714285714285716 * t335;
+        let t463 = 3.5714285714285716 * t417;
+        let t465 = 3.5714285714285716 * t346;
+        let t474 = 3.5714285714285716 * t431;
+        let t476 = 3.5714285714285716 * t355;
+        let t485 = rate_1_leg1 + minus_rate_2_leg1;
+        let t487 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t489 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t491 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t492 = minus_rate_1_leg2 + rate_2_leg2;
+        let t494 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t496 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t498 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t499 = rate_1_leg3 + minus_rate_2_leg3;
+        let t502 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t504 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t505 = minus_rate_1_leg4 + rate_2_leg4;
+        let t507 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t509 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t523 = minus_rate_2_leg1 + rate_3_leg1;
+        let t526 = 1.0 - g2_wz_leg1;
+        let t528 = rate_3_leg1 - rate_2_leg2;
+        let t531 = minus_g2_wz_leg2 + 1.0;
+        let t533 = minus_rate_2_leg3 + rate_3_leg1;
+        let t536 = minus_g2_wz_leg3 + 1.0;
+        let t538 = rate_3_leg1 - rate_2_leg4;
+        let t541 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -t307, t310, t319, g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t303, t306, t315, g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -4006,21 +3993,21 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t445 + minus_g2_vx_leg1 * t447,
-                -(minus_g1_vx_leg2 * t456 + g2_vx_leg2 * t458),
-                g1_vx_leg3 * t467 + minus_g2_vx_leg3 * t469,
-                -(minus_g1_vx_leg4 * t478 + g2_vx_leg4 * t480), t489 * t490, t496 * t497,
-                t503 * t504, t510 * t511, ::overact::math::signed(t489, t490),
-                ::overact::math::signed(t496, t497), ::overact::math::signed(t503, t504),
-                ::overact::math::signed(t510, t511), -t489, t496, -t503, t510,
-                minus_g2_vx_leg1 * t529, -(g2_vx_leg2 * t534), minus_g2_vx_leg3 * t539,
-                -(g2_vx_leg4 * t544), ::overact::math::signed(minus_g2_vx_leg1, t529),
-                -::overact::math::signed(g2_vx_leg2, t534),
-                ::overact::math::signed(minus_g2_vx_leg3, t539),
-                -::overact::math::signed(g2_vx_leg4, t544), minus_g2_vx_leg1,
+                g1_vx_leg1 * t441 + minus_g2_vx_leg1 * t443,
+                -(minus_g1_vx_leg2 * t452 + g2_vx_leg2 * t454),
+                g1_vx_leg3 * t463 + minus_g2_vx_leg3 * t465,
+                -(minus_g1_vx_leg4 * t474 + g2_vx_leg4 * t476), t48 * t485, t491 * t492,
+                t498 * t499, t504 * t505, ::overact::math::signed(t48, t485),
+                ::overact::math::signed(t491, t492), ::overact::math::signed(t498, t499),
+                ::overact::math::signed(t504, t505), -t48, t491, -t498, t504,
+                minus_g2_vx_leg1 * t523, -(g2_vx_leg2 * t528), minus_g2_vx_leg3 * t533,
+                -(g2_vx_leg4 * t538), ::overact::math::signed(minus_g2_vx_leg1, t523),
+                -::overact::math::signed(g2_vx_leg2, t528),
+                ::overact::math::signed(minus_g2_vx_leg3, t533),
+                -::overact::math::signed(g2_vx_leg4, t538), minus_g2_vx_leg1,
             ],
             [
-                0.0, -t310, -t307, t313, g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t306, -t303, t309, g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
                 minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
@@ -4032,21 +4019,21 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t445 + minus_g2_vy_leg1 * t447,
-                -(minus_g1_vy_leg2 * t456 + g2_vy_leg2 * t458),
-                g1_vy_leg3 * t467 + minus_g2_vy_leg3 * t469,
-                -(minus_g1_vy_leg4 * t478 + g2_vy_leg4 * t480), t492 * t490, t499 * t497,
-                t506 * t504, t513 * t511, ::overact::math::signed(t492, t490),
-                ::overact::math::signed(t499, t497), ::overact::math::signed(t506, t504),
-                ::overact::math::signed(t513, t511), -t492, t499, -t506, t513,
-                minus_g2_vy_leg1 * t529, -(g2_vy_leg2 * t534), minus_g2_vy_leg3 * t539,
-                -(g2_vy_leg4 * t544), ::overact::math::signed(minus_g2_vy_leg1, t529),
-                -::overact::math::signed(g2_vy_leg2, t534),
-                ::overact::math::signed(minus_g2_vy_leg3, t539),
-                -::overact::math::signed(g2_vy_leg4, t544), minus_g2_vy_leg1,
+                g1_vy_leg1 * t441 + minus_g2_vy_leg1 * t443,
+                -(minus_g1_vy_leg2 * t452 + g2_vy_leg2 * t454),
+                g1_vy_leg3 * t463 + minus_g2_vy_leg3 * t465,
+                -(minus_g1_vy_leg4 * t474 + g2_vy_leg4 * t476), t487 * t485, t494 * t492,
+                t66 * t499, t507 * t505, ::overact::math::signed(t487, t485),
+                ::overact::math::signed(t494, t492), ::overact::math::signed(t66, t499),
+                ::overact::math::signed(t507, t505), -t487, t494, -t66, t507,
+                minus_g2_vy_leg1 * t523, -(g2_vy_leg2 * t528), minus_g2_vy_leg3 * t533,
+                -(g2_vy_leg4 * t538), ::overact::math::signed(minus_g2_vy_leg1, t523),
+                -::overact::math::signed(g2_vy_leg2, t528),
+                ::overact::math::signed(minus_g2_vy_leg3, t533),
+                -::overact::math::signed(g2_vy_leg4, t538), minus_g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, c_phi * t313 - s_phi * t319, -(s_phi * t313 + c_phi * t319), 0.0,
+                rate_dot_3_leg1, c_phi * t309 - s_phi * t315, -(s_phi * t309 + c_phi * t315), 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -4057,16 +4044,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t445 + g2_wz_leg1 * t447),
-                g1_wz_leg2 * t456 + minus_g2_wz_leg2 * t458,
-                g1_wz_leg3 * t467 + minus_g2_wz_leg3 * t469,
-                -(minus_g1_wz_leg4 * t478 + g2_wz_leg4 * t480), -(t494 * t490), -(t501 * t497),
-                t508 * t504, t515 * t511, -::overact::math::signed(t494, t490),
-                -::overact::math::signed(t501, t497), ::overact::math::signed(t508, t504),
-                ::overact::math::signed(t515, t511), t494, -t501, -t508, t515, t532 * t529,
-                t537 * t534, t542 * t539, t547 * t544, ::overact::math::signed(t532, t529),
-                ::overact::math::signed(t537, t534), ::overact::math::signed(t542, t539),
-                ::overact::math::signed(t547, t544), t532,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t441 + g2_wz_leg1 * t443),
+                g1_wz_leg2 * t452 + minus_g2_wz_leg2 * t454,
+                g1_wz_leg3 * t463 + minus_g2_wz_leg3 * t465,
+                -(minus_g1_wz_leg4 * t474 + g2_wz_leg4 * t476), -(t489 * t485), -(t496 * t492),
+                t502 * t499, t509 * t505, -::overact::math::signed(t489, t485),
+                -::overact::math::signed(t496, t492), ::overact::math::signed(t502, t499),
+                ::overact::math::signed(t509, t505), t489, -t496, -t502, t509, t526 * t523,
+                t531 * t528, t536 * t533, t541 * t538, ::overact::math::signed(t526, t523),
+                ::overact::math::signed(t531, t528), ::overact::math::signed(t536, t533),
+                ::overact::math::signed(t541, t538), t526,
             ],
         ])
     }

@@ -731,7 +731,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 190 operations (59 additions, 127 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 155 intermediates.
+    /// 188 operations (59 additions, 123 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 153 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -743,122 +743,118 @@ impl FiveBar {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = t0 - t13;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = t14 * t16;
-        let t21 = pose[1] * t6 + t0 * t11;
-        let t22 = pose[1] - t21;
-        let g2_vx_left = t13 * t16;
-        let g2_vy_left = t21 * t16;
+        let t5 = 0.5 - 0.01125 / t3;
+        let t9 = 0.04 / t3 - t5 * t5;
+        ::overact::guard::reach(t9, "left")?;
+        let t10 = ::overact::math::sqrt(t9);
+        let t12 = t0 * t5 - pose[1] * t10;
+        let t13 = t0 - t12;
+        let t14 = t3 * t10;
+        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
+        let t15 = 1.0 / t14;
+        let minus_g1_vx_left = t13 * t15;
+        let t20 = pose[1] * t5 + t0 * t10;
+        let t21 = pose[1] - t20;
+        let g2_vx_left = t12 * t15;
+        let g2_vy_left = t20 * t15;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t30 = rate_2_left * rate_2_left;
-        let minus_g1_vy_left = t22 * t16;
+        let t29 = rate_2_left * rate_2_left;
+        let minus_g1_vy_left = t21 * t15;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t37 = minus_rate_1_left * minus_rate_1_left;
-        let t38 = t3 - 0.1025;
-        let t39 = 0.5 * t38;
-        let minus_rate_dot_1_left = t16
-            * (t14 * acceleration[0] + t22 * acceleration[1] + 0.0625 * t30 + t37 * t39);
-        let t43 = minus_g1_vx_left * minus_rate_dot_1_left;
-        let t44 = minus_g1_vy_left * minus_rate_dot_1_left;
-        let t45 = 49.05 * t13;
-        let t48 = 49.05 * t21;
-        let t59 = t13 * acceleration[0] + t21 * acceleration[1] + 0.04 * t37;
-        let rate_dot_2_left = t16 * (t59 + t30 * t39);
-        let t63 = g2_vx_left * rate_dot_2_left;
-        let t64 = g2_vy_left * rate_dot_2_left;
-        let t65 = 4.0 * acceleration[0];
-        let t68 = t45 - 0.2 * minus_rate_dot_1_left;
-        let t69 = 0.2 * t68;
-        let t70 = minus_g1_vx_left * t69;
-        let t75 = acceleration[1] + 9.81;
-        let t76 = 4.0 * t75;
-        let t78 = minus_g1_vy_left * t69;
-        let t83 = 4.0 * t59;
-        let c2_left = 10.0 * t38;
-        let minus_s2_left = 20.0 * t15;
-        let t91 = c2_left * (t48 - 0.2 * t37) - minus_s2_left * t68;
-        let t98 = minus_rate_1_left + rate_2_left;
-        let t102 = pose[0] - 0.1;
-        let t104 = t102 * t102 + t2;
-        let t105 = 1.0 / t104;
-        let t107 = 0.5 - 0.01125 * t105;
-        let t111 = 0.04 * t105 - t107 * t107;
-        ::overact::guard::reach(t111, "right")?;
-        let t112 = ::overact::math::sqrt(t111);
-        let t114 = t102 * t107 + pose[1] * t112;
-        let t115 = t102 - t114;
-        let t116 = t104 * t112;
-        ::overact::guard::leg(t116, 0.04998437255783052, "right")?;
-        let t117 = 1.0 / t116;
-        let g1_vx_right = t115 * t117;
-        let t122 = pose[1] * t107 - t102 * t112;
-        let t123 = pose[1] - t122;
-        let minus_g2_vx_right = t114 * t117;
-        let minus_g2_vy_right = t122 * t117;
+        let t36 = minus_rate_1_left * minus_rate_1_left;
+        let t38 = 0.5 * (t3 - 0.1025);
+        let minus_rate_dot_1_left = t15
+            * (t13 * acceleration[0] + t21 * acceleration[1] + 0.0625 * t29 + t36 * t38);
+        let t42 = minus_g1_vx_left * minus_rate_dot_1_left;
+        let t43 = minus_g1_vy_left * minus_rate_dot_1_left;
+        let t44 = 49.05 * t12;
+        let t47 = 49.05 * t20;
+        let t58 = t12 * acceleration[0] + t20 * acceleration[1] + 0.04 * t36;
+        let rate_dot_2_left = t15 * (t58 + t29 * t38);
+        let t62 = g2_vx_left * rate_dot_2_left;
+        let t63 = g2_vy_left * rate_dot_2_left;
+        let t64 = 4.0 * acceleration[0];
+        let t67 = t44 - 0.2 * minus_rate_dot_1_left;
+        let t68 = 0.2 * t67;
+        let t69 = minus_g1_vx_left * t68;
+        let t74 = acceleration[1] + 9.81;
+        let t75 = 4.0 * t74;
+        let t77 = minus_g1_vy_left * t68;
+        let t82 = 4.0 * t58;
+        let c2_left = t38 * 20.0;
+        let minus_s2_left = 20.0 * t14;
+        let t90 = c2_left * (t47 - 0.2 * t36) - minus_s2_left * t67;
+        let t97 = minus_rate_1_left + rate_2_left;
+        let t101 = pose[0] - 0.1;
+        let t103 = t101 * t101 + t2;
+        let t105 = 0.5 - 0.01125 / t103;
+        let t109 = 0.04 / t103 - t105 * t105;
+        ::overact::guard::reach(t109, "right")?;
+        let t110 = ::overact::math::sqrt(t109);
+        let t112 = t101 * t105 + pose[1] * t110;
+        let t113 = t101 - t112;
+        let t114 = t103 * t110;
+        ::overact::guard::leg(t114, 0.04998437255783052, "right")?;
+        let t115 = 1.0 / t114;
+        let g1_vx_right = t113 * t115;
+        let t120 = pose[1] * t105 - t101 * t110;
+        let t121 = pose[1] - t120;
+        let minus_g2_vx_right = t112 * t115;
+        let minus_g2_vy_right = t120 * t115;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t131 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = t123 * t117;
+        let t129 = minus_rate_2_right * minus_rate_2_right;
+        let g1_vy_right = t121 * t115;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t138 = rate_1_right * rate_1_right;
-        let t139 = t104 - 0.1025;
-        let t140 = 0.5 * t139;
-        let rate_dot_1_right = t117
-            * (t115 * acceleration[0] + t123 * acceleration[1] + 0.0625 * t131
-                + t138 * t140);
-        let t144 = g1_vx_right * rate_dot_1_right;
-        let t145 = g1_vy_right * rate_dot_1_right;
-        let t146 = 49.05 * t114;
-        let t149 = 49.05 * t122;
-        let t160 = t114 * acceleration[0] + t122 * acceleration[1] + 0.04 * t138;
-        let minus_rate_dot_2_right = t117 * (t160 + t131 * t140);
-        let t164 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t165 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t167 = t146 + 0.2 * rate_dot_1_right;
-        let t168 = 0.2 * t167;
-        let t169 = g1_vx_right * t168;
-        let t175 = g1_vy_right * t168;
-        let t181 = 4.0 * t160;
-        let c2_right = 10.0 * t139;
-        let s2_right = 20.0 * t116;
-        let t189 = c2_right * (t149 - 0.2 * t138) + s2_right * t167;
-        let t196 = rate_1_right + minus_rate_2_right;
+        let t136 = rate_1_right * rate_1_right;
+        let t138 = 0.5 * (t103 - 0.1025);
+        let rate_dot_1_right = t115
+            * (t113 * acceleration[0] + t121 * acceleration[1] + 0.0625 * t129
+                + t136 * t138);
+        let t142 = g1_vx_right * rate_dot_1_right;
+        let t143 = g1_vy_right * rate_dot_1_right;
+        let t144 = 49.05 * t112;
+        let t147 = 49.05 * t120;
+        let t158 = t112 * acceleration[0] + t120 * acceleration[1] + 0.04 * t136;
+        let minus_rate_dot_2_right = t115 * (t158 + t129 * t138);
+        let t162 = minus_g2_vx_right * minus_rate_dot_2_right;
+        let t163 = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t165 = t144 + 0.2 * rate_dot_1_right;
+        let t166 = 0.2 * t165;
+        let t167 = g1_vx_right * t166;
+        let t173 = g1_vy_right * t166;
+        let t179 = 4.0 * t158;
+        let c2_right = 20.0 * t138;
+        let s2_right = 20.0 * t114;
+        let t187 = c2_right * (t147 - 0.2 * t136) + s2_right * t165;
+        let t194 = rate_1_right + minus_rate_2_right;
         Ok([
             [
-                t43, -(minus_g1_vx_left * t45), minus_g1_vx_left * t48, t43,
+                t42, -(minus_g1_vx_left * t44), minus_g1_vx_left * t47, t42,
                 minus_g1_vx_left * minus_rate_1_left,
                 ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left), -minus_g1_vx_left,
-                t63, t65 - 0.16 * (1.5625 * t63 - 25.0 * t70),
-                -(minus_g1_vx_left * t83 + g2_vx_left * t91), -t70,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t98), t144,
-                g1_vx_right * t146, -(g1_vx_right * t149), t144, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t164,
-                t65 - 0.16 * (25.0 * t169 + 1.5625 * t164),
-                g1_vx_right * t181 + minus_g2_vx_right * t189, t169,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t196), acceleration[0],
+                t62, t64 - 0.16 * (1.5625 * t62 - 25.0 * t69),
+                -(minus_g1_vx_left * t82 + g2_vx_left * t90), -t69,
+                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t97), t142,
+                g1_vx_right * t144, -(g1_vx_right * t147), t142, g1_vx_right * rate_1_right,
+                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t162,
+                t64 - 0.16 * (25.0 * t167 + 1.5625 * t162),
+                g1_vx_right * t179 + minus_g2_vx_right * t187, t167,
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t194), acceleration[0],
             ],
             [
-                t44, -(minus_g1_vy_left * t45), minus_g1_vy_left * t48, t44,
+                t43, -(minus_g1_vy_left * t44), minus_g1_vy_left * t47, t43,
                 minus_g1_vy_left * minus_rate_1_left,
                 ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left), -minus_g1_vy_left,
-                t64, t76 - 0.16 * (1.5625 * t64 - 25.0 * t78),
-                -(minus_g1_vy_left * t83 + g2_vy_left * t91), -t78,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t98), t145,
-                g1_vy_right * t146, -(g1_vy_right * t149), t145, g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t165,
-                t76 - 0.16 * (25.0 * t175 + 1.5625 * t165),
-                g1_vy_right * t181 + minus_g2_vy_right * t189, t175,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t196), t75,
+                t63, t75 - 0.16 * (1.5625 * t63 - 25.0 * t77),
+                -(minus_g1_vy_left * t82 + g2_vy_left * t90), -t77,
+                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t97), t143,
+                g1_vy_right * t144, -(g1_vy_right * t147), t143, g1_vy_right * rate_1_right,
+                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t163,
+                t75 - 0.16 * (25.0 * t173 + 1.5625 * t163),
+                g1_vy_right * t179 + minus_g2_vy_right * t187, t173,
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t194), t74,
             ],
         ])
     }
@@ -873,7 +869,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 155 operations (43 additions, 110 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 126 intermediates.
+    /// 153 operations (43 additions, 108 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 124 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -891,89 +887,87 @@ impl FiveBar {
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t10 = 1.0 / s2_left;
-        let t11 = 5.0 * t10;
-        let g1_vx_left = c12_left * t11;
-        let t16 = 4.0 * t10;
-        let minus_g2_vx_left = c1_left * t16;
-        let minus_g2_vy_left = s1_left * t16;
+        let t10 = 5.0 / s2_left;
+        let g1_vx_left = c12_left * t10;
+        let t15 = t10 * 0.8;
+        let minus_g2_vx_left = c1_left * t15;
+        let minus_g2_vy_left = s1_left * t15;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t23 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
-        let t24 = c12_left * acceleration[0] + s12_left * acceleration[1] + t23;
-        let g1_vy_left = s12_left * t11;
+        let t22 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
+        let t23 = c12_left * acceleration[0] + s12_left * acceleration[1] + t22;
+        let g1_vy_left = s12_left * t10;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t30 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t11 * (t24 + c2_left * t30);
-        let t34 = g1_vx_left * rate_dot_1_left;
-        let t35 = g1_vy_left * rate_dot_1_left;
-        let t36 = 9.81 * c1_left;
-        let t39 = 9.81 * s1_left;
-        let t49 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
-        let minus_rate_dot_2_left = t16 * (t49 + t23 * c2_left);
-        let t53 = minus_g2_vx_left * minus_rate_dot_2_left;
-        let t54 = minus_g2_vy_left * minus_rate_dot_2_left;
-        let t55 = 4.0 * acceleration[0];
-        let t58 = 0.2 * (t36 + 0.2 * rate_dot_1_left);
-        let t59 = g1_vx_left * t58;
-        let t65 = acceleration[1] + 9.81;
-        let t66 = 4.0 * t65;
-        let t67 = g1_vy_left * t58;
-        let t73 = 0.8 * t49;
-        let t76 = t24 + s12_left * 9.81;
-        let t83 = rate_1_left + minus_rate_2_left;
+        let t29 = 0.2 * (rate_1_left * rate_1_left);
+        let rate_dot_1_left = t10 * (t23 + c2_left * t29);
+        let t33 = g1_vx_left * rate_dot_1_left;
+        let t34 = g1_vy_left * rate_dot_1_left;
+        let t35 = 9.81 * c1_left;
+        let t38 = 9.81 * s1_left;
+        let t48 = c1_left * acceleration[0] + s1_left * acceleration[1] + t29;
+        let minus_rate_dot_2_left = t15 * (t48 + t22 * c2_left);
+        let t52 = minus_g2_vx_left * minus_rate_dot_2_left;
+        let t53 = minus_g2_vy_left * minus_rate_dot_2_left;
+        let t54 = 4.0 * acceleration[0];
+        let t57 = 0.2 * (t35 + 0.2 * rate_dot_1_left);
+        let t58 = g1_vx_left * t57;
+        let t64 = acceleration[1] + 9.81;
+        let t65 = 4.0 * t64;
+        let t66 = g1_vy_left * t57;
+        let t72 = 0.8 * t48;
+        let t75 = t23 + s12_left * 9.81;
+        let t82 = rate_1_left + minus_rate_2_left;
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t97 = 1.0 / s2_right;
-        let t98 = 5.0 * t97;
-        let g1_vx_right = c12_right * t98;
-        let t103 = 4.0 * t97;
-        let minus_g2_vx_right = c1_right * t103;
-        let minus_g2_vy_right = s1_right * t103;
+        let t96 = 5.0 / s2_right;
+        let g1_vx_right = c12_right * t96;
+        let t101 = 0.8 * t96;
+        let minus_g2_vx_right = c1_right * t101;
+        let minus_g2_vy_right = s1_right * t101;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t110 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
-        let t111 = c12_right * acceleration[0] + s12_right * acceleration[1] + t110;
-        let g1_vy_right = s12_right * t98;
+        let t108 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let t109 = c12_right * acceleration[0] + s12_right * acceleration[1] + t108;
+        let g1_vy_right = s12_right * t96;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t117 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t98 * (t111 + c2_right * t117);
-        let t121 = g1_vx_right * rate_dot_1_right;
-        let t122 = g1_vy_right * rate_dot_1_right;
-        let t123 = 9.81 * c1_right;
-        let t126 = 9.81 * s1_right;
-        let t136 = c1_right * acceleration[0] + s1_right * acceleration[1] + t117;
-        let minus_rate_dot_2_right = t103 * (t136 + t110 * c2_right);
-        let t140 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t141 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t144 = 0.2 * (t123 + 0.2 * rate_dot_1_right);
-        let t145 = g1_vx_right * t144;
-        let t151 = g1_vy_right * t144;
-        let t157 = 0.8 * t136;
-        let t160 = t111 + 9.81 * s12_right;
-        let t167 = rate_1_right + minus_rate_2_right;
+        let t115 = 0.2 * (rate_1_right * rate_1_right);
+        let rate_dot_1_right = t96 * (t109 + c2_right * t115);
+        let t119 = g1_vx_right * rate_dot_1_right;
+        let t120 = g1_vy_right * rate_dot_1_right;
+        let t121 = 9.81 * c1_right;
+        let t124 = 9.81 * s1_right;
+        let t134 = c1_right * acceleration[0] + s1_right * acceleration[1] + t115;
+        let minus_rate_dot_2_right = t101 * (t134 + t108 * c2_right);
+        let t138 = minus_g2_vx_right * minus_rate_dot_2_right;
+        let t139 = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t142 = 0.2 * (t121 + 0.2 * rate_dot_1_right);
+        let t143 = g1_vx_right * t142;
+        let t149 = g1_vy_right * t142;
+        let t155 = 0.8 * t134;
+        let t158 = t109 + 9.81 * s12_right;
+        let t165 = rate_1_right + minus_rate_2_right;
         Ok([
             [
-                t34, g1_vx_left * t36, -(g1_vx_left * t39), t34, g1_vx_left * rate_1_left,
-                ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t53,
-                t55 - 0.16 * (25.0 * t59 + 1.5625 * t53), g1_vx_left * t73 + minus_g2_vx_left * t76,
-                t59, ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t83), t121,
-                g1_vx_right * t123, -(g1_vx_right * t126), t121, g1_vx_right * rate_1_right,
-                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t140,
-                t55 - 0.16 * (25.0 * t145 + 1.5625 * t140),
-                g1_vx_right * t157 + minus_g2_vx_right * t160, t145,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t167), acceleration[0],
+                t33, g1_vx_left * t35, -(g1_vx_left * t38), t33, g1_vx_left * rate_1_left,
+                ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t52,
+                t54 - 0.16 * (25.0 * t58 + 1.5625 * t52), g1_vx_left * t72 + minus_g2_vx_left * t75,
+                t58, ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t82), t119,
+                g1_vx_right * t121, -(g1_vx_right * t124), t119, g1_vx_right * rate_1_right,
+                ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_right, t138,
+                t54 - 0.16 * (25.0 * t143 + 1.5625 * t138),
+                g1_vx_right * t155 + minus_g2_vx_right * t158, t143,
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t165), acceleration[0],
             ],
             [
-                t35, g1_vy_left * t36, -(g1_vy_left * t39), t35, g1_vy_left * rate_1_left,
-                ::overact::math::signed(g1_vy_left, rate_1_left), g1_vy_left, t54,
-                t66 - 0.16 * (25.0 * t67 + 1.5625 * t54), g1_vy_left * t73 + minus_g2_vy_left * t76,
-                t67, ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t83), t122,
-                g1_vy_right * t123, -(g1_vy_right * t126), t122, g1_vy_right * rate_1_right,
-                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t141,
-                t66 - 0.16 * (25.0 * t151 + 1.5625 * t141),
-                g1_vy_right * t157 + minus_g2_vy_right * t160, t151,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t167), t65,
+                t34, g1_vy_left * t35, -(g1_vy_left * t38), t34, g1_vy_left * rate_1_left,
+                ::overact::math::signed(g1_vy_left, rate_1_left), g1_vy_left, t53,
+                t65 - 0.16 * (25.0 * t66 + 1.5625 * t53), g1_vy_left * t72 + minus_g2_vy_left * t75,
+                t66, ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t82), t120,
+                g1_vy_right * t121, -(g1_vy_right * t124), t120, g1_vy_right * rate_1_right,
+                ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_right, t139,
+                t65 - 0.16 * (25.0 * t149 + 1.5625 * t139),
+                g1_vy_right * t155 + minus_g2_vy_right * t158, t149,
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t165), t64,
             ],
         ])
     }
@@ -988,7 +982,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 212 operations (67 additions, 139 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 176 intermediates.
+    /// 203 operations (63 additions, 120 multiplications, 20 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 167 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1008,126 +1002,123 @@ impl FiveBar {
         ::overact::guard::reach(t10, "left")?;
         let t11 = ::overact::math::sqrt(t10);
         let t13 = t0 * t6 - pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - t13) * t16;
+        let t14 = t3 * t11;
+        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
+        let g2_vx_left = t13 / t14;
+        let t16 = t0 / t14;
+        let minus_g1_vx_left = t16 - g2_vx_left;
         let t18 = minus_g1_vx_left * actuator_accelerations[0];
         let t21 = pose[1] * t6 + t0 * t11;
-        let minus_g1_vy_left = (pose[1] - t21) * t16;
-        let t24 = minus_g1_vy_left * actuator_accelerations[0];
-        let t25 = 49.05 * t13;
-        let t28 = 49.05 * t21;
-        let t31 = minus_g1_vx_left * actuator_velocities[0];
-        let t32 = minus_g1_vy_left * actuator_velocities[0];
-        let g2_vx_left = t13 * t16;
-        let t37 = pose[0] - 0.1;
-        let t39 = t37 * t37 + t2;
-        let t40 = 1.0 / t39;
-        let t42 = 0.5 - 0.01125 * t40;
-        let t46 = 0.04 * t40 - t42 * t42;
-        ::overact::guard::reach(t46, "right")?;
-        let t47 = ::overact::math::sqrt(t46);
-        let t49 = t37 * t42 + pose[1] * t47;
-        let t51 = t39 * t47;
-        ::overact::guard::leg(t51, 0.04998437255783052, "right")?;
-        let t52 = 1.0 / t51;
-        let g1_vx_right = (t37 - t49) * t52;
-        let t55 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
-        let t56 = 1.0 / t55;
-        let minus_g2_vx_right = t49 * t52;
-        let t58 = g1_vx_right * actuator_velocities[1];
-        let t59 = t58 - t31;
-        let t64 = pose[1] * t42 - t37 * t47;
-        let g1_vy_right = (pose[1] - t64) * t52;
-        let t68 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t69 = t68 * t56;
-        let t74 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t68 * t69;
-        ::overact::guard::platform(t74, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t74, 14.323546684675748, "actuators")?;
-        let t75 = 1.0 / t74;
-        let t76 = g1_vy_right * actuator_velocities[1];
-        let t80 = t75 * (t76 - t32 - t59 * t69);
-        let t82 = t59 * t56 - t69 * t80;
-        let minus_g2_vy_right = t64 * t52;
-        let minus_rate_2_right = minus_g2_vx_right * t82 + minus_g2_vy_right * t80;
-        let t87 = minus_rate_2_right * minus_rate_2_right;
-        let t89 = actuator_velocities[1] * actuator_velocities[1];
-        let t90 = t39 - 0.1025;
-        let t91 = 0.5 * t90;
-        let rate_dot_1_right = t52 * (0.0625 * t87 + t89 * t91);
-        let t95 = actuator_accelerations[1] - rate_dot_1_right;
-        let g2_vy_left = t21 * t16;
-        let rate_2_left = g2_vx_left * t82 + g2_vy_left * t80;
-        let t101 = rate_2_left * rate_2_left;
-        let t103 = actuator_velocities[0] * actuator_velocities[0];
-        let t104 = t3 - 0.1025;
-        let t105 = 0.5 * t104;
-        let minus_rate_dot_1_left = t16 * (0.0625 * t101 + t103 * t105);
-        let t109 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t111 = g1_vx_right * t95 - minus_g1_vx_left * t109;
-        let t118 = t75 * (g1_vy_right * t95 - minus_g1_vy_left * t109 - t69 * t111);
-        let t120 = t56 * t111 - t69 * t118;
-        let t125 = t13 * t120 + t21 * t118 + 0.04 * t103;
-        let rate_dot_2_left = t16 * (t125 + t101 * t105);
-        let t129 = g2_vx_left * rate_dot_2_left;
-        let t130 = g2_vy_left * rate_dot_2_left;
-        let t131 = 4.0 * t120;
-        let t134 = t25 + 0.2 * actuator_accelerations[0];
-        let t135 = 0.2 * t134;
-        let t136 = minus_g1_vx_left * t135;
-        let t141 = t118 + 9.81;
-        let t142 = 4.0 * t141;
-        let t144 = minus_g1_vy_left * t135;
-        let t149 = 4.0 * t125;
-        let c2_left = 10.0 * t104;
-        let minus_s2_left = 20.0 * t15;
-        let t157 = c2_left * (t28 - 0.2 * t103) - minus_s2_left * t134;
-        let t164 = rate_2_left - actuator_velocities[0];
-        let t168 = g1_vx_right * actuator_accelerations[1];
-        let t169 = g1_vy_right * actuator_accelerations[1];
-        let t170 = 49.05 * t49;
-        let t173 = 49.05 * t64;
-        let t182 = t49 * t120 + t64 * t118 + 0.04 * t89;
-        let minus_rate_dot_2_right = t52 * (t182 + t87 * t91);
-        let t186 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t187 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t189 = t170 + 0.2 * actuator_accelerations[1];
-        let t190 = 0.2 * t189;
-        let t191 = g1_vx_right * t190;
-        let t197 = g1_vy_right * t190;
-        let t203 = 4.0 * t182;
-        let c2_right = 10.0 * t90;
-        let s2_right = 20.0 * t51;
-        let t211 = c2_right * (t173 - 0.2 * t89) + s2_right * t189;
-        let t218 = actuator_velocities[1] + minus_rate_2_right;
+        let g2_vy_left = t21 / t14;
+        let t23 = pose[1] / t14;
+        let minus_g1_vy_left = t23 - g2_vy_left;
+        let t25 = minus_g1_vy_left * actuator_accelerations[0];
+        let t26 = 49.05 * t13;
+        let t29 = 49.05 * t21;
+        let t32 = minus_g1_vx_left * actuator_velocities[0];
+        let t33 = minus_g1_vy_left * actuator_velocities[0];
+        let t36 = pose[0] - 0.1;
+        let t38 = t36 * t36 + t2;
+        let t40 = 0.5 - 0.01125 / t38;
+        let t44 = 0.04 / t38 - t40 * t40;
+        ::overact::guard::reach(t44, "right")?;
+        let t45 = ::overact::math::sqrt(t44);
+        let t47 = t36 * t40 + pose[1] * t45;
+        let t48 = t38 * t45;
+        ::overact::guard::leg(t48, 0.04998437255783052, "right")?;
+        let minus_g2_vx_right = t47 / t48;
+        let t50 = t36 / t48;
+        let g1_vx_right = t50 - minus_g2_vx_right;
+        let t52 = g1_vx_right * actuator_velocities[1];
+        let t53 = t52 - t32;
+        let t56 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(t56, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(t56, 35.707722858788905, "actuators")?;
+        let t61 = pose[1] * t40 - t36 * t45;
+        let minus_g2_vy_right = t61 / t48;
+        let t63 = pose[1] / t48;
+        let g1_vy_right = t63 - minus_g2_vy_right;
+        let t66 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let t67 = t66 / t56;
+        let t68 = g1_vy_right * actuator_velocities[1];
+        let t76 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+            - t66 * t67;
+        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
+        let t77 = (t68 - t33 - t53 * t67) / t76;
+        let t79 = t53 / t56 - t67 * t77;
+        let minus_rate_2_right = minus_g2_vx_right * t79 + minus_g2_vy_right * t77;
+        let t83 = minus_rate_2_right * minus_rate_2_right;
+        let t85 = actuator_velocities[1] * actuator_velocities[1];
+        let t86 = t38 - 0.1025;
+        let t87 = 0.5 * t86;
+        let rate_dot_1_right = (0.0625 * t83 + t85 * t87) / t48;
+        let t91 = actuator_accelerations[1] - rate_dot_1_right;
+        let rate_2_left = g2_vx_left * t79 + g2_vy_left * t77;
+        let t96 = rate_2_left * rate_2_left;
+        let t98 = actuator_velocities[0] * actuator_velocities[0];
+        let t99 = t3 - 0.1025;
+        let t100 = 0.5 * t99;
+        let minus_rate_dot_1_left = (0.0625 * t96 + t98 * t100) / t14;
+        let t104 = actuator_accelerations[0] + minus_rate_dot_1_left;
+        let t106 = g1_vx_right * t91 - minus_g1_vx_left * t104;
+        let t113 = (g1_vy_right * t91 - minus_g1_vy_left * t104 - t67 * t106) / t76;
+        let t115 = t106 / t56 - t67 * t113;
+        let t120 = t13 * t115 + t21 * t113 + 0.04 * t98;
+        let rate_dot_2_left = (t120 + t96 * t100) / t14;
+        let t124 = g2_vx_left * rate_dot_2_left;
+        let t125 = g2_vy_left * rate_dot_2_left;
+        let t126 = 4.0 * t115;
+        let t129 = t26 + 0.2 * actuator_accelerations[0];
+        let t130 = 0.2 * t129;
+        let t131 = minus_g1_vx_left * t130;
+        let t136 = t113 + 9.81;
+        let t137 = 4.0 * t136;
+        let t139 = minus_g1_vy_left * t130;
+        let t144 = 4.0 * t120;
+        let c2_left = 10.0 * t99;
+        let minus_s2_left = 20.0 * t14;
+        let t152 = c2_left * (t29 - 0.2 * t98) - minus_s2_left * t129;
+        let t158 = rate_2_left - actuator_velocities[0];
+        let t161 = g1_vx_right * actuator_accelerations[1];
+        let t162 = g1_vy_right * actuator_accelerations[1];
+        let t163 = 49.05 * t47;
+        let t166 = 49.05 * t61;
+        let t175 = t47 * t115 + t61 * t113 + 0.04 * t85;
+        let minus_rate_dot_2_right = (t175 + t83 * t87) / t48;
+        let t179 = minus_g2_vx_right * minus_rate_dot_2_right;
+        let t180 = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t182 = t163 + 0.2 * actuator_accelerations[1];
+        let t183 = 0.2 * t182;
+        let t184 = g1_vx_right * t183;
+        let t190 = g1_vy_right * t183;
+        let t196 = 4.0 * t175;
+        let c2_right = 10.0 * t86;
+        let s2_right = 20.0 * t48;
+        let t204 = c2_right * (t166 - 0.2 * t85) + s2_right * t182;
+        let t210 = actuator_velocities[1] + minus_rate_2_right;
         Ok([
             [
-                -t18, -(minus_g1_vx_left * t25), minus_g1_vx_left * t28, -t18, -t31,
+                -t18, -(minus_g1_vx_left * t26), minus_g1_vx_left * t29, -t18, -t32,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                -minus_g1_vx_left, t129, t131 - 0.16 * (1.5625 * t129 - 25.0 * t136),
-                -(minus_g1_vx_left * t149 + g2_vx_left * t157), -t136,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t164), t168,
-                g1_vx_right * t170, -(g1_vx_right * t173), t168, t58,
-                ::overact::math::signed(g1_vx_right, actuator_velocities[1]), g1_vx_right, t186,
-                t131 - 0.16 * (25.0 * t191 + 1.5625 * t186),
-                g1_vx_right * t203 + minus_g2_vx_right * t211, t191,
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t218), t120,
+                -minus_g1_vx_left, t124, t126 - 0.16 * (1.5625 * t124 - 25.0 * t131),
+                -(minus_g1_vx_left * t144 + g2_vx_left * t152), -t131,
+                ::overact::math::signed(t16, t158), t161, g1_vx_right * t163, -(g1_vx_right * t166),
+                t161, t52, ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
+                g1_vx_right, t179, t126 - 0.16 * (25.0 * t184 + 1.5625 * t179),
+                g1_vx_right * t196 + minus_g2_vx_right * t204, t184,
+                ::overact::math::signed(t50, t210), t115,
             ],
             [
-                -t24, -(minus_g1_vy_left * t25), minus_g1_vy_left * t28, -t24, -t32,
+                -t25, -(minus_g1_vy_left * t26), minus_g1_vy_left * t29, -t25, -t33,
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                -minus_g1_vy_left, t130, t142 - 0.16 * (1.5625 * t130 - 25.0 * t144),
-                -(minus_g1_vy_left * t149 + g2_vy_left * t157), -t144,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t164), t169,
-                g1_vy_right * t170, -(g1_vy_right * t173), t169, t76,
-                ::overact::math::signed(g1_vy_right, actuator_velocities[1]), g1_vy_right, t187,
-                t142 - 0.16 * (25.0 * t197 + 1.5625 * t187),
-                g1_vy_right * t203 + minus_g2_vy_right * t211, t197,
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t218), t141,
+                -minus_g1_vy_left, t125, t137 - 0.16 * (1.5625 * t125 - 25.0 * t139),
+                -(minus_g1_vy_left * t144 + g2_vy_left * t152), -t139,
+                ::overact::math::signed(t23, t158), t162, g1_vy_right * t163, -(g1_vy_right * t166),
+                t162, t68, ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
+                g1_vy_right, t180, t137 - 0.16 * (25.0 * t190 + 1.5625 * t180),
+                g1_vy_right * t196 + minus_g2_vy_right * t204, t190,
+                ::overact::math::signed(t63, t210), t136,
             ],
         ])
     }
@@ -1531,7 +1522,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 162 operations (51 additions, 107 multiplications, 4 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 135 intermediates.
+    /// 159 operations (51 additions, 97 multiplications, 11 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 132 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1543,104 +1534,99 @@ impl FiveBar {
         let t1 = pose[0] + 0.1;
         let t3 = pose[1] * pose[1];
         let t4 = t1 * t1 + t3;
-        let t5 = 1.0 / t4;
-        let t7 = 0.5 - 0.01125 * t5;
-        let t11 = 0.04 * t5 - t7 * t7;
-        ::overact::guard::reach(t11, "left")?;
-        let t12 = ::overact::math::sqrt(t11);
-        let t14 = t1 * t7 - pose[1] * t12;
-        let t15 = t1 - t14;
-        let t16 = t4 * t12;
-        ::overact::guard::leg(t16, 0.04998437255783052, "left")?;
-        let t17 = 1.0 / t16;
-        let minus_g1_vx_left = t15 * t17;
-        let t22 = pose[1] * t7 + t1 * t12;
-        let t23 = pose[1] - t22;
-        let g2_vx_left = t14 * t17;
-        let g2_vy_left = t22 * t17;
+        let t6 = 0.5 - 0.01125 / t4;
+        let t10 = 0.04 / t4 - t6 * t6;
+        ::overact::guard::reach(t10, "left")?;
+        let t11 = ::overact::math::sqrt(t10);
+        let t13 = t1 * t6 - pose[1] * t11;
+        let t14 = t1 - t13;
+        let t15 = t4 * t11;
+        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
+        let minus_g1_vx_left = t14 / t15;
+        let t20 = pose[1] * t6 + t1 * t11;
+        let t21 = pose[1] - t20;
+        let t24 = t1 / t15;
+        let g2_vx_left = t24 - minus_g1_vx_left;
+        let g2_vy_left = t20 / t15;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
-        let t31 = rate_2_left * rate_2_left;
-        let minus_g1_vy_left = t23 * t17;
+        let t30 = rate_2_left * rate_2_left;
+        let minus_g1_vy_left = t21 / t15;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
-        let t38 = minus_rate_1_left * minus_rate_1_left;
-        let t39 = t4 - 0.1025;
-        let t40 = 0.5 * t39;
-        let minus_rate_dot_1_left = t17
-            * (t15 * acceleration[0] + t23 * acceleration[1] + 0.0625 * t31 + t38 * t40);
-        let t46 = pose[0] - 0.1;
-        let t48 = t46 * t46 + t3;
-        let t49 = 1.0 / t48;
-        let t51 = 0.5 - 0.01125 * t49;
-        let t55 = 0.04 * t49 - t51 * t51;
-        ::overact::guard::reach(t55, "right")?;
-        let t56 = ::overact::math::sqrt(t55);
-        let t58 = t46 * t51 + pose[1] * t56;
-        let t59 = t46 - t58;
-        let t60 = t48 * t56;
-        ::overact::guard::leg(t60, 0.04998437255783052, "right")?;
-        let t61 = 1.0 / t60;
-        let g1_vx_right = t59 * t61;
-        let t66 = pose[1] * t51 - t46 * t56;
-        let t67 = pose[1] - t66;
-        let minus_g2_vx_right = t58 * t61;
-        let minus_g2_vy_right = t66 * t61;
+        let t37 = minus_rate_1_left * minus_rate_1_left;
+        let t39 = 0.5 * (t4 - 0.1025);
+        let minus_rate_dot_1_left = (t14 * acceleration[0] + t21 * acceleration[1]
+            + 0.0625 * t30 + t37 * t39) / t15;
+        let t45 = pose[0] - 0.1;
+        let t47 = t45 * t45 + t3;
+        let t49 = 0.5 - 0.01125 / t47;
+        let t53 = 0.04 / t47 - t49 * t49;
+        ::overact::guard::reach(t53, "right")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t56 = t45 * t49 + pose[1] * t54;
+        let t57 = t45 - t56;
+        let t58 = t47 * t54;
+        ::overact::guard::leg(t58, 0.04998437255783052, "right")?;
+        let t59 = 1.0 / t58;
+        let g1_vx_right = t57 * t59;
+        let t64 = pose[1] * t49 - t45 * t54;
+        let t65 = pose[1] - t64;
+        let minus_g2_vx_right = t56 * t59;
+        let minus_g2_vy_right = t64 * t59;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t75 = minus_rate_2_right * minus_rate_2_right;
-        let g1_vy_right = t67 * t61;
+        let t73 = minus_rate_2_right * minus_rate_2_right;
+        let g1_vy_right = t65 * t59;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t82 = rate_1_right * rate_1_right;
-        let t83 = t48 - 0.1025;
-        let t84 = 0.5 * t83;
-        let rate_dot_1_right = t61
-            * (t59 * acceleration[0] + t67 * acceleration[1] + 0.0625 * t75 + t82 * t84);
-        let t90 = 49.05 * t14;
-        let t93 = 49.05 * t58;
-        let t96 = 49.05 * t22;
-        let t99 = 49.05 * t66;
-        let t114 = t14 * acceleration[0] + t22 * acceleration[1] + 0.04 * t38;
-        let rate_dot_2_left = t17 * (t114 + t31 * t40);
-        let t124 = t58 * acceleration[0] + t66 * acceleration[1] + 0.04 * t82;
-        let minus_rate_dot_2_right = t61 * (t124 + t75 * t84);
-        let t130 = 4.0 * t114;
-        let c2_left = 10.0 * t39;
-        let minus_s2_left = 20.0 * t16;
-        let t140 = c2_left * (t96 - 0.2 * t38)
-            - minus_s2_left * (t90 - 0.2 * minus_rate_dot_1_left);
-        let t146 = 4.0 * t124;
-        let c2_right = 10.0 * t83;
-        let s2_right = 20.0 * t60;
-        let t156 = c2_right * (t99 - 0.2 * t82)
-            + s2_right * (t93 + 0.2 * rate_dot_1_right);
-        let t163 = minus_rate_1_left + rate_2_left;
-        let t168 = rate_1_right + minus_rate_2_right;
+        let t80 = rate_1_right * rate_1_right;
+        let t82 = 0.5 * (t47 - 0.1025);
+        let rate_dot_1_right = t59
+            * (t57 * acceleration[0] + t65 * acceleration[1] + 0.0625 * t73 + t80 * t82);
+        let t88 = 49.05 * t13;
+        let t91 = 49.05 * t56;
+        let t94 = 49.05 * t20;
+        let t97 = 49.05 * t64;
+        let t112 = t13 * acceleration[0] + t20 * acceleration[1] + 0.04 * t37;
+        let rate_dot_2_left = (t112 + t30 * t39) / t15;
+        let t122 = t56 * acceleration[0] + t64 * acceleration[1] + 0.04 * t80;
+        let minus_rate_dot_2_right = t59 * (t122 + t73 * t82);
+        let t128 = 4.0 * t112;
+        let c2_left = t39 * 20.0;
+        let minus_s2_left = 20.0 * t15;
+        let t138 = c2_left * (t94 - 0.2 * t37)
+            - minus_s2_left * (t88 - 0.2 * minus_rate_dot_1_left);
+        let t144 = 4.0 * t122;
+        let c2_right = t82 * 20.0;
+        let s2_right = 20.0 * t58;
+        let t154 = c2_right * (t97 - 0.2 * t80)
+            + s2_right * (t91 + 0.2 * rate_dot_1_right);
+        let t160 = minus_rate_1_left + rate_2_left;
+        let t165 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
-                g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * t90), g1_vx_right * t93,
-                minus_g1_vx_left * t96, -(g1_vx_right * t99), minus_g1_vx_left * minus_rate_1_left,
+                g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * t88), g1_vx_right * t91,
+                minus_g1_vx_left * t94, -(g1_vx_right * t97), minus_g1_vx_left * minus_rate_1_left,
                 g1_vx_right * rate_1_right,
                 ::overact::math::signed(minus_g1_vx_left, minus_rate_1_left),
                 ::overact::math::signed(g1_vx_right, rate_1_right), -minus_g1_vx_left, g1_vx_right,
                 g2_vx_left * rate_dot_2_left, minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * t130 + g2_vx_left * t140),
-                g1_vx_right * t146 + minus_g2_vx_right * t156,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t163),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t168),
+                -(minus_g1_vx_left * t128 + g2_vx_left * t138),
+                g1_vx_right * t144 + minus_g2_vx_right * t154, ::overact::math::signed(t24, t160),
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t165),
             ],
             [
                 acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * t90), g1_vy_right * t93,
-                minus_g1_vy_left * t96, -(g1_vy_right * t99), minus_g1_vy_left * minus_rate_1_left,
+                g1_vy_right * rate_dot_1_right, -(minus_g1_vy_left * t88), g1_vy_right * t91,
+                minus_g1_vy_left * t94, -(g1_vy_right * t97), minus_g1_vy_left * minus_rate_1_left,
                 g1_vy_right * rate_1_right,
                 ::overact::math::signed(minus_g1_vy_left, minus_rate_1_left),
                 ::overact::math::signed(g1_vy_right, rate_1_right), -minus_g1_vy_left, g1_vy_right,
                 g2_vy_left * rate_dot_2_left, minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * t130 + g2_vy_left * t140),
-                g1_vy_right * t146 + minus_g2_vy_right * t156,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t163),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t168),
+                -(minus_g1_vy_left * t128 + g2_vy_left * t138),
+                g1_vy_right * t144 + minus_g2_vy_right * t154,
+                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t160),
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t165),
             ],
         ])
     }
@@ -1655,7 +1641,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 123 operations (33 additions, 88 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 102 intermediates.
+    /// 121 operations (33 additions, 86 multiplications, 2 divisions), 0 square roots, 4 trigonometric pairs, 8 signs, 100 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1673,76 +1659,74 @@ impl FiveBar {
         ::overact::guard::leg(s2_right, 0.9996874511566101, "right")?;
         let c12_left = c1_left * c2_left - s1_left * s2_left;
         let s12_left = s1_left * c2_left + c1_left * s2_left;
-        let t11 = 1.0 / s2_left;
-        let t12 = 5.0 * t11;
-        let g1_vx_left = c12_left * t12;
-        let t17 = 4.0 * t11;
-        let minus_g2_vx_left = c1_left * t17;
-        let minus_g2_vy_left = s1_left * t17;
+        let t11 = 5.0 / s2_left;
+        let g1_vx_left = c12_left * t11;
+        let t16 = t11 * 0.8;
+        let minus_g2_vx_left = c1_left * t16;
+        let minus_g2_vy_left = s1_left * t16;
         let minus_rate_2_left = minus_g2_vx_left * twist[0]
             + minus_g2_vy_left * twist[1];
-        let t24 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
-        let t25 = c12_left * acceleration[0] + s12_left * acceleration[1] + t24;
-        let g1_vy_left = s12_left * t12;
+        let t23 = 0.25 * (minus_rate_2_left * minus_rate_2_left);
+        let t24 = c12_left * acceleration[0] + s12_left * acceleration[1] + t23;
+        let g1_vy_left = s12_left * t11;
         let rate_1_left = g1_vx_left * twist[0] + g1_vy_left * twist[1];
-        let t31 = 0.2 * (rate_1_left * rate_1_left);
-        let rate_dot_1_left = t12 * (t25 + c2_left * t31);
+        let t30 = 0.2 * (rate_1_left * rate_1_left);
+        let rate_dot_1_left = t11 * (t24 + c2_left * t30);
         let c12_right = c1_right * c2_right - s1_right * s2_right;
         let s12_right = s1_right * c2_right + c1_right * s2_right;
-        let t47 = 1.0 / s2_right;
-        let t48 = 5.0 * t47;
-        let g1_vx_right = c12_right * t48;
-        let t53 = 4.0 * t47;
-        let minus_g2_vx_right = c1_right * t53;
-        let minus_g2_vy_right = s1_right * t53;
+        let t46 = 5.0 / s2_right;
+        let g1_vx_right = c12_right * t46;
+        let t51 = t46 * 0.8;
+        let minus_g2_vx_right = c1_right * t51;
+        let minus_g2_vy_right = s1_right * t51;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        let t60 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
-        let t61 = c12_right * acceleration[0] + s12_right * acceleration[1] + t60;
-        let g1_vy_right = s12_right * t48;
+        let t58 = 0.25 * (minus_rate_2_right * minus_rate_2_right);
+        let t59 = c12_right * acceleration[0] + s12_right * acceleration[1] + t58;
+        let g1_vy_right = s12_right * t46;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
-        let t67 = 0.2 * (rate_1_right * rate_1_right);
-        let rate_dot_1_right = t48 * (t61 + c2_right * t67);
-        let t73 = 9.81 * c1_left;
-        let t76 = 9.81 * c1_right;
-        let t79 = 9.81 * s1_left;
-        let t82 = 9.81 * s1_right;
-        let t96 = c1_left * acceleration[0] + s1_left * acceleration[1] + t31;
-        let minus_rate_dot_2_left = t17 * (t96 + t24 * c2_left);
-        let t105 = c1_right * acceleration[0] + s1_right * acceleration[1] + t67;
-        let minus_rate_dot_2_right = t53 * (t105 + t60 * c2_right);
-        let t111 = 0.8 * t96;
-        let t114 = t25 + s12_left * 9.81;
-        let t120 = 0.8 * t105;
-        let t123 = t61 + s12_right * 9.81;
-        let t130 = rate_1_left + minus_rate_2_left;
-        let t135 = rate_1_right + minus_rate_2_right;
+        let t65 = 0.2 * (rate_1_right * rate_1_right);
+        let rate_dot_1_right = t46 * (t59 + c2_right * t65);
+        let t71 = 9.81 * c1_left;
+        let t74 = 9.81 * c1_right;
+        let t77 = 9.81 * s1_left;
+        let t80 = 9.81 * s1_right;
+        let t94 = c1_left * acceleration[0] + s1_left * acceleration[1] + t30;
+        let minus_rate_dot_2_left = t16 * (t94 + t23 * c2_left);
+        let t103 = c1_right * acceleration[0] + s1_right * acceleration[1] + t65;
+        let minus_rate_dot_2_right = t51 * (t103 + t58 * c2_right);
+        let t109 = 0.8 * t94;
+        let t112 = t24 + s12_left * 9.81;
+        let t118 = 0.8 * t103;
+        let t121 = t59 + s12_right * 9.81;
+        let t128 = rate_1_left + minus_rate_2_left;
+        let t133 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 acceleration[0], g1_vx_left * rate_dot_1_left, g1_vx_right * rate_dot_1_right,
-                g1_vx_left * t73, g1_vx_right * t76, -(g1_vx_left * t79), -(g1_vx_right * t82),
+                g1_vx_left * t71, g1_vx_right * t74, -(g1_vx_left * t77), -(g1_vx_right * t80),
                 g1_vx_left * rate_1_left, g1_vx_right * rate_1_right,
                 ::overact::math::signed(g1_vx_left, rate_1_left),
                 ::overact::math::signed(g1_vx_right, rate_1_right), g1_vx_left, g1_vx_right,
                 minus_g2_vx_left * minus_rate_dot_2_left,
                 minus_g2_vx_right * minus_rate_dot_2_right,
-                g1_vx_left * t111 + minus_g2_vx_left * t114,
-                g1_vx_right * t120 + minus_g2_vx_right * t123,
-                ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t130),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t135),
+                g1_vx_left * t109 + minus_g2_vx_left * t112,
+                g1_vx_right * t118 + minus_g2_vx_right * t121,
+                ::overact::math::signed(g1_vx_left + minus_g2_vx_left, t128),
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t133),
             ],
             [
                 acceleration[1] + 9.81, g1_vy_left * rate_dot_1_left,
-                g1_vy_right * rate_dot_1_right, g1_vy_left * t73, g1_vy_right * t76,
-                -(g1_vy_left * t79), -(g1_vy_right * t82), g1_vy_left * rate_1_left,
+                g1_vy_right * rate_dot_1_right, g1_vy_left * t71, g1_vy_right * t74,
+                -(g1_vy_left * t77), -(g1_vy_right * t80), g1_vy_left * rate_1_left,
                 g1_vy_right * rate_1_right, ::overact::math::signed(g1_vy_left, rate_1_left),
                 ::overact::math::signed(g1_vy_right, rate_1_right), g1_vy_left, g1_vy_right,
                 minus_g2_vy_left * minus_rate_dot_2_left,
                 minus_g2_vy_right * minus_rate_dot_2_right,
-                g1_vy_left * t111 + minus_g2_vy_left * t114,
-                g1_vy_right * t120 + minus_g2_vy_right * t123,
-                ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t130),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t135),
+                g1_vy_left * t109 + minus_g2_vy_left * t112,
+                g1_vy_right * t118 + minus_g2_vy_right * t121,
+                ::overact::math::signed(g1_vy_left + minus_g2_vy_left, t128),
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t133),
             ],
         ])
     }
@@ -1757,7 +1741,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 184 operations (59 additions, 119 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 156 intermediates.
+    /// 176 operations (55 additions, 109 multiplications, 12 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 148 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1768,120 +1752,116 @@ impl FiveBar {
         start: &[f64; 2],
     ) -> Result<[[f64; 19]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.1;
+        let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t15 = t3 * t11;
-        ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let t16 = 1.0 / t15;
-        let minus_g1_vx_left = (t0 - t13) * t16;
-        let t19 = pose[0] - 0.1;
+        let t5 = 0.5 - 0.01125 / t3;
+        let t9 = 0.04 / t3 - t5 * t5;
+        ::overact::guard::reach(t9, "right")?;
+        let t10 = ::overact::math::sqrt(t9);
+        let t12 = t0 * t5 + pose[1] * t10;
+        let t13 = t3 * t10;
+        ::overact::guard::leg(t13, 0.04998437255783052, "right")?;
+        let t14 = 1.0 / t13;
+        let minus_g2_vx_right = t12 * t14;
+        let t16 = t0 * t14;
+        let g1_vx_right = t16 - minus_g2_vx_right;
+        let t18 = g1_vx_right * actuator_velocities[1];
+        let t19 = pose[0] + 0.1;
         let t21 = t19 * t19 + t2;
-        let t22 = 1.0 / t21;
-        let t24 = 0.5 - 0.01125 * t22;
-        let t28 = 0.04 * t22 - t24 * t24;
-        ::overact::guard::reach(t28, "right")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = t19 * t24 + pose[1] * t29;
-        let t33 = t21 * t29;
-        ::overact::guard::leg(t33, 0.04998437255783052, "right")?;
-        let t34 = 1.0 / t33;
-        let g1_vx_right = (t19 - t31) * t34;
-        let t37 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t37, 35.707722858788905, "actuators")?;
-        let t38 = 1.0 / t37;
-        let minus_g2_vx_right = t31 * t34;
-        let t40 = g1_vx_right * actuator_velocities[1];
-        let t41 = minus_g1_vx_left * actuator_velocities[0];
-        let t42 = t40 - t41;
-        let t46 = pose[1] * t6 + t0 * t11;
-        let minus_g1_vy_left = (pose[1] - t46) * t16;
-        let t52 = pose[1] * t24 - t19 * t29;
-        let g1_vy_right = (pose[1] - t52) * t34;
+        let t23 = 0.5 - 0.01125 / t21;
+        let t27 = 0.04 / t21 - t23 * t23;
+        ::overact::guard::reach(t27, "left")?;
+        let t28 = ::overact::math::sqrt(t27);
+        let t30 = t19 * t23 - pose[1] * t28;
+        let t31 = t21 * t28;
+        ::overact::guard::leg(t31, 0.04998437255783052, "left")?;
+        let t32 = 1.0 / t31;
+        let g2_vx_left = t30 * t32;
+        let t34 = t19 * t32;
+        let minus_g1_vx_left = t34 - g2_vx_left;
+        let t36 = minus_g1_vx_left * actuator_velocities[0];
+        let t37 = t18 - t36;
+        let t40 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(t40, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(t40, 35.707722858788905, "actuators")?;
+        let t44 = pose[1] * t23 + t19 * t28;
+        let g2_vy_left = t44 * t32;
+        let t46 = pose[1] * t32;
+        let minus_g1_vy_left = t46 - g2_vy_left;
+        let t51 = pose[1] * t5 - t0 * t10;
+        let minus_g2_vy_right = t51 * t14;
+        let t53 = pose[1] / t13;
+        let g1_vy_right = t53 - minus_g2_vy_right;
         let t56 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t57 = t56 * t38;
-        let t62 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+        let t57 = t56 / t40;
+        let t58 = g1_vy_right * actuator_velocities[1];
+        let t59 = minus_g1_vy_left * actuator_velocities[0];
+        let t67 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
             - t56 * t57;
-        ::overact::guard::platform(t62, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t62, 14.323546684675748, "actuators")?;
-        let t63 = 1.0 / t62;
-        let t64 = g1_vy_right * actuator_velocities[1];
-        let t65 = minus_g1_vy_left * actuator_velocities[0];
-        let t69 = t63 * (t64 - t65 - t42 * t57);
-        let t71 = t42 * t38 - t57 * t69;
-        let minus_g2_vy_right = t52 * t34;
-        let minus_rate_2_right = minus_g2_vx_right * t71 + minus_g2_vy_right * t69;
-        let t76 = minus_rate_2_right * minus_rate_2_right;
-        let t78 = actuator_velocities[1] * actuator_velocities[1];
-        let t79 = t21 - 0.1025;
-        let t80 = 0.5 * t79;
-        let rate_dot_1_right = t34 * (0.0625 * t76 + t78 * t80);
-        let t84 = actuator_accelerations[1] - rate_dot_1_right;
-        let g2_vx_left = t13 * t16;
-        let g2_vy_left = t46 * t16;
-        let rate_2_left = g2_vx_left * t71 + g2_vy_left * t69;
-        let t91 = rate_2_left * rate_2_left;
-        let t93 = actuator_velocities[0] * actuator_velocities[0];
-        let t94 = t3 - 0.1025;
-        let t95 = 0.5 * t94;
-        let minus_rate_dot_1_left = t16 * (0.0625 * t91 + t93 * t95);
-        let t99 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t101 = g1_vx_right * t84 - minus_g1_vx_left * t99;
-        let t108 = t63 * (g1_vy_right * t84 - minus_g1_vy_left * t99 - t57 * t101);
-        let t110 = t38 * t101 - t57 * t108;
-        let t116 = 49.05 * t13;
-        let t119 = 49.05 * t31;
-        let t122 = 49.05 * t46;
-        let t125 = 49.05 * t52;
-        let t136 = t13 * t110 + t46 * t108 + 0.04 * t93;
-        let rate_dot_2_left = t16 * (t136 + t91 * t95);
-        let t146 = t31 * t110 + t52 * t108 + 0.04 * t78;
-        let minus_rate_dot_2_right = t34 * (t146 + t76 * t80);
-        let t152 = 4.0 * t136;
-        let c2_left = 10.0 * t94;
-        let minus_s2_left = 20.0 * t15;
-        let t162 = c2_left * (t122 - 0.2 * t93)
-            - minus_s2_left * (t116 + 0.2 * actuator_accelerations[0]);
-        let t168 = 4.0 * t146;
-        let c2_right = 10.0 * t79;
-        let s2_right = 20.0 * t33;
-        let t178 = c2_right * (t125 - 0.2 * t78)
-            + s2_right * (t119 + 0.2 * actuator_accelerations[1]);
-        let t185 = rate_2_left - actuator_velocities[0];
-        let t190 = actuator_velocities[1] + minus_rate_2_right;
+        ::overact::guard::platform(t67, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(t67, 14.323546684675748, "actuators")?;
+        let t68 = (t58 - t59 - t37 * t57) / t67;
+        let t70 = t37 / t40 - t57 * t68;
+        let minus_rate_2_right = minus_g2_vx_right * t70 + minus_g2_vy_right * t68;
+        let t74 = minus_rate_2_right * minus_rate_2_right;
+        let t76 = actuator_velocities[1] * actuator_velocities[1];
+        let t78 = 0.5 * (t3 - 0.1025);
+        let rate_dot_1_right = t14 * (0.0625 * t74 + t76 * t78);
+        let t82 = actuator_accelerations[1] - rate_dot_1_right;
+        let rate_2_left = g2_vx_left * t70 + g2_vy_left * t68;
+        let t87 = rate_2_left * rate_2_left;
+        let t89 = actuator_velocities[0] * actuator_velocities[0];
+        let t91 = 0.5 * (t21 - 0.1025);
+        let minus_rate_dot_1_left = t32 * (0.0625 * t87 + t89 * t91);
+        let t95 = actuator_accelerations[0] + minus_rate_dot_1_left;
+        let t97 = g1_vx_right * t82 - minus_g1_vx_left * t95;
+        let t104 = (g1_vy_right * t82 - minus_g1_vy_left * t95 - t57 * t97) / t67;
+        let t106 = t97 / t40 - t57 * t104;
+        let t112 = 49.05 * t30;
+        let t115 = 49.05 * t12;
+        let t118 = 49.05 * t44;
+        let t121 = 49.05 * t51;
+        let t132 = t30 * t106 + t44 * t104 + 0.04 * t89;
+        let rate_dot_2_left = t32 * (t132 + t87 * t91);
+        let t142 = t12 * t106 + t51 * t104 + 0.04 * t76;
+        let minus_rate_dot_2_right = t14 * (t142 + t74 * t78);
+        let t148 = 4.0 * t132;
+        let c2_left = t91 * 20.0;
+        let minus_s2_left = 20.0 * t31;
+        let t158 = c2_left * (t118 - 0.2 * t89)
+            - minus_s2_left * (t112 + 0.2 * actuator_accelerations[0]);
+        let t164 = 4.0 * t142;
+        let c2_right = t78 * 20.0;
+        let s2_right = 20.0 * t13;
+        let t174 = c2_right * (t121 - 0.2 * t76)
+            + s2_right * (t115 + 0.2 * actuator_accelerations[1]);
+        let t180 = rate_2_left - actuator_velocities[0];
+        let t183 = actuator_velocities[1] + minus_rate_2_right;
         Ok([
             [
-                t110, -(minus_g1_vx_left * actuator_accelerations[0]),
-                g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * t116),
-                g1_vx_right * t119, minus_g1_vx_left * t122, -(g1_vx_right * t125), -t41, t40,
+                t106, -(minus_g1_vx_left * actuator_accelerations[0]),
+                g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * t112),
+                g1_vx_right * t115, minus_g1_vx_left * t118, -(g1_vx_right * t121), -t36, t18,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_right, actuator_velocities[1]), -minus_g1_vx_left,
                 g1_vx_right, g2_vx_left * rate_dot_2_left,
                 minus_g2_vx_right * minus_rate_dot_2_right,
-                -(minus_g1_vx_left * t152 + g2_vx_left * t162),
-                g1_vx_right * t168 + minus_g2_vx_right * t178,
-                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t185),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t190),
+                -(minus_g1_vx_left * t148 + g2_vx_left * t158),
+                g1_vx_right * t164 + minus_g2_vx_right * t174, ::overact::math::signed(t34, t180),
+                ::overact::math::signed(t16, t183),
             ],
             [
-                t108 + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
-                g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * t116),
-                g1_vy_right * t119, minus_g1_vy_left * t122, -(g1_vy_right * t125), -t65, t64,
+                t104 + 9.81, -(minus_g1_vy_left * actuator_accelerations[0]),
+                g1_vy_right * actuator_accelerations[1], -(minus_g1_vy_left * t112),
+                g1_vy_right * t115, minus_g1_vy_left * t118, -(g1_vy_right * t121), -t59, t58,
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
                 ::overact::math::signed(g1_vy_right, actuator_velocities[1]), -minus_g1_vy_left,
                 g1_vy_right, g2_vy_left * rate_dot_2_left,
                 minus_g2_vy_right * minus_rate_dot_2_right,
-                -(minus_g1_vy_left * t152 + g2_vy_left * t162),
-                g1_vy_right * t168 + minus_g2_vy_right * t178,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t185),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t190),
+                -(minus_g1_vy_left * t148 + g2_vy_left * t158),
+                g1_vy_right * t164 + minus_g2_vy_right * t174, ::overact::math::signed(t46, t180),
+                ::overact::math::signed(t53, t183),
             ],
         ])
     }

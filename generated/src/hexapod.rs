@@ -3513,7 +3513,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 2691 operations (969 additions, 1704 multiplications, 18 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2096 intermediates.
+    /// 2655 operations (948 additions, 1659 multiplications, 48 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2060 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3522,1406 +3522,1402 @@ impl Hexapod {
         twist: &[f64; 6],
         acceleration: &[f64; 6],
     ) -> Result<[[f64; 148]; 6], ::overact::Error> {
-        let t0 = 2.0 * pose[5];
-        let t1 = pose[5] * t0;
-        let t3 = 2.0 * pose[6];
-        let t4 = pose[6] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 0.05176380902050415 * t5;
-        let t7 = 2.0 * pose[4];
-        let t8 = pose[5] * t7;
-        let t9 = pose[3] * t3;
-        let t10 = t8 - t9;
-        let t11 = 0.19318516525781368 * t10;
-        let t12 = t6 + t11;
-        let t13 = 0.19318516525781368 * t5;
-        let t14 = 0.05176380902050415 * t10;
-        let t15 = t13 + t14;
-        let t16 = t15 - t12;
-        let t18 = pose[0] + t16 - 0.3912590402935223;
-        let t20 = t8 + t9;
+        let t0 = 2.0 * pose[4];
+        let t1 = pose[6] * t0;
+        let t2 = 2.0 * pose[5];
+        let t3 = pose[3] * t2;
+        let t4 = t1 - t3;
+        let t5 = 0.05176380902050415 * t4;
+        let t6 = pose[6] * t2;
+        let t7 = pose[3] * t0;
+        let t8 = t6 + t7;
+        let t9 = 0.19318516525781368 * t8;
+        let t10 = t5 + t9;
+        let t11 = 0.19318516525781368 * t4;
+        let t12 = 0.05176380902050415 * t8;
+        let t13 = t11 + t12;
+        let t14 = t13 - t10;
+        let t15 = pose[2] + t14;
+        let t16 = pose[5] * t2;
+        let t18 = 2.0 * pose[6];
+        let t19 = pose[6] * t18;
+        let t20 = 1.0 - t16 - t19;
         let t21 = 0.05176380902050415 * t20;
-        let t23 = 1.0 - pose[4] * t7;
-        let t24 = t23 - t4;
+        let t22 = pose[5] * t0;
+        let t23 = pose[3] * t18;
+        let t24 = t22 - t23;
         let t25 = 0.19318516525781368 * t24;
         let t26 = t21 + t25;
         let t27 = 0.19318516525781368 * t20;
         let t28 = 0.05176380902050415 * t24;
         let t29 = t27 + t28;
         let t30 = t29 - t26;
-        let t32 = pose[1] + t30 + 0.08316467632710373;
-        let t34 = 0.9781476007338057 * t18 - 0.20791169081775931 * t32;
-        let t36 = pose[6] * t7;
-        let t37 = pose[3] * t0;
-        let t38 = t36 - t37;
-        let t39 = 0.05176380902050415 * t38;
-        let t40 = pose[6] * t0;
-        let t41 = pose[3] * t7;
-        let t42 = t40 + t41;
-        let t43 = 0.19318516525781368 * t42;
-        let t44 = t39 + t43;
-        let t45 = 0.19318516525781368 * t38;
-        let t46 = 0.05176380902050415 * t42;
-        let t47 = t45 + t46;
-        let t48 = t47 - t44;
-        let t49 = pose[2] + t48;
-        let t51 = t34 * t34 + t49 * t49;
+        let t32 = pose[0] + t30 - 0.3912590402935223;
+        let t34 = t22 + t23;
+        let t35 = 0.05176380902050415 * t34;
+        let t37 = 1.0 - pose[4] * t0;
+        let t38 = t37 - t19;
+        let t39 = 0.19318516525781368 * t38;
+        let t40 = t35 + t39;
+        let t41 = 0.19318516525781368 * t34;
+        let t42 = 0.05176380902050415 * t38;
+        let t43 = t41 + t42;
+        let t44 = t43 - t40;
+        let t46 = pose[1] + t44 + 0.08316467632710373;
+        let t48 = 0.9781476007338057 * t32 - 0.20791169081775931 * t46;
+        let t51 = t48 * t48 + t15 * t15;
         let t52 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(t52, 0.5513142860385972, "leg1")?;
-        let t53 = 1.0 / t52;
-        let c_cross_leg1 = t49 * t53;
-        let t55 = 0.9781476007338057 * c_cross_leg1;
-        let minus_gcross_vx_leg1 = t53 * t55;
-        let t59 = 0.20791169081775931 * t18 + 0.9781476007338057 * t32;
-        let t61 = t51 + t59 * t59;
-        ::overact::guard::reach(t61, "leg1")?;
-        let t62 = ::overact::math::sqrt(t61);
-        ::overact::guard::leg(t62, 0.5619721604570214, "leg1")?;
-        let t63 = 1.0 / t62;
-        let c_cylinder_leg1 = t52 * t63;
-        let minus_s_cross_leg1 = t34 * t53;
-        let t66 = 0.9781476007338057 * minus_s_cross_leg1;
-        let minus_s_cylinder_leg1 = t59 / t62;
-        let t70 = t66 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
-        let t73 = t44 * twist[4] - t26 * twist[5];
-        let t76 = t29 * twist[5] - t47 * twist[4];
-        let t78 = twist[0] - (t73 + t76);
-        let t80 = 0.20791169081775931 * minus_s_cross_leg1;
-        let t83 = t80 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
-        let t86 = t12 * twist[5] - t44 * twist[3];
-        let t89 = t47 * twist[3] - t15 * twist[5];
-        let t91 = twist[1] - (t86 + t89);
-        let t94 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t97 = t26 * twist[3] - t12 * twist[4];
-        let t100 = t15 * twist[4] - t29 * twist[3];
-        let t102 = twist[2] - (t97 + t100);
-        let rate_cylinder_leg1 = t63 * (t70 * t78 - t83 * t91 + t94 * t102);
-        let t107 = 0.20791169081775931 * c_cross_leg1;
-        let t111 = t55 * t78 - t107 * t91 - minus_s_cross_leg1 * t102;
-        let minus_rate_cross_leg1 = t53 * t111;
-        let t113 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t114 = rate_cylinder_leg1 * t113;
-        let t115 = twist[3] * twist[4];
-        let t116 = t115 - acceleration[5];
-        let t118 = twist[4] * twist[4];
-        let t119 = twist[5] * twist[5];
-        let t120 = t118 + t119;
-        let t123 = twist[3] * twist[5];
-        let t124 = t123 + acceleration[4];
-        let t126 = t20 * t116 - t5 * t120 + t38 * t124;
-        let t127 = 0.05176380902050415 * t126;
-        let t132 = t24 * t116 - t10 * t120 + t42 * t124;
-        let t133 = 0.19318516525781368 * t132;
-        let t134 = t127 + t133;
-        let t135 = 0.19318516525781368 * t126;
-        let t136 = 0.05176380902050415 * t132;
-        let t137 = t135 + t136;
-        let t139 = acceleration[0] + t137 - t134;
-        let t141 = t115 + acceleration[5];
-        let t143 = twist[3] * twist[3];
-        let t144 = t143 + t119;
-        let t147 = twist[4] * twist[5];
-        let t148 = t147 - acceleration[3];
-        let t150 = t5 * t141 - t20 * t144 + t38 * t148;
-        let t151 = 0.05176380902050415 * t150;
-        let t156 = t10 * t141 - t24 * t144 + t42 * t148;
-        let t157 = 0.19318516525781368 * t156;
-        let t158 = t151 + t157;
-        let t159 = 0.19318516525781368 * t150;
-        let t160 = 0.05176380902050415 * t156;
-        let t161 = t159 + t160;
-        let t163 = acceleration[1] + t161 - t158;
-        let t166 = t123 - acceleration[4];
-        let t168 = t147 + acceleration[3];
-        let t171 = t143 + t118;
-        let t173 = t5 * t166 + t20 * t168 - t38 * t171;
-        let t174 = 0.05176380902050415 * t173;
-        let t179 = t10 * t166 + t24 * t168 - t42 * t171;
-        let t180 = 0.19318516525781368 * t179;
-        let t181 = t174 + t180;
-        let t182 = 0.19318516525781368 * t173;
-        let t183 = 0.05176380902050415 * t179;
-        let t184 = t182 + t183;
-        let t185 = t184 - t181;
-        let t186 = acceleration[2] + t185;
-        let t188 = t55 * t139 - t107 * t163 - minus_s_cross_leg1 * t186;
-        let t189 = t62 * t114;
-        let t192 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let minus_minus_grod_vy_leg1 = t32 * t63;
-        let grod_vx_leg1 = t18 * t63;
+        let c_cross_leg1 = t15 / t52;
+        let t54 = 0.9781476007338057 * c_cross_leg1;
+        let minus_gcross_vx_leg1 = t54 / t52;
+        let t56 = twist[3] * twist[4];
+        let t57 = t56 - acceleration[5];
+        let t59 = twist[4] * twist[4];
+        let t60 = twist[5] * twist[5];
+        let t61 = t59 + t60;
+        let t64 = twist[3] * twist[5];
+        let t65 = t64 + acceleration[4];
+        let t67 = t34 * t57 - t20 * t61 + t4 * t65;
+        let t68 = 0.05176380902050415 * t67;
+        let t73 = t38 * t57 - t24 * t61 + t8 * t65;
+        let t74 = 0.19318516525781368 * t73;
+        let t75 = t68 + t74;
+        let t76 = 0.19318516525781368 * t67;
+        let t77 = 0.05176380902050415 * t73;
+        let t78 = t76 + t77;
+        let t80 = acceleration[0] + t78 - t75;
+        let t82 = 0.20791169081775931 * c_cross_leg1;
+        let t83 = t56 + acceleration[5];
+        let t85 = twist[3] * twist[3];
+        let t86 = t85 + t60;
+        let t89 = twist[4] * twist[5];
+        let t90 = t89 - acceleration[3];
+        let t92 = t20 * t83 - t34 * t86 + t4 * t90;
+        let t93 = 0.05176380902050415 * t92;
+        let t98 = t24 * t83 - t38 * t86 + t8 * t90;
+        let t99 = 0.19318516525781368 * t98;
+        let t100 = t93 + t99;
+        let t101 = 0.19318516525781368 * t92;
+        let t102 = 0.05176380902050415 * t98;
+        let t103 = t101 + t102;
+        let t105 = acceleration[1] + t103 - t100;
+        let minus_s_cross_leg1 = t48 / t52;
+        let t109 = t64 - acceleration[4];
+        let t111 = t89 + acceleration[3];
+        let t114 = t85 + t59;
+        let t116 = t20 * t109 + t34 * t111 - t4 * t114;
+        let t117 = 0.05176380902050415 * t116;
+        let t122 = t24 * t109 + t38 * t111 - t8 * t114;
+        let t123 = 0.19318516525781368 * t122;
+        let t124 = t117 + t123;
+        let t125 = 0.19318516525781368 * t116;
+        let t126 = 0.05176380902050415 * t122;
+        let t127 = t125 + t126;
+        let t128 = t127 - t124;
+        let t129 = acceleration[2] + t128;
+        let t131 = t54 * t80 - t82 * t105 - minus_s_cross_leg1 * t129;
+        let t132 = 0.9781476007338057 * minus_s_cross_leg1;
+        let t135 = 0.20791169081775931 * t32 + 0.9781476007338057 * t46;
+        let t137 = t51 + t135 * t135;
+        ::overact::guard::reach(t137, "leg1")?;
+        let t138 = ::overact::math::sqrt(t137);
+        ::overact::guard::leg(t138, 0.5619721604570214, "leg1")?;
+        let minus_s_cylinder_leg1 = t135 / t138;
+        let c_cylinder_leg1 = t52 / t138;
+        let t143 = t132 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
+        let t146 = t10 * twist[4] - t40 * twist[5];
+        let t149 = t43 * twist[5] - t13 * twist[4];
+        let t151 = twist[0] - (t146 + t149);
+        let t153 = 0.20791169081775931 * minus_s_cross_leg1;
+        let t156 = t153 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
+        let t159 = t26 * twist[5] - t10 * twist[3];
+        let t162 = t13 * twist[3] - t29 * twist[5];
+        let t164 = twist[1] - (t159 + t162);
+        let t167 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t170 = t40 * twist[3] - t26 * twist[4];
+        let t173 = t29 * twist[4] - t43 * twist[3];
+        let t175 = twist[2] - (t170 + t173);
+        let t177 = t143 * t151 - t156 * t164 + t167 * t175;
+        let t182 = t54 * t151 - t82 * t164 - minus_s_cross_leg1 * t175;
+        let minus_rate_cross_leg1 = t182 / t52;
+        let t184 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t185 = t177 * t184;
+        let t188 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let minus_minus_grod_vy_leg1 = t46 / t138;
+        let grod_vx_leg1 = t32 / t138;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t91
-            + grod_vx_leg1 * t78 + grod_vz_leg1 * t102;
-        let t201 = minus_minus_rate_rod_leg1 + minus_minus_rate_rod_leg1;
-        let minus_rate_dot_cross_leg1 = t53 * (t188 - t189 - t189 - t192 * t201);
-        let t205 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t207 = t114 + t205 + t114;
-        let t208 = c_cylinder_leg1 * t207;
-        let gcylinder_vx_leg1 = t70 * t63;
-        let t211 = t192 * t113;
+        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t164
+            + grod_vx_leg1 * t151 + grod_vz_leg1 * t175;
+        let t197 = 2.0 * minus_minus_rate_rod_leg1;
+        let minus_rate_dot_cross_leg1 = (t131 - t185 - t185 - t188 * t197) / t52;
+        let t201 = 1.0 / t138;
+        let rate_cylinder_leg1 = t201 * t177;
+        let t203 = rate_cylinder_leg1 * t188;
+        let t204 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t206 = t203 + t203 - t204;
+        let t207 = minus_s_cylinder_leg1 * t206;
+        let t208 = minus_rate_dot_cross_leg1 + t207;
+        let gcylinder_vx_leg1 = t143 * t201;
+        let t211 = t188 * t184;
         let t212 = gcylinder_vx_leg1 * t211;
         let t213 = minus_gcross_vx_leg1 * t208 - t212;
-        let minus_gcylinder_vy_leg1 = t83 * t63;
+        let minus_gcylinder_vy_leg1 = t156 * t201;
         let t215 = minus_gcylinder_vy_leg1 * t211;
-        let gcross_vy_leg1 = t53 * t107;
+        let gcross_vy_leg1 = t82 / t52;
         let t218 = t215 - gcross_vy_leg1 * t208;
-        let gcross_vz_leg1 = t53 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t94 * t63;
+        let gcross_vz_leg1 = minus_s_cross_leg1 / t52;
+        let gcylinder_vz_leg1 = t167 * t201;
         let t222 = gcylinder_vz_leg1 * t211;
         let t223 = gcross_vz_leg1 * t208 + t222;
-        let gcross_wx_leg1 = t30 * gcross_vz_leg1 - t48 * gcross_vy_leg1;
-        let gcylinder_wx_leg1 = t30 * gcylinder_vz_leg1 + t48 * minus_gcylinder_vy_leg1;
+        let gcross_wx_leg1 = t44 * gcross_vz_leg1 - t14 * gcross_vy_leg1;
+        let gcylinder_wx_leg1 = t44 * gcylinder_vz_leg1 + t14 * minus_gcylinder_vy_leg1;
         let t231 = gcylinder_wx_leg1 * t211;
         let t232 = gcross_wx_leg1 * t208 + t231;
-        let minus_gcross_wy_leg1 = t48 * minus_gcross_vx_leg1 + t16 * gcross_vz_leg1;
-        let gcylinder_wy_leg1 = t48 * gcylinder_vx_leg1 - t16 * gcylinder_vz_leg1;
+        let minus_gcross_wy_leg1 = t14 * minus_gcross_vx_leg1 + t30 * gcross_vz_leg1;
+        let gcylinder_wy_leg1 = t14 * gcylinder_vx_leg1 - t30 * gcylinder_vz_leg1;
         let t240 = gcylinder_wy_leg1 * t211;
         let t241 = minus_gcross_wy_leg1 * t208 - t240;
-        let minus_gcylinder_wz_leg1 = t16 * minus_gcylinder_vy_leg1
-            + t30 * gcylinder_vx_leg1;
+        let minus_gcylinder_wz_leg1 = t30 * minus_gcylinder_vy_leg1
+            + t44 * gcylinder_vx_leg1;
         let t245 = minus_gcylinder_wz_leg1 * t211;
-        let gcross_wz_leg1 = t16 * gcross_vy_leg1 + t30 * minus_gcross_vx_leg1;
+        let gcross_wz_leg1 = t30 * gcross_vy_leg1 + t44 * minus_gcross_vx_leg1;
         let t250 = t245 - gcross_wz_leg1 * t208;
-        let t251 = t192 * t192;
-        let t252 = t113 * t113;
+        let t251 = t188 * t188;
+        let t252 = t184 * t184;
         let t253 = t251 - t252;
-        let t255 = rate_cylinder_leg1 * t192;
-        let t256 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t258 = t255 + t255 - t256;
-        let t261 = c_cylinder_leg1 * t258 - minus_s_cylinder_leg1 * t207;
-        let t263 = gcylinder_vx_leg1 * t253 - minus_gcross_vx_leg1 * t261;
-        let t266 = gcross_vy_leg1 * t261 - minus_gcylinder_vy_leg1 * t253;
-        let t269 = gcross_vz_leg1 * t261 + gcylinder_vz_leg1 * t253;
-        let t272 = gcross_wx_leg1 * t261 + gcylinder_wx_leg1 * t253;
-        let t275 = gcylinder_wy_leg1 * t253 - minus_gcross_wy_leg1 * t261;
-        let t278 = gcross_wz_leg1 * t261 - minus_gcylinder_wz_leg1 * t253;
-        let t283 = t70 * t139 - t83 * t163 + t94 * t186;
-        let rate_dot_cylinder_leg1 = t63
-            * (t283 + t62 * t211 - rate_cylinder_leg1 * t201);
-        let t289 = t211 + rate_dot_cylinder_leg1;
-        let t291 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t294 = c_cylinder_leg1 * t289 + minus_s_cylinder_leg1 * (t291 - t251);
-        let t297 = minus_gcross_vx_leg1 * t294 + gcylinder_vx_leg1 * t205;
-        let t300 = gcross_vy_leg1 * t294 + minus_gcylinder_vy_leg1 * t205;
-        let t303 = gcross_vz_leg1 * t294 - gcylinder_vz_leg1 * t205;
-        let t306 = gcross_wx_leg1 * t294 - gcylinder_wx_leg1 * t205;
-        let t309 = minus_gcross_wy_leg1 * t294 + gcylinder_wy_leg1 * t205;
-        let t312 = gcross_wz_leg1 * t294 + minus_gcylinder_wz_leg1 * t205;
-        let t313 = minus_s_cylinder_leg1 * t258;
-        let t315 = t212 - minus_gcross_vx_leg1 * t313;
-        let t317 = gcross_vy_leg1 * t313 - t215;
-        let t319 = gcross_vz_leg1 * t313 + t222;
-        let t321 = gcross_wx_leg1 * t313 + t231;
-        let t323 = t240 - minus_gcross_wy_leg1 * t313;
-        let t325 = gcross_wz_leg1 * t313 - t245;
-        let t328 = t211 - rate_dot_cylinder_leg1;
-        let t330 = c_cylinder_leg1 * (t252 - t291) - minus_s_cylinder_leg1 * t328;
-        let t333 = minus_gcross_vx_leg1 * t330 + gcylinder_vx_leg1 * t256;
-        let t336 = gcross_vy_leg1 * t330 + minus_gcylinder_vy_leg1 * t256;
-        let t339 = gcross_vz_leg1 * t330 - gcylinder_vz_leg1 * t256;
-        let t342 = gcross_wx_leg1 * t330 - gcylinder_wx_leg1 * t256;
-        let t345 = minus_gcross_wy_leg1 * t330 + gcylinder_wy_leg1 * t256;
-        let t348 = gcross_wz_leg1 * t330 + minus_gcylinder_wz_leg1 * t256;
-        let t349 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
-        let t350 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
-        let t351 = gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
-        let t352 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
-        let t353 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
-        let t354 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
-        let t355 = 9.81 * minus_s_cross_leg1;
-        let t356 = minus_s_cylinder_leg1 * t355;
-        let t358 = 9.81 * grod_vz_leg1;
-        let t376 = t63 * t358;
-        let t379 = c_cylinder_leg1 * t355;
-        let t381 = 9.81 * t94;
-        let minus_grod_wz_leg1 = t30 * grod_vx_leg1 - t16 * minus_minus_grod_vy_leg1;
-        let t394 = 9.81 * c_cross_leg1;
-        let t405 = minus_minus_grod_vy_leg1 * t163 + grod_vx_leg1 * t139
-            + grod_vz_leg1 * t186;
-        let t406 = t358 + t405;
-        let t409 = t406 + t62 * (t252 + t291);
-        let t412 = t188 - t355;
-        let t414 = t52 * t258 - minus_s_cylinder_leg1 * t412;
-        let t418 = gcylinder_vx_leg1 * t409 + minus_gcross_vx_leg1 * t414
-            + grod_vx_leg1 * t289;
-        let t423 = gcross_vy_leg1 * t414 + minus_gcylinder_vy_leg1 * t409
-            - minus_minus_grod_vy_leg1 * t289;
-        let t428 = gcross_vz_leg1 * t414 - gcylinder_vz_leg1 * t409
-            - grod_vz_leg1 * t289;
-        let t439 = t283 + t381;
-        let t443 = t111 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t439
-            + c_cylinder_leg1 * t406;
-        let t446 = minus_gcross_vx_leg1 * t443 + t66 * minus_rate_dot_cross_leg1;
-        let t449 = gcross_vy_leg1 * t443 + t80 * minus_rate_dot_cross_leg1;
-        let t452 = gcross_vz_leg1 * t443 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t464 = t52 * t207 + c_cylinder_leg1 * t412;
-        let t467 = t439 - t62 * t328;
-        let t470 = t251 + t291;
-        let t472 = minus_gcross_vx_leg1 * t464 + gcylinder_vx_leg1 * t467
-            - grod_vx_leg1 * t470;
-        let t477 = minus_minus_grod_vy_leg1 * t470 + gcross_vy_leg1 * t464
-            + minus_gcylinder_vy_leg1 * t467;
-        let t482 = gcylinder_vz_leg1 * t467 - gcross_vz_leg1 * t464
-            - grod_vz_leg1 * t470;
-        let t492 = acceleration[2] + 9.81;
-        let t493 = t185 + t492;
-        let minus_minus_rate_dot_rod_leg1 = t62 * t470 + t405;
-        let grod_wx_leg1 = t30 * grod_vz_leg1 - t48 * minus_minus_grod_vy_leg1;
-        let grod_wy_leg1 = t48 * grod_vx_leg1 - t16 * grod_vz_leg1;
-        let t523 = -minus_minus_rate_rod_leg1;
-        let t530 = t14 - t13;
-        let t531 = t6 - t11;
+        let t256 = t138 * t208;
+        let t259 = c_cylinder_leg1 * t206 - minus_s_cylinder_leg1 * (t256 / t52);
+        let t261 = gcylinder_vx_leg1 * t253 - minus_gcross_vx_leg1 * t259;
+        let t264 = gcross_vy_leg1 * t259 - minus_gcylinder_vy_leg1 * t253;
+        let t267 = gcross_vz_leg1 * t259 + gcylinder_vz_leg1 * t253;
+        let t270 = gcross_wx_leg1 * t259 + gcylinder_wx_leg1 * t253;
+        let t273 = gcylinder_wy_leg1 * t253 - minus_gcross_wy_leg1 * t259;
+        let t276 = gcross_wz_leg1 * t259 - minus_gcylinder_wz_leg1 * t253;
+        let t281 = t143 * t80 - t156 * t105 + t167 * t129;
+        let t283 = rate_cylinder_leg1 * t197 - t281;
+        let t284 = t283 / t138;
+        let rate_dot_cylinder_leg1 = t211 - t284;
+        let t286 = t211 + rate_dot_cylinder_leg1;
+        let t288 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t291 = c_cylinder_leg1 * t286 + minus_s_cylinder_leg1 * (t288 - t251);
+        let t293 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t295 = minus_gcross_vx_leg1 * t291 + gcylinder_vx_leg1 * t293;
+        let t298 = gcross_vy_leg1 * t291 + minus_gcylinder_vy_leg1 * t293;
+        let t301 = gcross_vz_leg1 * t291 - gcylinder_vz_leg1 * t293;
+        let t304 = gcross_wx_leg1 * t291 - gcylinder_wx_leg1 * t293;
+        let t307 = minus_gcross_wy_leg1 * t291 + gcylinder_wy_leg1 * t293;
+        let t310 = gcross_wz_leg1 * t291 + minus_gcylinder_wz_leg1 * t293;
+        let t312 = t212 - minus_gcross_vx_leg1 * t207;
+        let t314 = gcross_vy_leg1 * t207 - t215;
+        let t316 = gcross_vz_leg1 * t207 + t222;
+        let t318 = gcross_wx_leg1 * t207 + t231;
+        let t320 = t240 - minus_gcross_wy_leg1 * t207;
+        let t322 = gcross_wz_leg1 * t207 - t245;
+        let t326 = c_cylinder_leg1 * (t252 - t288) - minus_s_cylinder_leg1 * t284;
+        let t329 = minus_gcross_vx_leg1 * t326 + gcylinder_vx_leg1 * t204;
+        let t332 = gcross_vy_leg1 * t326 + minus_gcylinder_vy_leg1 * t204;
+        let t335 = gcross_vz_leg1 * t326 - gcylinder_vz_leg1 * t204;
+        let t338 = gcross_wx_leg1 * t326 - gcylinder_wx_leg1 * t204;
+        let t341 = minus_gcross_wy_leg1 * t326 + gcylinder_wy_leg1 * t204;
+        let t344 = gcross_wz_leg1 * t326 + minus_gcylinder_wz_leg1 * t204;
+        let t345 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
+        let t346 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
+        let t347 = gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
+        let t348 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
+        let t349 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
+        let t350 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
+        let t351 = 9.81 * minus_s_cross_leg1;
+        let t352 = minus_s_cylinder_leg1 * t351;
+        let t354 = 9.81 * grod_vz_leg1;
+        let t372 = t201 * t354;
+        let t375 = c_cylinder_leg1 * t351;
+        let t377 = 9.81 * t167;
+        let minus_grod_wz_leg1 = t44 * grod_vx_leg1 - t30 * minus_minus_grod_vy_leg1;
+        let t390 = 9.81 * c_cross_leg1;
+        let t401 = minus_minus_grod_vy_leg1 * t105 + grod_vx_leg1 * t80
+            + grod_vz_leg1 * t129;
+        let t402 = t354 + t401;
+        let t405 = t402 + t138 * (t252 + t288);
+        let t408 = t131 - t351;
+        let t410 = t52 * t206 - minus_s_cylinder_leg1 * t408;
+        let t414 = gcylinder_vx_leg1 * t405 + minus_gcross_vx_leg1 * t410
+            + grod_vx_leg1 * t286;
+        let t419 = gcross_vy_leg1 * t410 + minus_gcylinder_vy_leg1 * t405
+            - minus_minus_grod_vy_leg1 * t286;
+        let t424 = gcross_vz_leg1 * t410 - gcylinder_vz_leg1 * t405
+            - grod_vz_leg1 * t286;
+        let t435 = t281 + t377;
+        let t439 = t182 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t435
+            + c_cylinder_leg1 * t402;
+        let t442 = minus_gcross_vx_leg1 * t439 + t132 * minus_rate_dot_cross_leg1;
+        let t445 = gcross_vy_leg1 * t439 + t153 * minus_rate_dot_cross_leg1;
+        let t448 = gcross_vz_leg1 * t439 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t459 = t256 + c_cylinder_leg1 * t408;
+        let t461 = t435 - t283;
+        let t464 = t251 + t288;
+        let t466 = minus_gcross_vx_leg1 * t459 + gcylinder_vx_leg1 * t461
+            - grod_vx_leg1 * t464;
+        let t471 = minus_minus_grod_vy_leg1 * t464 + gcross_vy_leg1 * t459
+            + minus_gcylinder_vy_leg1 * t461;
+        let t476 = gcylinder_vz_leg1 * t461 - gcross_vz_leg1 * t459
+            - grod_vz_leg1 * t464;
+        let t486 = acceleration[2] + 9.81;
+        let t487 = t128 + t486;
+        let minus_minus_rate_dot_rod_leg1 = t138 * t464 + t401;
+        let grod_wx_leg1 = t44 * grod_vz_leg1 - t14 * minus_minus_grod_vy_leg1;
+        let grod_wy_leg1 = t14 * grod_vx_leg1 - t30 * grod_vz_leg1;
+        let t517 = -minus_minus_rate_rod_leg1;
+        let t524 = t28 - t27;
+        let t525 = t21 - t25;
+        let t526 = t524 + t525;
+        let t528 = pose[0] - t526 - 0.3912590402935223;
+        let t530 = t42 - t41;
+        let t531 = t35 - t39;
         let t532 = t530 + t531;
-        let t534 = pose[0] - t532 - 0.3912590402935223;
-        let t536 = t28 - t27;
-        let t537 = t21 - t25;
-        let t538 = t536 + t537;
-        let t540 = pose[1] - t538 - 0.08316467632710373;
-        let t542 = 0.9781476007338057 * t534 + 0.20791169081775931 * t540;
-        let t544 = t46 - t45;
-        let t545 = t39 - t43;
-        let t546 = t544 + t545;
-        let t547 = pose[2] - t546;
-        let t549 = t542 * t542 + t547 * t547;
+        let t534 = pose[1] - t532 - 0.08316467632710373;
+        let t536 = 0.9781476007338057 * t528 + 0.20791169081775931 * t534;
+        let t538 = t12 - t11;
+        let t539 = t5 - t9;
+        let t540 = t538 + t539;
+        let t541 = pose[2] - t540;
+        let t543 = t536 * t536 + t541 * t541;
+        let t544 = ::overact::math::sqrt(t543);
+        ::overact::guard::leg(t544, 0.5513142860385972, "leg2")?;
+        let t547 = 0.20791169081775931 * t528 - 0.9781476007338057 * t534;
+        let t549 = t543 + t547 * t547;
+        ::overact::guard::reach(t549, "leg2")?;
         let t550 = ::overact::math::sqrt(t549);
-        ::overact::guard::leg(t550, 0.5513142860385972, "leg2")?;
-        let t553 = 0.20791169081775931 * t534 - 0.9781476007338057 * t540;
-        let t555 = t549 + t553 * t553;
-        ::overact::guard::reach(t555, "leg2")?;
-        let t556 = ::overact::math::sqrt(t555);
-        ::overact::guard::leg(t556, 0.5619721604570214, "leg2")?;
-        let t557 = 1.0 / t556;
-        let c_cylinder_leg2 = t550 * t557;
-        let t560 = 1.0 / t550;
-        let minus_s_cross_leg2 = t542 * t560;
-        let t562 = 0.9781476007338057 * minus_s_cross_leg2;
-        let s_cylinder_leg2 = t553 / t556;
-        let t565 = 0.20791169081775931 * c_cylinder_leg2 - t562 * s_cylinder_leg2;
-        let gcylinder_vx_leg2 = t565 * t557;
-        let c_cross_leg2 = t547 * t560;
-        let t568 = 0.9781476007338057 * c_cross_leg2;
-        let t571 = t544 * twist[4] - t536 * twist[5];
-        let t574 = t545 * twist[4] - t537 * twist[5];
-        let t576 = twist[0] - (t571 + t574);
-        let t578 = 0.20791169081775931 * c_cross_leg2;
-        let t581 = t530 * twist[5] - t544 * twist[3];
-        let t584 = t531 * twist[5] - t545 * twist[3];
-        let t586 = twist[1] - (t581 + t584);
-        let t591 = t536 * twist[3] - t530 * twist[4];
-        let t594 = t537 * twist[3] - t531 * twist[4];
-        let t596 = twist[2] - (t591 + t594);
-        let t598 = t568 * t576 + t578 * t586 - minus_s_cross_leg2 * t596;
-        let minus_rate_cross_leg2 = t560 * t598;
-        let t600 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t601 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t602 = t600 * t601;
-        let t603 = gcylinder_vx_leg2 * t602;
-        let minus_gcross_vx_leg2 = t560 * t568;
-        let t606 = 0.20791169081775931 * minus_s_cross_leg2;
-        let t609 = t606 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
-        let t612 = c_cross_leg2 * s_cylinder_leg2;
-        let rate_cylinder_leg2 = t557 * (t565 * t576 - t609 * t586 - t612 * t596);
-        let t616 = rate_cylinder_leg2 * t601;
-        let t617 = t136 - t135;
-        let t618 = t127 - t133;
-        let t620 = acceleration[0] - (t617 + t618);
-        let t622 = t160 - t159;
-        let t623 = t151 - t157;
-        let t625 = acceleration[1] - (t622 + t623);
-        let t628 = t183 - t182;
-        let t629 = t174 - t180;
-        let t631 = acceleration[2] - (t628 + t629);
-        let t633 = t568 * t620 + t578 * t625 - minus_s_cross_leg2 * t631;
-        let t634 = t556 * t616;
-        let minus_minus_grod_vy_leg2 = t540 * t557;
-        let grod_vx_leg2 = t534 * t557;
+        ::overact::guard::leg(t550, 0.5619721604570214, "leg2")?;
+        let c_cylinder_leg2 = t544 / t550;
+        let t553 = 1.0 / t544;
+        let minus_s_cross_leg2 = t536 * t553;
+        let t555 = 0.9781476007338057 * minus_s_cross_leg2;
+        let s_cylinder_leg2 = t547 / t550;
+        let t558 = 0.20791169081775931 * c_cylinder_leg2 - t555 * s_cylinder_leg2;
+        let t559 = 1.0 / t550;
+        let gcylinder_vx_leg2 = t558 * t559;
+        let c_cross_leg2 = t541 * t553;
+        let t562 = 0.9781476007338057 * c_cross_leg2;
+        let t565 = t538 * twist[4] - t530 * twist[5];
+        let t568 = t539 * twist[4] - t531 * twist[5];
+        let t570 = twist[0] - (t565 + t568);
+        let t572 = 0.20791169081775931 * c_cross_leg2;
+        let t575 = t524 * twist[5] - t538 * twist[3];
+        let t578 = t525 * twist[5] - t539 * twist[3];
+        let t580 = twist[1] - (t575 + t578);
+        let t585 = t530 * twist[3] - t524 * twist[4];
+        let t588 = t531 * twist[3] - t525 * twist[4];
+        let t590 = twist[2] - (t585 + t588);
+        let t592 = t562 * t570 + t572 * t580 - minus_s_cross_leg2 * t590;
+        let minus_rate_cross_leg2 = t553 * t592;
+        let t594 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t595 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t596 = t594 * t595;
+        let t597 = gcylinder_vx_leg2 * t596;
+        let minus_gcross_vx_leg2 = t553 * t562;
+        let t599 = t77 - t76;
+        let t600 = t68 - t74;
+        let t602 = acceleration[0] - (t599 + t600);
+        let t604 = t102 - t101;
+        let t605 = t93 - t99;
+        let t607 = acceleration[1] - (t604 + t605);
+        let t610 = t126 - t125;
+        let t611 = t117 - t123;
+        let t612 = t610 + t611;
+        let t613 = acceleration[2] - t612;
+        let t615 = t562 * t602 + t572 * t607 - minus_s_cross_leg2 * t613;
+        let minus_minus_grod_vy_leg2 = t534 * t559;
+        let grod_vx_leg2 = t528 * t559;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t586
-            + grod_vx_leg2 * t576 + grod_vz_leg2 * t596;
-        let t645 = minus_minus_rate_rod_leg2 + minus_minus_rate_rod_leg2;
-        let minus_rate_dot_cross_leg2 = t560 * (t633 + t634 + t634 - t600 * t645);
-        let t649 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t651 = t616 + t616 - t649;
-        let t652 = c_cylinder_leg2 * t651;
-        let t654 = t603 - minus_gcross_vx_leg2 * t652;
-        let minus_gcross_vy_leg2 = t560 * t578;
-        let minus_gcylinder_vy_leg2 = t609 * t557;
-        let t658 = minus_gcylinder_vy_leg2 * t602;
-        let t659 = minus_gcross_vy_leg2 * t652 + t658;
-        let gcross_vz_leg2 = t560 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t612 * t557;
-        let t663 = minus_gcylinder_vz_leg2 * t602;
-        let t664 = gcross_vz_leg2 * t652 - t663;
-        let minus_gcross_wx_leg2 = t538 * gcross_vz_leg2 + t546 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t538 * minus_gcylinder_vz_leg2
-            - t546 * minus_gcylinder_vy_leg2;
-        let t672 = gcylinder_wx_leg2 * t602;
-        let t673 = t672 - minus_gcross_wx_leg2 * t652;
-        let minus_gcylinder_wy_leg2 = t546 * gcylinder_vx_leg2
-            + t532 * minus_gcylinder_vz_leg2;
-        let t677 = minus_gcylinder_wy_leg2 * t602;
-        let minus_minus_gcross_wy_leg2 = t546 * minus_gcross_vx_leg2
-            + t532 * gcross_vz_leg2;
-        let t682 = minus_minus_gcross_wy_leg2 * t652 - t677;
-        let gcross_wz_leg2 = t532 * minus_gcross_vy_leg2 - t538 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t532 * minus_gcylinder_vy_leg2
-            + t538 * gcylinder_vx_leg2;
-        let t690 = minus_minus_gcylinder_wz_leg2 * t602;
-        let t691 = gcross_wz_leg2 * t652 + t690;
-        let t692 = t600 * t600;
-        let t693 = t601 * t601;
-        let t694 = t692 - t693;
-        let t696 = rate_cylinder_leg2 * t600;
-        let t697 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t699 = t696 + t697 + t696;
-        let t702 = c_cylinder_leg2 * t699 - s_cylinder_leg2 * t651;
-        let t704 = gcylinder_vx_leg2 * t694 - minus_gcross_vx_leg2 * t702;
-        let t707 = minus_gcross_vy_leg2 * t702 + minus_gcylinder_vy_leg2 * t694;
-        let t710 = gcross_vz_leg2 * t702 - minus_gcylinder_vz_leg2 * t694;
-        let t713 = gcylinder_wx_leg2 * t694 - minus_gcross_wx_leg2 * t702;
-        let t716 = minus_minus_gcross_wy_leg2 * t702 - minus_gcylinder_wy_leg2 * t694;
-        let t719 = gcross_wz_leg2 * t702 + minus_minus_gcylinder_wz_leg2 * t694;
-        let t724 = t565 * t620 - t609 * t625 - t612 * t631;
-        let rate_dot_cylinder_leg2 = t557
-            * (t724 - t556 * t602 - rate_cylinder_leg2 * t645);
-        let t730 = rate_dot_cylinder_leg2 - t602;
-        let t732 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t735 = c_cylinder_leg2 * t730 - s_cylinder_leg2 * (t732 - t692);
-        let t738 = minus_gcross_vx_leg2 * t735 + gcylinder_vx_leg2 * t649;
-        let t741 = minus_gcylinder_vy_leg2 * t649 - minus_gcross_vy_leg2 * t735;
-        let t744 = gcross_vz_leg2 * t735 + minus_gcylinder_vz_leg2 * t649;
-        let t747 = minus_gcross_wx_leg2 * t735 + gcylinder_wx_leg2 * t649;
-        let t750 = minus_minus_gcross_wy_leg2 * t735 + minus_gcylinder_wy_leg2 * t649;
-        let t753 = gcross_wz_leg2 * t735 - minus_minus_gcylinder_wz_leg2 * t649;
-        let t754 = s_cylinder_leg2 * t699;
-        let t756 = minus_gcross_vx_leg2 * t754 - t603;
-        let t758 = minus_gcross_vy_leg2 * t754 + t658;
-        let t760 = t663 - gcross_vz_leg2 * t754;
-        let t762 = t672 - minus_gcross_wx_leg2 * t754;
-        let t764 = t677 - minus_minus_gcross_wy_leg2 * t754;
-        let t766 = t690 + gcross_wz_leg2 * t754;
-        let t770 = t602 + rate_dot_cylinder_leg2;
-        let t772 = c_cylinder_leg2 * (t693 - t732) - s_cylinder_leg2 * t770;
-        let t774 = gcylinder_vx_leg2 * t697 - minus_gcross_vx_leg2 * t772;
-        let t777 = minus_gcross_vy_leg2 * t772 + minus_gcylinder_vy_leg2 * t697;
-        let t780 = gcross_vz_leg2 * t772 - minus_gcylinder_vz_leg2 * t697;
-        let t783 = gcylinder_wx_leg2 * t697 - minus_gcross_wx_leg2 * t772;
-        let t786 = minus_minus_gcross_wy_leg2 * t772 - minus_gcylinder_wy_leg2 * t697;
-        let t789 = gcross_wz_leg2 * t772 + minus_minus_gcylinder_wz_leg2 * t697;
-        let t790 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t791 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t792 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t793 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t794 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t795 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t796 = 9.81 * minus_s_cross_leg2;
-        let t797 = s_cylinder_leg2 * t796;
-        let t799 = 9.81 * grod_vz_leg2;
-        let t817 = t557 * t799;
-        let t820 = c_cylinder_leg2 * t796;
-        let t822 = 9.81 * t612;
-        let minus_grod_wz_leg2 = t532 * minus_minus_grod_vy_leg2 - t538 * grod_vx_leg2;
-        let t835 = 9.81 * c_cross_leg2;
-        let t846 = minus_minus_grod_vy_leg2 * t625 + grod_vx_leg2 * t620
-            + grod_vz_leg2 * t631;
-        let t847 = t799 + t846;
-        let t850 = t847 + t556 * (t693 + t732);
-        let t853 = t796 - t633;
-        let t855 = t550 * t699 - s_cylinder_leg2 * t853;
-        let t859 = gcylinder_vx_leg2 * t850 + minus_gcross_vx_leg2 * t855
-            + grod_vx_leg2 * t730;
-        let t864 = minus_minus_grod_vy_leg2 * t730 + minus_gcross_vy_leg2 * t855
-            - minus_gcylinder_vy_leg2 * t850;
-        let t869 = gcross_vz_leg2 * t855 + minus_gcylinder_vz_leg2 * t850
-            - grod_vz_leg2 * t730;
-        let t881 = t724 - t822;
-        let t884 = t598 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t881 - c_cylinder_leg2 * t847);
-        let t887 = minus_gcross_vx_leg2 * t884 + t562 * minus_rate_dot_cross_leg2;
-        let t890 = minus_gcross_vy_leg2 * t884 + t606 * minus_rate_dot_cross_leg2;
-        let t893 = gcross_vz_leg2 * t884 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t904 = t556 * t770 + t881;
-        let t908 = t550 * t651 + c_cylinder_leg2 * t853;
-        let t911 = t692 + t732;
-        let t913 = gcylinder_vx_leg2 * t904 - minus_gcross_vx_leg2 * t908
-            - grod_vx_leg2 * t911;
-        let t918 = minus_minus_grod_vy_leg2 * t911 + minus_gcross_vy_leg2 * t908
-            + minus_gcylinder_vy_leg2 * t904;
-        let t923 = gcross_vz_leg2 * t908 - minus_gcylinder_vz_leg2 * t904
-            - grod_vz_leg2 * t911;
-        let t933 = 9.81 + t631;
-        let minus_minus_rate_dot_rod_leg2 = t556 * t911 + t846;
-        let grod_wx_leg2 = t546 * minus_minus_grod_vy_leg2 - t538 * grod_vz_leg2;
-        let grod_wy_leg2 = t532 * grod_vz_leg2 - t546 * grod_vx_leg2;
-        let t963 = -minus_minus_rate_rod_leg2;
-        let t971 = pose[1] + t26 - 0.3804226065180615;
-        let t974 = pose[0] + t12 + 0.12360679774997894;
-        let t976 = 0.9510565162951536 * t971 - 0.30901699437494734 * t974;
-        let t978 = pose[2] + t44;
-        let t980 = t976 * t976 + t978 * t978;
-        let t981 = ::overact::math::sqrt(t980);
-        ::overact::guard::leg(t981, 0.5513142860385972, "leg3")?;
-        let t982 = 1.0 / t981;
-        let c_cross_leg3 = t978 * t982;
-        let t984 = 0.30901699437494734 * c_cross_leg3;
-        let gcross_vx_leg3 = t982 * t984;
-        let t988 = 0.9510565162951536 * t974 + 0.30901699437494734 * t971;
-        let t990 = t980 + t988 * t988;
-        ::overact::guard::reach(t990, "leg3")?;
-        let t991 = ::overact::math::sqrt(t990);
-        ::overact::guard::leg(t991, 0.5619721604570214, "leg3")?;
-        let t992 = 1.0 / t991;
-        let c_cylinder_leg3 = t981 * t992;
-        let minus_s_cross_leg3 = t976 * t982;
-        let t995 = 0.30901699437494734 * minus_s_cross_leg3;
-        let s_cylinder_leg3 = t988 / t991;
-        let t999 = t995 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
-        let t1000 = twist[0] + t73;
-        let t1003 = 0.9510565162951536 * minus_s_cross_leg3;
-        let t1005 = 0.30901699437494734 * c_cylinder_leg3 - t1003 * s_cylinder_leg3;
-        let t1006 = twist[1] + t86;
-        let t1009 = c_cross_leg3 * s_cylinder_leg3;
-        let t1010 = twist[2] + t97;
-        let rate_cylinder_leg3 = t992 * (t999 * t1000 + t1005 * t1006 - t1009 * t1010);
-        let t1014 = 0.9510565162951536 * c_cross_leg3;
-        let t1019 = t1014 * t1006 - t984 * t1000 - minus_s_cross_leg3 * t1010;
-        let minus_rate_cross_leg3 = t982 * t1019;
-        let t1021 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1022 = rate_cylinder_leg3 * t1021;
-        let t1023 = acceleration[1] + t158;
-        let t1025 = acceleration[0] + t134;
-        let t1028 = acceleration[2] + t181;
-        let t1030 = t1014 * t1023 - t984 * t1025 - minus_s_cross_leg3 * t1028;
-        let t1031 = t991 * t1022;
-        let t1034 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_minus_grod_vx_leg3 = t974 * t992;
-        let grod_vy_leg3 = t971 * t992;
+        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t580
+            + grod_vx_leg2 * t570 + grod_vz_leg2 * t590;
+        let t624 = 2.0 * minus_minus_rate_rod_leg2;
+        let t626 = t615 - t594 * t624;
+        let t628 = 0.20791169081775931 * minus_s_cross_leg2;
+        let t631 = t628 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
+        let t634 = c_cross_leg2 * s_cylinder_leg2;
+        let t636 = t558 * t570 - t631 * t580 - t634 * t590;
+        let minus_rate_dot_cross_leg2 = t553 * (t626 + 2.0 * (t595 * t636));
+        let rate_cylinder_leg2 = t559 * t636;
+        let t642 = rate_cylinder_leg2 * t594;
+        let t643 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t645 = t642 + t643 + t642;
+        let t646 = s_cylinder_leg2 * t645;
+        let t647 = t646 - minus_rate_dot_cross_leg2;
+        let t649 = t597 - minus_gcross_vx_leg2 * t647;
+        let minus_gcross_vy_leg2 = t553 * t572;
+        let minus_gcylinder_vy_leg2 = t631 * t559;
+        let t653 = minus_gcylinder_vy_leg2 * t596;
+        let t654 = minus_gcross_vy_leg2 * t647 + t653;
+        let gcross_vz_leg2 = t553 * minus_s_cross_leg2;
+        let minus_gcylinder_vz_leg2 = t634 * t559;
+        let t658 = minus_gcylinder_vz_leg2 * t596;
+        let t659 = gcross_vz_leg2 * t647 - t658;
+        let minus_gcross_wx_leg2 = t532 * gcross_vz_leg2 + t540 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t532 * minus_gcylinder_vz_leg2
+            - t540 * minus_gcylinder_vy_leg2;
+        let t667 = gcylinder_wx_leg2 * t596;
+        let t668 = t667 - minus_gcross_wx_leg2 * t647;
+        let minus_gcylinder_wy_leg2 = t540 * gcylinder_vx_leg2
+            + t526 * minus_gcylinder_vz_leg2;
+        let t672 = minus_gcylinder_wy_leg2 * t596;
+        let minus_minus_gcross_wy_leg2 = t540 * minus_gcross_vx_leg2
+            + t526 * gcross_vz_leg2;
+        let t677 = minus_minus_gcross_wy_leg2 * t647 - t672;
+        let gcross_wz_leg2 = t526 * minus_gcross_vy_leg2 - t532 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t526 * minus_gcylinder_vy_leg2
+            + t532 * gcylinder_vx_leg2;
+        let t685 = minus_minus_gcylinder_wz_leg2 * t596;
+        let t686 = gcross_wz_leg2 * t647 + t685;
+        let t687 = t594 * t594;
+        let t688 = t595 * t595;
+        let t689 = t687 - t688;
+        let t694 = c_cylinder_leg2 * t645 + s_cylinder_leg2 * (t626 / t550);
+        let t696 = gcylinder_vx_leg2 * t689 - minus_gcross_vx_leg2 * t694;
+        let t699 = minus_gcross_vy_leg2 * t694 + minus_gcylinder_vy_leg2 * t689;
+        let t702 = gcross_vz_leg2 * t694 - minus_gcylinder_vz_leg2 * t689;
+        let t705 = gcylinder_wx_leg2 * t689 - minus_gcross_wx_leg2 * t694;
+        let t708 = minus_minus_gcross_wy_leg2 * t694 - minus_gcylinder_wy_leg2 * t689;
+        let t711 = gcross_wz_leg2 * t694 + minus_minus_gcylinder_wz_leg2 * t689;
+        let t716 = t558 * t602 - t631 * t607 - t634 * t613;
+        let t718 = t716 - rate_cylinder_leg2 * t624;
+        let t719 = t718 / t550;
+        let rate_dot_cylinder_leg2 = t719 - t596;
+        let t721 = rate_dot_cylinder_leg2 - t596;
+        let t723 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t726 = c_cylinder_leg2 * t721 - s_cylinder_leg2 * (t723 - t687);
+        let t728 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t730 = minus_gcross_vx_leg2 * t726 + gcylinder_vx_leg2 * t728;
+        let t733 = minus_gcylinder_vy_leg2 * t728 - minus_gcross_vy_leg2 * t726;
+        let t736 = gcross_vz_leg2 * t726 + minus_gcylinder_vz_leg2 * t728;
+        let t739 = minus_gcross_wx_leg2 * t726 + gcylinder_wx_leg2 * t728;
+        let t742 = minus_minus_gcross_wy_leg2 * t726 + minus_gcylinder_wy_leg2 * t728;
+        let t745 = gcross_wz_leg2 * t726 - minus_minus_gcylinder_wz_leg2 * t728;
+        let t747 = minus_gcross_vx_leg2 * t646 - t597;
+        let t749 = minus_gcross_vy_leg2 * t646 + t653;
+        let t751 = t658 - gcross_vz_leg2 * t646;
+        let t753 = t667 - minus_gcross_wx_leg2 * t646;
+        let t755 = t672 - minus_minus_gcross_wy_leg2 * t646;
+        let t757 = t685 + gcross_wz_leg2 * t646;
+        let t762 = c_cylinder_leg2 * (t688 - t723) - s_cylinder_leg2 * t719;
+        let t764 = gcylinder_vx_leg2 * t643 - minus_gcross_vx_leg2 * t762;
+        let t767 = minus_gcross_vy_leg2 * t762 + minus_gcylinder_vy_leg2 * t643;
+        let t770 = gcross_vz_leg2 * t762 - minus_gcylinder_vz_leg2 * t643;
+        let t773 = gcylinder_wx_leg2 * t643 - minus_gcross_wx_leg2 * t762;
+        let t776 = minus_minus_gcross_wy_leg2 * t762 - minus_gcylinder_wy_leg2 * t643;
+        let t779 = gcross_wz_leg2 * t762 + minus_minus_gcylinder_wz_leg2 * t643;
+        let t780 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t781 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t782 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t783 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t784 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t785 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t786 = 9.81 * minus_s_cross_leg2;
+        let t787 = s_cylinder_leg2 * t786;
+        let t789 = 9.81 * grod_vz_leg2;
+        let t807 = t559 * t789;
+        let t810 = c_cylinder_leg2 * t786;
+        let t812 = 9.81 * t634;
+        let minus_grod_wz_leg2 = t526 * minus_minus_grod_vy_leg2 - t532 * grod_vx_leg2;
+        let t825 = 9.81 * c_cross_leg2;
+        let t836 = minus_minus_grod_vy_leg2 * t607 + grod_vx_leg2 * t602
+            + grod_vz_leg2 * t613;
+        let t837 = t789 + t836;
+        let t840 = t837 + t550 * (t688 + t723);
+        let t843 = t786 - t615;
+        let t845 = t544 * t645 - s_cylinder_leg2 * t843;
+        let t849 = gcylinder_vx_leg2 * t840 + minus_gcross_vx_leg2 * t845
+            + grod_vx_leg2 * t721;
+        let t854 = minus_minus_grod_vy_leg2 * t721 + minus_gcross_vy_leg2 * t845
+            - minus_gcylinder_vy_leg2 * t840;
+        let t859 = gcross_vz_leg2 * t845 + minus_gcylinder_vz_leg2 * t840
+            - grod_vz_leg2 * t721;
+        let t871 = t716 - t812;
+        let t874 = t592 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t871 - c_cylinder_leg2 * t837);
+        let t877 = minus_gcross_vx_leg2 * t874 + t555 * minus_rate_dot_cross_leg2;
+        let t880 = minus_gcross_vy_leg2 * t874 + t628 * minus_rate_dot_cross_leg2;
+        let t883 = gcross_vz_leg2 * t874 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t893 = t718 + t871;
+        let t896 = c_cylinder_leg2 * (t843 - t626);
+        let t899 = t687 + t723;
+        let t901 = gcylinder_vx_leg2 * t893 - minus_gcross_vx_leg2 * t896
+            - grod_vx_leg2 * t899;
+        let t906 = minus_minus_grod_vy_leg2 * t899 + minus_gcross_vy_leg2 * t896
+            + minus_gcylinder_vy_leg2 * t893;
+        let t911 = gcross_vz_leg2 * t896 - minus_gcylinder_vz_leg2 * t893
+            - grod_vz_leg2 * t899;
+        let t921 = t486 - t612;
+        let minus_minus_rate_dot_rod_leg2 = t550 * t899 + t836;
+        let grod_wx_leg2 = t540 * minus_minus_grod_vy_leg2 - t532 * grod_vz_leg2;
+        let grod_wy_leg2 = t526 * grod_vz_leg2 - t540 * grod_vx_leg2;
+        let t951 = -minus_minus_rate_rod_leg2;
+        let t959 = pose[1] + t40 - 0.3804226065180615;
+        let t962 = pose[0] + t26 + 0.12360679774997894;
+        let t964 = 0.9510565162951536 * t959 - 0.30901699437494734 * t962;
+        let t966 = pose[2] + t10;
+        let t968 = t964 * t964 + t966 * t966;
+        let t969 = ::overact::math::sqrt(t968);
+        ::overact::guard::leg(t969, 0.5513142860385972, "leg3")?;
+        let t970 = 1.0 / t969;
+        let c_cross_leg3 = t966 * t970;
+        let t972 = 0.30901699437494734 * c_cross_leg3;
+        let gcross_vx_leg3 = t970 * t972;
+        let t976 = 0.9510565162951536 * t962 + 0.30901699437494734 * t959;
+        let t978 = t968 + t976 * t976;
+        ::overact::guard::reach(t978, "leg3")?;
+        let t979 = ::overact::math::sqrt(t978);
+        ::overact::guard::leg(t979, 0.5619721604570214, "leg3")?;
+        let c_cylinder_leg3 = t969 / t979;
+        let t981 = 1.0 / t979;
+        let t982 = 0.9510565162951536 * c_cross_leg3;
+        let t983 = acceleration[1] + t100;
+        let t985 = acceleration[0] + t75;
+        let minus_s_cross_leg3 = t964 * t970;
+        let t989 = acceleration[2] + t124;
+        let t991 = t982 * t983 - t972 * t985 - minus_s_cross_leg3 * t989;
+        let t992 = twist[1] + t159;
+        let t994 = twist[0] + t146;
+        let t997 = twist[2] + t170;
+        let t999 = t982 * t992 - t972 * t994 - minus_s_cross_leg3 * t997;
+        let minus_rate_cross_leg3 = t970 * t999;
+        let t1001 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_minus_grod_vx_leg3 = t962 * t981;
+        let grod_vy_leg3 = t959 / t979;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t1000
-            + grod_vy_leg3 * t1006 + grod_vz_leg3 * t1010;
-        let t1043 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = t982 * (t1030 + t1031 + t1031 - t1034 * t1043);
-        let t1047 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1049 = t1022 + t1022 - t1047;
-        let t1050 = c_cylinder_leg3 * t1049;
-        let gcylinder_vx_leg3 = t999 * t992;
-        let t1053 = t1034 * t1021;
-        let t1054 = gcylinder_vx_leg3 * t1053;
-        let t1055 = gcross_vx_leg3 * t1050 + t1054;
-        let gcylinder_vy_leg3 = t1005 * t992;
-        let t1057 = gcylinder_vy_leg3 * t1053;
-        let minus_gcross_vy_leg3 = t982 * t1014;
-        let t1060 = t1057 - minus_gcross_vy_leg3 * t1050;
-        let gcross_vz_leg3 = t982 * minus_s_cross_leg3;
-        let minus_gcylinder_vz_leg3 = t1009 * t992;
-        let t1064 = minus_gcylinder_vz_leg3 * t1053;
-        let t1065 = gcross_vz_leg3 * t1050 - t1064;
-        let gcross_wx_leg3 = t26 * gcross_vz_leg3 + t44 * minus_gcross_vy_leg3;
-        let minus_gcylinder_wx_leg3 = t26 * minus_gcylinder_vz_leg3
-            + t44 * gcylinder_vy_leg3;
-        let t1073 = minus_gcylinder_wx_leg3 * t1053;
-        let t1074 = gcross_wx_leg3 * t1050 - t1073;
-        let gcross_wy_leg3 = t44 * gcross_vx_leg3 - t12 * gcross_vz_leg3;
-        let gcylinder_wy_leg3 = t44 * gcylinder_vx_leg3 + t12 * minus_gcylinder_vz_leg3;
-        let t1082 = gcylinder_wy_leg3 * t1053;
-        let t1083 = gcross_wy_leg3 * t1050 + t1082;
-        let gcylinder_wz_leg3 = t12 * gcylinder_vy_leg3 - t26 * gcylinder_vx_leg3;
-        let t1087 = gcylinder_wz_leg3 * t1053;
-        let minus_gcross_wz_leg3 = t12 * minus_gcross_vy_leg3 + t26 * gcross_vx_leg3;
-        let t1092 = t1087 - minus_gcross_wz_leg3 * t1050;
-        let t1093 = rate_cylinder_leg3 * t1034;
-        let t1094 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1096 = t1093 + t1094 + t1093;
-        let t1099 = c_cylinder_leg3 * t1096 - s_cylinder_leg3 * t1049;
-        let t1101 = t1034 * t1034;
-        let t1102 = t1021 * t1021;
-        let t1103 = t1101 - t1102;
-        let t1105 = gcross_vx_leg3 * t1099 + gcylinder_vx_leg3 * t1103;
-        let t1108 = gcylinder_vy_leg3 * t1103 - minus_gcross_vy_leg3 * t1099;
-        let t1111 = gcross_vz_leg3 * t1099 - minus_gcylinder_vz_leg3 * t1103;
-        let t1114 = gcross_wx_leg3 * t1099 - minus_gcylinder_wx_leg3 * t1103;
-        let t1117 = gcross_wy_leg3 * t1099 + gcylinder_wy_leg3 * t1103;
-        let t1120 = gcylinder_wz_leg3 * t1103 - minus_gcross_wz_leg3 * t1099;
-        let t1125 = t999 * t1025 + t1005 * t1023 - t1009 * t1028;
-        let rate_dot_cylinder_leg3 = t992
-            * (t1125 - t991 * t1053 - rate_cylinder_leg3 * t1043);
-        let t1131 = rate_dot_cylinder_leg3 - t1053;
-        let t1133 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1136 = c_cylinder_leg3 * t1131 - s_cylinder_leg3 * (t1133 - t1101);
-        let t1139 = gcross_vx_leg3 * t1136 - gcylinder_vx_leg3 * t1047;
-        let t1142 = minus_gcross_vy_leg3 * t1136 + gcylinder_vy_leg3 * t1047;
-        let t1145 = gcross_vz_leg3 * t1136 + minus_gcylinder_vz_leg3 * t1047;
-        let t1148 = gcross_wx_leg3 * t1136 + minus_gcylinder_wx_leg3 * t1047;
-        let t1151 = gcross_wy_leg3 * t1136 - gcylinder_wy_leg3 * t1047;
-        let t1154 = minus_gcross_wz_leg3 * t1136 + gcylinder_wz_leg3 * t1047;
-        let t1155 = s_cylinder_leg3 * t1096;
-        let t1157 = gcross_vx_leg3 * t1155 + t1054;
-        let t1159 = minus_gcross_vy_leg3 * t1155 - t1057;
-        let t1161 = t1064 - gcross_vz_leg3 * t1155;
-        let t1163 = t1073 - gcross_wx_leg3 * t1155;
-        let t1165 = gcross_wy_leg3 * t1155 + t1082;
-        let t1167 = minus_gcross_wz_leg3 * t1155 - t1087;
-        let t1170 = t1053 + rate_dot_cylinder_leg3;
-        let t1172 = c_cylinder_leg3 * (t1102 - t1133) - s_cylinder_leg3 * t1170;
-        let t1175 = gcross_vx_leg3 * t1172 + gcylinder_vx_leg3 * t1094;
-        let t1178 = gcylinder_vy_leg3 * t1094 - minus_gcross_vy_leg3 * t1172;
-        let t1181 = gcross_vz_leg3 * t1172 - minus_gcylinder_vz_leg3 * t1094;
-        let t1184 = gcross_wx_leg3 * t1172 - minus_gcylinder_wx_leg3 * t1094;
-        let t1187 = gcross_wy_leg3 * t1172 + gcylinder_wy_leg3 * t1094;
-        let t1190 = gcylinder_wz_leg3 * t1094 - minus_gcross_wz_leg3 * t1172;
-        let t1191 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t1192 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t1193 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t1194 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t1195 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t1196 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t1197 = 9.81 * minus_s_cross_leg3;
-        let t1198 = s_cylinder_leg3 * t1197;
-        let t1200 = 9.81 * grod_vz_leg3;
-        let t1218 = t992 * t1200;
-        let t1221 = c_cylinder_leg3 * t1197;
-        let t1223 = 9.81 * t1009;
-        let grod_wz_leg3 = t12 * grod_vy_leg3 - t26 * minus_minus_grod_vx_leg3;
-        let t1236 = 9.81 * c_cross_leg3;
-        let t1244 = t1197 - t1030;
-        let t1246 = t981 * t1096 - s_cylinder_leg3 * t1244;
-        let t1252 = minus_minus_grod_vx_leg3 * t1025 + grod_vy_leg3 * t1023
-            + grod_vz_leg3 * t1028;
-        let t1253 = t1200 + t1252;
-        let t1256 = t1253 + t991 * (t1102 + t1133);
-        let t1260 = gcross_vx_leg3 * t1246 - gcylinder_vx_leg3 * t1256
-            - minus_minus_grod_vx_leg3 * t1131;
-        let t1265 = gcylinder_vy_leg3 * t1256 + minus_gcross_vy_leg3 * t1246
-            + grod_vy_leg3 * t1131;
-        let t1270 = gcross_vz_leg3 * t1246 + minus_gcylinder_vz_leg3 * t1256
-            - grod_vz_leg3 * t1131;
-        let t1282 = t1125 - t1223;
-        let t1285 = t1019 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1282 - c_cylinder_leg3 * t1253);
-        let t1288 = gcross_vx_leg3 * t1285 + t995 * minus_rate_dot_cross_leg3;
-        let t1291 = minus_gcross_vy_leg3 * t1285 + t1003 * minus_rate_dot_cross_leg3;
-        let t1294 = gcross_vz_leg3 * t1285 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t1306 = t981 * t1049 + c_cylinder_leg3 * t1244;
-        let t1309 = t991 * t1170 + t1282;
-        let t1312 = t1101 + t1133;
-        let t1314 = gcross_vx_leg3 * t1306 + gcylinder_vx_leg3 * t1309
-            - minus_minus_grod_vx_leg3 * t1312;
-        let t1319 = gcylinder_vy_leg3 * t1309 - minus_gcross_vy_leg3 * t1306
-            - grod_vy_leg3 * t1312;
-        let t1324 = gcross_vz_leg3 * t1306 - minus_gcylinder_vz_leg3 * t1309
-            - grod_vz_leg3 * t1312;
-        let t1334 = 9.81 + t1028;
-        let minus_minus_rate_dot_rod_leg3 = t991 * t1312 + t1252;
-        let grod_wx_leg3 = t26 * grod_vz_leg3 - t44 * grod_vy_leg3;
-        let minus_grod_wy_leg3 = t12 * grod_vz_leg3 - t44 * minus_minus_grod_vx_leg3;
-        let t1364 = -minus_minus_rate_rod_leg3;
-        let t1372 = pose[1] + t536 - 0.2972579301909578;
-        let t1375 = pose[0] + t530 + 0.2676522425435432;
-        let t1377 = 0.7431448254773945 * t1372 - 0.6691306063588579 * t1375;
-        let t1379 = pose[2] + t544;
-        let t1381 = t1377 * t1377 + t1379 * t1379;
-        let t1382 = ::overact::math::sqrt(t1381);
-        ::overact::guard::leg(t1382, 0.5513142860385972, "leg4")?;
-        let t1383 = 1.0 / t1382;
-        let c_cross_leg4 = t1379 * t1383;
-        let t1385 = 0.6691306063588579 * c_cross_leg4;
-        let gcross_vx_leg4 = t1383 * t1385;
-        let t1389 = 0.7431448254773945 * t1375 + 0.6691306063588579 * t1372;
-        let t1391 = t1381 + t1389 * t1389;
-        ::overact::guard::reach(t1391, "leg4")?;
-        let t1392 = ::overact::math::sqrt(t1391);
-        ::overact::guard::leg(t1392, 0.5619721604570214, "leg4")?;
-        let t1393 = 1.0 / t1392;
-        let c_cylinder_leg4 = t1382 * t1393;
-        let minus_s_cross_leg4 = t1377 * t1383;
-        let t1396 = 0.6691306063588579 * minus_s_cross_leg4;
-        let s_cylinder_leg4 = t1389 / t1392;
-        let t1400 = t1396 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
-        let t1401 = twist[0] + t571;
-        let t1404 = 0.7431448254773945 * minus_s_cross_leg4;
-        let t1406 = 0.6691306063588579 * c_cylinder_leg4 - t1404 * s_cylinder_leg4;
-        let t1407 = twist[1] + t581;
-        let t1410 = c_cross_leg4 * s_cylinder_leg4;
-        let t1411 = twist[2] + t591;
-        let rate_cylinder_leg4 = t1393 * (t1400 * t1401 + t1406 * t1407 - t1410 * t1411);
-        let t1415 = 0.7431448254773945 * c_cross_leg4;
-        let t1420 = t1415 * t1407 - t1385 * t1401 - minus_s_cross_leg4 * t1411;
-        let minus_rate_cross_leg4 = t1383 * t1420;
-        let t1422 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t1423 = rate_cylinder_leg4 * t1422;
-        let t1424 = acceleration[1] + t622;
-        let t1426 = acceleration[0] + t617;
-        let t1429 = acceleration[2] + t628;
-        let t1431 = t1415 * t1424 - t1385 * t1426 - minus_s_cross_leg4 * t1429;
-        let t1432 = t1392 * t1423;
-        let t1435 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_minus_grod_vx_leg4 = t1375 * t1393;
-        let grod_vy_leg4 = t1372 * t1393;
+        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t994
+            + grod_vy_leg3 * t992 + grod_vz_leg3 * t997;
+        let t1010 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
+        let t1012 = t991 - t1001 * t1010;
+        let t1013 = t981 * t1012;
+        let t1014 = c_cylinder_leg3 * t1013;
+        let t1016 = 0.30901699437494734 * minus_s_cross_leg3;
+        let s_cylinder_leg3 = t976 / t979;
+        let t1020 = t1016 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
+        let gcylinder_vx_leg3 = t1020 * t981;
+        let t1022 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1023 = t1001 * t1022;
+        let t1024 = gcylinder_vx_leg3 * t1023;
+        let t1025 = t1024 - gcross_vx_leg3 * t1014;
+        let t1027 = 0.9510565162951536 * minus_s_cross_leg3;
+        let t1029 = 0.30901699437494734 * c_cylinder_leg3 - t1027 * s_cylinder_leg3;
+        let gcylinder_vy_leg3 = t1029 * t981;
+        let t1031 = gcylinder_vy_leg3 * t1023;
+        let minus_gcross_vy_leg3 = t970 * t982;
+        let t1034 = t1031 + minus_gcross_vy_leg3 * t1014;
+        let gcross_vz_leg3 = t970 * minus_s_cross_leg3;
+        let t1037 = c_cross_leg3 * s_cylinder_leg3;
+        let minus_gcylinder_vz_leg3 = t1037 * t981;
+        let t1039 = minus_gcylinder_vz_leg3 * t1023;
+        let t1040 = gcross_vz_leg3 * t1014 + t1039;
+        let gcross_wx_leg3 = t40 * gcross_vz_leg3 + t10 * minus_gcross_vy_leg3;
+        let minus_gcylinder_wx_leg3 = t40 * minus_gcylinder_vz_leg3
+            + t10 * gcylinder_vy_leg3;
+        let t1048 = minus_gcylinder_wx_leg3 * t1023;
+        let t1049 = gcross_wx_leg3 * t1014 + t1048;
+        let gcross_wy_leg3 = t10 * gcross_vx_leg3 - t26 * gcross_vz_leg3;
+        let gcylinder_wy_leg3 = t10 * gcylinder_vx_leg3 + t26 * minus_gcylinder_vz_leg3;
+        let t1057 = gcylinder_wy_leg3 * t1023;
+        let t1058 = t1057 - gcross_wy_leg3 * t1014;
+        let gcylinder_wz_leg3 = t26 * gcylinder_vy_leg3 - t40 * gcylinder_vx_leg3;
+        let t1062 = gcylinder_wz_leg3 * t1023;
+        let minus_gcross_wz_leg3 = t26 * minus_gcross_vy_leg3 + t40 * gcross_vx_leg3;
+        let t1067 = t1062 + minus_gcross_wz_leg3 * t1014;
+        let t1072 = t1020 * t994 + t1029 * t992 - t1037 * t997;
+        let rate_cylinder_leg3 = t981 * t1072;
+        let t1074 = rate_cylinder_leg3 * t1001;
+        let minus_rate_dot_cross_leg3 = t970 * (t1012 + 2.0 * (t1072 * t1022));
+        let t1079 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1081 = t1074 + t1079 + t1074;
+        let t1084 = c_cylinder_leg3 * t1081 + s_cylinder_leg3 * t1013;
+        let t1086 = t1001 * t1001;
+        let t1087 = t1022 * t1022;
+        let t1088 = t1086 - t1087;
+        let t1090 = gcross_vx_leg3 * t1084 + gcylinder_vx_leg3 * t1088;
+        let t1093 = gcylinder_vy_leg3 * t1088 - minus_gcross_vy_leg3 * t1084;
+        let t1096 = gcross_vz_leg3 * t1084 - minus_gcylinder_vz_leg3 * t1088;
+        let t1099 = gcross_wx_leg3 * t1084 - minus_gcylinder_wx_leg3 * t1088;
+        let t1102 = gcross_wy_leg3 * t1084 + gcylinder_wy_leg3 * t1088;
+        let t1105 = gcylinder_wz_leg3 * t1088 - minus_gcross_wz_leg3 * t1084;
+        let t1110 = t1020 * t985 + t1029 * t983 - t1037 * t989;
+        let t1112 = t1110 - rate_cylinder_leg3 * t1010;
+        let t1113 = t981 * t1112;
+        let rate_dot_cylinder_leg3 = t1113 - t1023;
+        let t1115 = rate_dot_cylinder_leg3 - t1023;
+        let t1117 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1120 = c_cylinder_leg3 * t1115 - s_cylinder_leg3 * (t1117 - t1086);
+        let t1122 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1124 = gcross_vx_leg3 * t1120 - gcylinder_vx_leg3 * t1122;
+        let t1127 = minus_gcross_vy_leg3 * t1120 + gcylinder_vy_leg3 * t1122;
+        let t1130 = gcross_vz_leg3 * t1120 + minus_gcylinder_vz_leg3 * t1122;
+        let t1133 = gcross_wx_leg3 * t1120 + minus_gcylinder_wx_leg3 * t1122;
+        let t1136 = gcross_wy_leg3 * t1120 - gcylinder_wy_leg3 * t1122;
+        let t1139 = minus_gcross_wz_leg3 * t1120 + gcylinder_wz_leg3 * t1122;
+        let t1140 = minus_rate_dot_cross_leg3 - t1014;
+        let t1142 = gcross_vx_leg3 * t1140 + t1024;
+        let t1144 = minus_gcross_vy_leg3 * t1140 - t1031;
+        let t1146 = t1039 - gcross_vz_leg3 * t1140;
+        let t1148 = t1048 - gcross_wx_leg3 * t1140;
+        let t1150 = gcross_wy_leg3 * t1140 + t1057;
+        let t1152 = minus_gcross_wz_leg3 * t1140 - t1062;
+        let t1156 = c_cylinder_leg3 * (t1087 - t1117) - s_cylinder_leg3 * t1113;
+        let t1159 = gcross_vx_leg3 * t1156 + gcylinder_vx_leg3 * t1079;
+        let t1162 = gcylinder_vy_leg3 * t1079 - minus_gcross_vy_leg3 * t1156;
+        let t1165 = gcross_vz_leg3 * t1156 - minus_gcylinder_vz_leg3 * t1079;
+        let t1168 = gcross_wx_leg3 * t1156 - minus_gcylinder_wx_leg3 * t1079;
+        let t1171 = gcross_wy_leg3 * t1156 + gcylinder_wy_leg3 * t1079;
+        let t1174 = gcylinder_wz_leg3 * t1079 - minus_gcross_wz_leg3 * t1156;
+        let t1175 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t1176 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t1177 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t1178 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t1179 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t1180 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t1181 = 9.81 * minus_s_cross_leg3;
+        let t1182 = s_cylinder_leg3 * t1181;
+        let t1184 = 9.81 * grod_vz_leg3;
+        let t1202 = t1184 / t979;
+        let t1205 = c_cylinder_leg3 * t1181;
+        let t1207 = 9.81 * t1037;
+        let grod_wz_leg3 = t26 * grod_vy_leg3 - t40 * minus_minus_grod_vx_leg3;
+        let t1220 = 9.81 * c_cross_leg3;
+        let t1228 = t1181 - t991;
+        let t1230 = t969 * t1081 - s_cylinder_leg3 * t1228;
+        let t1236 = minus_minus_grod_vx_leg3 * t985 + grod_vy_leg3 * t983
+            + grod_vz_leg3 * t989;
+        let t1237 = t1184 + t1236;
+        let t1240 = t1237 + t979 * (t1087 + t1117);
+        let t1244 = gcross_vx_leg3 * t1230 - gcylinder_vx_leg3 * t1240
+            - minus_minus_grod_vx_leg3 * t1115;
+        let t1249 = gcylinder_vy_leg3 * t1240 + minus_gcross_vy_leg3 * t1230
+            + grod_vy_leg3 * t1115;
+        let t1254 = gcross_vz_leg3 * t1230 + minus_gcylinder_vz_leg3 * t1240
+            - grod_vz_leg3 * t1115;
+        let t1266 = t1110 - t1207;
+        let t1269 = t999 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1266 - c_cylinder_leg3 * t1237);
+        let t1272 = gcross_vx_leg3 * t1269 + t1016 * minus_rate_dot_cross_leg3;
+        let t1275 = minus_gcross_vy_leg3 * t1269 + t1027 * minus_rate_dot_cross_leg3;
+        let t1278 = gcross_vz_leg3 * t1269 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t1289 = c_cylinder_leg3 * (t1228 - t1012);
+        let t1291 = t1112 + t1266;
+        let t1294 = t1086 + t1117;
+        let t1296 = gcross_vx_leg3 * t1289 + gcylinder_vx_leg3 * t1291
+            - minus_minus_grod_vx_leg3 * t1294;
+        let t1301 = gcylinder_vy_leg3 * t1291 - minus_gcross_vy_leg3 * t1289
+            - grod_vy_leg3 * t1294;
+        let t1306 = gcross_vz_leg3 * t1289 - minus_gcylinder_vz_leg3 * t1291
+            - grod_vz_leg3 * t1294;
+        let t1316 = t124 + t486;
+        let minus_minus_rate_dot_rod_leg3 = t979 * t1294 + t1236;
+        let grod_wx_leg3 = t40 * grod_vz_leg3 - t10 * grod_vy_leg3;
+        let minus_grod_wy_leg3 = t26 * grod_vz_leg3 - t10 * minus_minus_grod_vx_leg3;
+        let t1346 = -minus_minus_rate_rod_leg3;
+        let t1354 = pose[1] + t530 - 0.2972579301909578;
+        let t1357 = pose[0] + t524 + 0.2676522425435432;
+        let t1359 = 0.7431448254773945 * t1354 - 0.6691306063588579 * t1357;
+        let t1361 = pose[2] + t538;
+        let t1363 = t1359 * t1359 + t1361 * t1361;
+        let t1364 = ::overact::math::sqrt(t1363);
+        ::overact::guard::leg(t1364, 0.5513142860385972, "leg4")?;
+        let t1365 = 1.0 / t1364;
+        let c_cross_leg4 = t1361 * t1365;
+        let t1367 = 0.6691306063588579 * c_cross_leg4;
+        let gcross_vx_leg4 = t1365 * t1367;
+        let t1369 = 0.7431448254773945 * c_cross_leg4;
+        let t1370 = acceleration[1] + t604;
+        let t1372 = acceleration[0] + t599;
+        let minus_s_cross_leg4 = t1359 * t1365;
+        let t1376 = acceleration[2] + t610;
+        let t1378 = t1369 * t1370 - t1367 * t1372 - minus_s_cross_leg4 * t1376;
+        let t1381 = 0.7431448254773945 * t1357 + 0.6691306063588579 * t1354;
+        let t1383 = t1363 + t1381 * t1381;
+        ::overact::guard::reach(t1383, "leg4")?;
+        let t1384 = ::overact::math::sqrt(t1383);
+        ::overact::guard::leg(t1384, 0.5619721604570214, "leg4")?;
+        let c_cylinder_leg4 = t1364 / t1384;
+        let t1386 = twist[1] + t575;
+        let t1388 = twist[0] + t565;
+        let t1391 = twist[2] + t585;
+        let t1393 = t1369 * t1386 - t1367 * t1388 - minus_s_cross_leg4 * t1391;
+        let minus_rate_cross_leg4 = t1365 * t1393;
+        let t1395 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_minus_grod_vx_leg4 = t1357 / t1384;
+        let grod_vy_leg4 = t1354 / t1384;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t1401
-            + grod_vy_leg4 * t1407 + grod_vz_leg4 * t1411;
-        let t1444 = minus_minus_rate_rod_leg4 + minus_minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = t1383 * (t1431 + t1432 + t1432 - t1435 * t1444);
-        let t1448 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1450 = t1423 + t1423 - t1448;
-        let t1451 = c_cylinder_leg4 * t1450;
-        let gcylinder_vx_leg4 = t1400 * t1393;
-        let t1454 = t1435 * t1422;
-        let t1455 = gcylinder_vx_leg4 * t1454;
-        let t1456 = gcross_vx_leg4 * t1451 + t1455;
-        let gcylinder_vy_leg4 = t1406 * t1393;
-        let t1458 = gcylinder_vy_leg4 * t1454;
-        let minus_gcross_vy_leg4 = t1383 * t1415;
-        let t1461 = t1458 - minus_gcross_vy_leg4 * t1451;
-        let gcross_vz_leg4 = t1383 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t1410 * t1393;
-        let t1465 = minus_gcylinder_vz_leg4 * t1454;
-        let t1466 = gcross_vz_leg4 * t1451 - t1465;
-        let gcross_wx_leg4 = t536 * gcross_vz_leg4 + t544 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t536 * minus_gcylinder_vz_leg4
-            + t544 * gcylinder_vy_leg4;
-        let t1474 = minus_gcylinder_wx_leg4 * t1454;
-        let t1475 = gcross_wx_leg4 * t1451 - t1474;
-        let gcross_wy_leg4 = t544 * gcross_vx_leg4 - t530 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t544 * gcylinder_vx_leg4
-            + t530 * minus_gcylinder_vz_leg4;
-        let t1483 = gcylinder_wy_leg4 * t1454;
-        let t1484 = gcross_wy_leg4 * t1451 + t1483;
-        let gcylinder_wz_leg4 = t530 * gcylinder_vy_leg4 - t536 * gcylinder_vx_leg4;
-        let t1488 = gcylinder_wz_leg4 * t1454;
-        let minus_gcross_wz_leg4 = t530 * minus_gcross_vy_leg4 + t536 * gcross_vx_leg4;
-        let t1493 = t1488 - minus_gcross_wz_leg4 * t1451;
-        let t1494 = rate_cylinder_leg4 * t1435;
-        let t1495 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1497 = t1494 + t1495 + t1494;
-        let t1500 = c_cylinder_leg4 * t1497 - s_cylinder_leg4 * t1450;
-        let t1502 = t1435 * t1435;
-        let t1503 = t1422 * t1422;
-        let t1504 = t1502 - t1503;
-        let t1506 = gcross_vx_leg4 * t1500 + gcylinder_vx_leg4 * t1504;
-        let t1509 = gcylinder_vy_leg4 * t1504 - minus_gcross_vy_leg4 * t1500;
-        let t1512 = gcross_vz_leg4 * t1500 - minus_gcylinder_vz_leg4 * t1504;
-        let t1515 = gcross_wx_leg4 * t1500 - minus_gcylinder_wx_leg4 * t1504;
-        let t1518 = gcross_wy_leg4 * t1500 + gcylinder_wy_leg4 * t1504;
-        let t1521 = gcylinder_wz_leg4 * t1504 - minus_gcross_wz_leg4 * t1500;
-        let t1526 = t1400 * t1426 + t1406 * t1424 - t1410 * t1429;
-        let rate_dot_cylinder_leg4 = t1393
-            * (t1526 - t1392 * t1454 - rate_cylinder_leg4 * t1444);
-        let t1532 = rate_dot_cylinder_leg4 - t1454;
-        let t1534 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1537 = c_cylinder_leg4 * t1532 - s_cylinder_leg4 * (t1534 - t1502);
-        let t1540 = gcross_vx_leg4 * t1537 - gcylinder_vx_leg4 * t1448;
-        let t1543 = minus_gcross_vy_leg4 * t1537 + gcylinder_vy_leg4 * t1448;
-        let t1546 = gcross_vz_leg4 * t1537 + minus_gcylinder_vz_leg4 * t1448;
-        let t1549 = gcross_wx_leg4 * t1537 + minus_gcylinder_wx_leg4 * t1448;
-        let t1552 = gcross_wy_leg4 * t1537 - gcylinder_wy_leg4 * t1448;
-        let t1555 = minus_gcross_wz_leg4 * t1537 + gcylinder_wz_leg4 * t1448;
-        let t1556 = s_cylinder_leg4 * t1497;
-        let t1558 = gcross_vx_leg4 * t1556 + t1455;
-        let t1560 = minus_gcross_vy_leg4 * t1556 - t1458;
-        let t1562 = t1465 - gcross_vz_leg4 * t1556;
-        let t1564 = t1474 - gcross_wx_leg4 * t1556;
-        let t1566 = gcross_wy_leg4 * t1556 + t1483;
-        let t1568 = minus_gcross_wz_leg4 * t1556 - t1488;
-        let t1571 = t1454 + rate_dot_cylinder_leg4;
-        let t1573 = c_cylinder_leg4 * (t1503 - t1534) - s_cylinder_leg4 * t1571;
-        let t1576 = gcross_vx_leg4 * t1573 + gcylinder_vx_leg4 * t1495;
-        let t1579 = gcylinder_vy_leg4 * t1495 - minus_gcross_vy_leg4 * t1573;
-        let t1582 = gcross_vz_leg4 * t1573 - minus_gcylinder_vz_leg4 * t1495;
-        let t1585 = gcross_wx_leg4 * t1573 - minus_gcylinder_wx_leg4 * t1495;
-        let t1588 = gcross_wy_leg4 * t1573 + gcylinder_wy_leg4 * t1495;
-        let t1591 = gcylinder_wz_leg4 * t1495 - minus_gcross_wz_leg4 * t1573;
-        let t1592 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t1593 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t1594 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t1595 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t1596 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t1597 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t1598 = 9.81 * minus_s_cross_leg4;
-        let t1599 = s_cylinder_leg4 * t1598;
-        let t1601 = 9.81 * grod_vz_leg4;
-        let t1619 = t1393 * t1601;
-        let t1622 = c_cylinder_leg4 * t1598;
-        let t1624 = 9.81 * t1410;
-        let grod_wz_leg4 = t530 * grod_vy_leg4 - t536 * minus_minus_grod_vx_leg4;
-        let t1637 = 9.81 * c_cross_leg4;
-        let t1645 = t1598 - t1431;
-        let t1647 = t1382 * t1497 - s_cylinder_leg4 * t1645;
-        let t1653 = minus_minus_grod_vx_leg4 * t1426 + grod_vy_leg4 * t1424
-            + grod_vz_leg4 * t1429;
-        let t1654 = t1601 + t1653;
-        let t1657 = t1654 + t1392 * (t1503 + t1534);
-        let t1661 = gcross_vx_leg4 * t1647 - gcylinder_vx_leg4 * t1657
-            - minus_minus_grod_vx_leg4 * t1532;
-        let t1666 = gcylinder_vy_leg4 * t1657 + minus_gcross_vy_leg4 * t1647
-            + grod_vy_leg4 * t1532;
-        let t1671 = gcross_vz_leg4 * t1647 + minus_gcylinder_vz_leg4 * t1657
-            - grod_vz_leg4 * t1532;
-        let t1683 = t1526 - t1624;
-        let t1686 = t1420 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t1683 - c_cylinder_leg4 * t1654);
-        let t1689 = gcross_vx_leg4 * t1686 + t1396 * minus_rate_dot_cross_leg4;
-        let t1692 = minus_gcross_vy_leg4 * t1686 + t1404 * minus_rate_dot_cross_leg4;
-        let t1695 = gcross_vz_leg4 * t1686 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t1707 = t1382 * t1450 + c_cylinder_leg4 * t1645;
-        let t1710 = t1392 * t1571 + t1683;
-        let t1713 = t1502 + t1534;
-        let t1715 = gcross_vx_leg4 * t1707 + gcylinder_vx_leg4 * t1710
-            - minus_minus_grod_vx_leg4 * t1713;
-        let t1720 = gcylinder_vy_leg4 * t1710 - minus_gcross_vy_leg4 * t1707
-            - grod_vy_leg4 * t1713;
-        let t1725 = gcross_vz_leg4 * t1707 - minus_gcylinder_vz_leg4 * t1710
-            - grod_vz_leg4 * t1713;
-        let t1735 = 9.81 + t1429;
-        let minus_minus_rate_dot_rod_leg4 = t1392 * t1713 + t1653;
-        let grod_wx_leg4 = t536 * grod_vz_leg4 - t544 * grod_vy_leg4;
-        let minus_grod_wy_leg4 = t530 * grod_vz_leg4 - t544 * minus_minus_grod_vx_leg4;
-        let t1765 = -minus_minus_rate_rod_leg4;
-        let t1773 = pose[0] - t15 + 0.2676522425435432;
-        let t1776 = pose[1] - t29 + 0.2972579301909578;
-        let t1778 = 0.6691306063588579 * t1773 + 0.7431448254773945 * t1776;
-        let t1780 = pose[2] - t47;
-        let t1782 = t1778 * t1778 + t1780 * t1780;
-        let t1783 = ::overact::math::sqrt(t1782);
-        ::overact::guard::leg(t1783, 0.5513142860385972, "leg5")?;
-        let t1784 = 1.0 / t1783;
-        let c_cross_leg5 = t1780 * t1784;
-        let t1786 = 0.6691306063588579 * c_cross_leg5;
-        let gcross_vx_leg5 = t1784 * t1786;
-        let t1790 = 0.6691306063588579 * t1776 - 0.7431448254773945 * t1773;
-        let t1792 = t1782 + t1790 * t1790;
-        ::overact::guard::reach(t1792, "leg5")?;
-        let t1793 = ::overact::math::sqrt(t1792);
-        ::overact::guard::leg(t1793, 0.5619721604570214, "leg5")?;
-        let t1794 = 1.0 / t1793;
-        let c_cylinder_leg5 = t1783 * t1794;
-        let s_cross_leg5 = t1778 * t1784;
-        let t1798 = 0.7431448254773945 * s_cross_leg5;
-        let s_cylinder_leg5 = t1790 / t1793;
-        let t1801 = 0.6691306063588579 * c_cylinder_leg5 - t1798 * s_cylinder_leg5;
-        let t1802 = twist[1] + t89;
-        let t1804 = 0.6691306063588579 * s_cross_leg5;
-        let t1807 = t1804 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
-        let t1808 = twist[0] + t76;
-        let t1811 = c_cross_leg5 * s_cylinder_leg5;
-        let t1812 = twist[2] + t100;
-        let rate_cylinder_leg5 = t1794 * (t1801 * t1802 - t1807 * t1808 - t1811 * t1812);
-        let t1818 = 0.7431448254773945 * c_cross_leg5;
-        let t1821 = s_cross_leg5 * t1812 - (t1786 * t1808 + t1818 * t1802);
-        let minus_rate_cross_leg5 = t1784 * t1821;
-        let t1823 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1824 = rate_cylinder_leg5 * t1823;
-        let t1825 = acceleration[2] - t184;
-        let t1827 = acceleration[0] - t137;
-        let t1829 = acceleration[1] - t161;
-        let t1832 = s_cross_leg5 * t1825 - (t1786 * t1827 + t1818 * t1829);
-        let t1833 = t1793 * t1824;
-        let t1836 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_minus_grod_vx_leg5 = t1773 * t1794;
-        let grod_vy_leg5 = t1776 * t1794;
+        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t1388
+            + grod_vy_leg4 * t1386 + grod_vz_leg4 * t1391;
+        let t1404 = 2.0 * minus_minus_rate_rod_leg4;
+        let t1406 = t1378 - t1395 * t1404;
+        let t1407 = 0.6691306063588579 * minus_s_cross_leg4;
+        let s_cylinder_leg4 = t1381 / t1384;
+        let t1411 = t1407 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
+        let t1414 = 0.7431448254773945 * minus_s_cross_leg4;
+        let t1416 = 0.6691306063588579 * c_cylinder_leg4 - t1414 * s_cylinder_leg4;
+        let t1419 = c_cross_leg4 * s_cylinder_leg4;
+        let t1421 = t1411 * t1388 + t1416 * t1386 - t1419 * t1391;
+        let t1422 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_rate_dot_cross_leg4 = t1365 * (t1406 + 2.0 * (t1421 * t1422));
+        let t1427 = 1.0 / t1384;
+        let rate_cylinder_leg4 = t1427 * t1421;
+        let t1429 = rate_cylinder_leg4 * t1395;
+        let t1430 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1432 = t1429 + t1430 + t1429;
+        let t1433 = s_cylinder_leg4 * t1432;
+        let t1434 = t1433 - minus_rate_dot_cross_leg4;
+        let gcylinder_vx_leg4 = t1411 * t1427;
+        let t1437 = t1395 * t1422;
+        let t1438 = gcylinder_vx_leg4 * t1437;
+        let t1439 = gcross_vx_leg4 * t1434 + t1438;
+        let gcylinder_vy_leg4 = t1416 * t1427;
+        let t1441 = gcylinder_vy_leg4 * t1437;
+        let minus_gcross_vy_leg4 = t1365 * t1369;
+        let t1444 = t1441 - minus_gcross_vy_leg4 * t1434;
+        let gcross_vz_leg4 = t1365 * minus_s_cross_leg4;
+        let minus_gcylinder_vz_leg4 = t1419 * t1427;
+        let t1448 = minus_gcylinder_vz_leg4 * t1437;
+        let t1449 = gcross_vz_leg4 * t1434 - t1448;
+        let gcross_wx_leg4 = t530 * gcross_vz_leg4 + t538 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t530 * minus_gcylinder_vz_leg4
+            + t538 * gcylinder_vy_leg4;
+        let t1457 = minus_gcylinder_wx_leg4 * t1437;
+        let t1458 = gcross_wx_leg4 * t1434 - t1457;
+        let gcross_wy_leg4 = t538 * gcross_vx_leg4 - t524 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t538 * gcylinder_vx_leg4
+            + t524 * minus_gcylinder_vz_leg4;
+        let t1466 = gcylinder_wy_leg4 * t1437;
+        let t1467 = gcross_wy_leg4 * t1434 + t1466;
+        let gcylinder_wz_leg4 = t524 * gcylinder_vy_leg4 - t530 * gcylinder_vx_leg4;
+        let t1471 = gcylinder_wz_leg4 * t1437;
+        let minus_gcross_wz_leg4 = t524 * minus_gcross_vy_leg4 + t530 * gcross_vx_leg4;
+        let t1476 = t1471 - minus_gcross_wz_leg4 * t1434;
+        let t1480 = c_cylinder_leg4 * t1432 + s_cylinder_leg4 * (t1406 / t1384);
+        let t1482 = t1395 * t1395;
+        let t1483 = t1422 * t1422;
+        let t1484 = t1482 - t1483;
+        let t1486 = gcross_vx_leg4 * t1480 + gcylinder_vx_leg4 * t1484;
+        let t1489 = gcylinder_vy_leg4 * t1484 - minus_gcross_vy_leg4 * t1480;
+        let t1492 = gcross_vz_leg4 * t1480 - minus_gcylinder_vz_leg4 * t1484;
+        let t1495 = gcross_wx_leg4 * t1480 - minus_gcylinder_wx_leg4 * t1484;
+        let t1498 = gcross_wy_leg4 * t1480 + gcylinder_wy_leg4 * t1484;
+        let t1501 = gcylinder_wz_leg4 * t1484 - minus_gcross_wz_leg4 * t1480;
+        let t1506 = t1411 * t1372 + t1416 * t1370 - t1419 * t1376;
+        let t1508 = t1506 - rate_cylinder_leg4 * t1404;
+        let t1509 = t1427 * t1508;
+        let rate_dot_cylinder_leg4 = t1509 - t1437;
+        let t1511 = rate_dot_cylinder_leg4 - t1437;
+        let t1513 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1516 = c_cylinder_leg4 * t1511 - s_cylinder_leg4 * (t1513 - t1482);
+        let t1518 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1520 = gcross_vx_leg4 * t1516 - gcylinder_vx_leg4 * t1518;
+        let t1523 = minus_gcross_vy_leg4 * t1516 + gcylinder_vy_leg4 * t1518;
+        let t1526 = gcross_vz_leg4 * t1516 + minus_gcylinder_vz_leg4 * t1518;
+        let t1529 = gcross_wx_leg4 * t1516 + minus_gcylinder_wx_leg4 * t1518;
+        let t1532 = gcross_wy_leg4 * t1516 - gcylinder_wy_leg4 * t1518;
+        let t1535 = minus_gcross_wz_leg4 * t1516 + gcylinder_wz_leg4 * t1518;
+        let t1537 = gcross_vx_leg4 * t1433 + t1438;
+        let t1539 = minus_gcross_vy_leg4 * t1433 - t1441;
+        let t1541 = t1448 - gcross_vz_leg4 * t1433;
+        let t1543 = t1457 - gcross_wx_leg4 * t1433;
+        let t1545 = gcross_wy_leg4 * t1433 + t1466;
+        let t1547 = minus_gcross_wz_leg4 * t1433 - t1471;
+        let t1551 = c_cylinder_leg4 * (t1483 - t1513) - s_cylinder_leg4 * t1509;
+        let t1554 = gcross_vx_leg4 * t1551 + gcylinder_vx_leg4 * t1430;
+        let t1557 = gcylinder_vy_leg4 * t1430 - minus_gcross_vy_leg4 * t1551;
+        let t1560 = gcross_vz_leg4 * t1551 - minus_gcylinder_vz_leg4 * t1430;
+        let t1563 = gcross_wx_leg4 * t1551 - minus_gcylinder_wx_leg4 * t1430;
+        let t1566 = gcross_wy_leg4 * t1551 + gcylinder_wy_leg4 * t1430;
+        let t1569 = gcylinder_wz_leg4 * t1430 - minus_gcross_wz_leg4 * t1551;
+        let t1570 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t1571 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t1572 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t1573 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t1574 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t1575 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t1576 = 9.81 * minus_s_cross_leg4;
+        let t1577 = s_cylinder_leg4 * t1576;
+        let t1579 = 9.81 * grod_vz_leg4;
+        let t1597 = t1579 / t1384;
+        let t1600 = c_cylinder_leg4 * t1576;
+        let t1602 = 9.81 * t1419;
+        let grod_wz_leg4 = t524 * grod_vy_leg4 - t530 * minus_minus_grod_vx_leg4;
+        let t1615 = 9.81 * c_cross_leg4;
+        let t1623 = t1576 - t1378;
+        let t1625 = t1364 * t1432 - s_cylinder_leg4 * t1623;
+        let t1631 = minus_minus_grod_vx_leg4 * t1372 + grod_vy_leg4 * t1370
+            + grod_vz_leg4 * t1376;
+        let t1632 = t1579 + t1631;
+        let t1635 = t1632 + t1384 * (t1483 + t1513);
+        let t1639 = gcross_vx_leg4 * t1625 - gcylinder_vx_leg4 * t1635
+            - minus_minus_grod_vx_leg4 * t1511;
+        let t1644 = gcylinder_vy_leg4 * t1635 + minus_gcross_vy_leg4 * t1625
+            + grod_vy_leg4 * t1511;
+        let t1649 = gcross_vz_leg4 * t1625 + minus_gcylinder_vz_leg4 * t1635
+            - grod_vz_leg4 * t1511;
+        let t1661 = t1506 - t1602;
+        let t1664 = t1393 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1661 - c_cylinder_leg4 * t1632);
+        let t1667 = gcross_vx_leg4 * t1664 + t1407 * minus_rate_dot_cross_leg4;
+        let t1670 = minus_gcross_vy_leg4 * t1664 + t1414 * minus_rate_dot_cross_leg4;
+        let t1673 = gcross_vz_leg4 * t1664 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t1684 = c_cylinder_leg4 * (t1623 - t1406);
+        let t1686 = t1508 + t1661;
+        let t1689 = t1482 + t1513;
+        let t1691 = gcross_vx_leg4 * t1684 + gcylinder_vx_leg4 * t1686
+            - minus_minus_grod_vx_leg4 * t1689;
+        let t1696 = gcylinder_vy_leg4 * t1686 - minus_gcross_vy_leg4 * t1684
+            - grod_vy_leg4 * t1689;
+        let t1701 = gcross_vz_leg4 * t1684 - minus_gcylinder_vz_leg4 * t1686
+            - grod_vz_leg4 * t1689;
+        let t1711 = t610 + t486;
+        let minus_minus_rate_dot_rod_leg4 = t1384 * t1689 + t1631;
+        let grod_wx_leg4 = t530 * grod_vz_leg4 - t538 * grod_vy_leg4;
+        let minus_grod_wy_leg4 = t524 * grod_vz_leg4 - t538 * minus_minus_grod_vx_leg4;
+        let t1741 = -minus_minus_rate_rod_leg4;
+        let t1749 = pose[0] - t29 + 0.2676522425435432;
+        let t1752 = pose[1] - t43 + 0.2972579301909578;
+        let t1754 = 0.6691306063588579 * t1749 + 0.7431448254773945 * t1752;
+        let t1756 = pose[2] - t13;
+        let t1758 = t1754 * t1754 + t1756 * t1756;
+        let t1759 = ::overact::math::sqrt(t1758);
+        ::overact::guard::leg(t1759, 0.5513142860385972, "leg5")?;
+        let t1760 = 1.0 / t1759;
+        let c_cross_leg5 = t1756 * t1760;
+        let t1762 = 0.6691306063588579 * c_cross_leg5;
+        let gcross_vx_leg5 = t1760 * t1762;
+        let s_cross_leg5 = t1754 * t1760;
+        let t1765 = acceleration[2] - t127;
+        let t1767 = acceleration[0] - t78;
+        let t1769 = 0.7431448254773945 * c_cross_leg5;
+        let t1770 = acceleration[1] - t103;
+        let t1773 = s_cross_leg5 * t1765 - (t1762 * t1767 + t1769 * t1770);
+        let t1776 = 0.6691306063588579 * t1752 - 0.7431448254773945 * t1749;
+        let t1778 = t1758 + t1776 * t1776;
+        ::overact::guard::reach(t1778, "leg5")?;
+        let t1779 = ::overact::math::sqrt(t1778);
+        ::overact::guard::leg(t1779, 0.5619721604570214, "leg5")?;
+        let t1780 = 1.0 / t1779;
+        let c_cylinder_leg5 = t1759 * t1780;
+        let t1783 = 0.7431448254773945 * s_cross_leg5;
+        let s_cylinder_leg5 = t1776 / t1779;
+        let t1786 = 0.6691306063588579 * c_cylinder_leg5 - t1783 * s_cylinder_leg5;
+        let t1787 = twist[1] + t162;
+        let t1789 = 0.6691306063588579 * s_cross_leg5;
+        let t1792 = t1789 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
+        let t1793 = twist[0] + t149;
+        let t1796 = c_cross_leg5 * s_cylinder_leg5;
+        let t1797 = twist[2] + t173;
+        let t1799 = t1786 * t1787 - t1792 * t1793 - t1796 * t1797;
+        let t1804 = s_cross_leg5 * t1797 - (t1762 * t1793 + t1769 * t1787);
+        let minus_rate_cross_leg5 = t1760 * t1804;
+        let t1806 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1807 = t1799 * t1806;
+        let t1810 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_minus_grod_vx_leg5 = t1749 * t1780;
+        let grod_vy_leg5 = t1752 * t1780;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t1808
-            + grod_vy_leg5 * t1802 + grod_vz_leg5 * t1812;
-        let t1845 = minus_minus_rate_rod_leg5 + minus_minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t1784 * (t1832 + t1833 + t1833 - t1836 * t1845);
-        let t1849 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1851 = t1824 + t1824 - t1849;
-        let t1852 = c_cylinder_leg5 * t1851;
-        let minus_gcylinder_vx_leg5 = t1807 * t1794;
-        let t1855 = t1836 * t1823;
-        let t1856 = minus_gcylinder_vx_leg5 * t1855;
-        let t1857 = gcross_vx_leg5 * t1852 - t1856;
-        let gcross_vy_leg5 = t1784 * t1818;
-        let gcylinder_vy_leg5 = t1801 * t1794;
-        let t1861 = gcylinder_vy_leg5 * t1855;
-        let t1862 = gcross_vy_leg5 * t1852 + t1861;
-        let minus_gcross_vz_leg5 = t1784 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t1811 * t1794;
-        let t1866 = minus_gcylinder_vz_leg5 * t1855;
-        let t1867 = minus_gcross_vz_leg5 * t1852 + t1866;
-        let gcross_wx_leg5 = t29 * minus_gcross_vz_leg5 + t47 * gcross_vy_leg5;
-        let gcylinder_wx_leg5 = t29 * minus_gcylinder_vz_leg5 + t47 * gcylinder_vy_leg5;
-        let t1875 = gcylinder_wx_leg5 * t1855;
-        let t1876 = gcross_wx_leg5 * t1852 + t1875;
-        let gcylinder_wy_leg5 = t47 * minus_gcylinder_vx_leg5
-            - t15 * minus_gcylinder_vz_leg5;
-        let t1880 = gcylinder_wy_leg5 * t1855;
-        let minus_gcross_wy_leg5 = t47 * gcross_vx_leg5 + t15 * minus_gcross_vz_leg5;
-        let t1885 = t1880 - minus_gcross_wy_leg5 * t1852;
-        let gcross_wz_leg5 = t29 * gcross_vx_leg5 - t15 * gcross_vy_leg5;
-        let minus_gcylinder_wz_leg5 = t15 * gcylinder_vy_leg5
-            + t29 * minus_gcylinder_vx_leg5;
-        let t1893 = minus_gcylinder_wz_leg5 * t1855;
-        let t1894 = gcross_wz_leg5 * t1852 - t1893;
-        let t1895 = rate_cylinder_leg5 * t1836;
-        let t1896 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1898 = t1895 + t1896 + t1895;
-        let t1901 = c_cylinder_leg5 * t1898 - s_cylinder_leg5 * t1851;
-        let t1903 = t1836 * t1836;
-        let t1904 = t1823 * t1823;
-        let t1905 = t1903 - t1904;
-        let t1907 = gcross_vx_leg5 * t1901 - minus_gcylinder_vx_leg5 * t1905;
-        let t1910 = gcross_vy_leg5 * t1901 + gcylinder_vy_leg5 * t1905;
-        let t1913 = minus_gcross_vz_leg5 * t1901 + minus_gcylinder_vz_leg5 * t1905;
-        let t1916 = gcross_wx_leg5 * t1901 + gcylinder_wx_leg5 * t1905;
-        let t1919 = gcylinder_wy_leg5 * t1905 - minus_gcross_wy_leg5 * t1901;
-        let t1922 = gcross_wz_leg5 * t1901 - minus_gcylinder_wz_leg5 * t1905;
-        let t1927 = t1801 * t1829 - t1807 * t1827 - t1811 * t1825;
-        let rate_dot_cylinder_leg5 = t1794
-            * (t1927 - t1793 * t1855 - rate_cylinder_leg5 * t1845);
-        let t1933 = rate_dot_cylinder_leg5 - t1855;
-        let t1935 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1938 = c_cylinder_leg5 * t1933 - s_cylinder_leg5 * (t1935 - t1903);
-        let t1941 = gcross_vx_leg5 * t1938 + minus_gcylinder_vx_leg5 * t1849;
-        let t1944 = gcross_vy_leg5 * t1938 - gcylinder_vy_leg5 * t1849;
-        let t1947 = minus_gcylinder_vz_leg5 * t1849 - minus_gcross_vz_leg5 * t1938;
-        let t1950 = gcross_wx_leg5 * t1938 - gcylinder_wx_leg5 * t1849;
-        let t1953 = minus_gcross_wy_leg5 * t1938 + gcylinder_wy_leg5 * t1849;
-        let t1956 = gcross_wz_leg5 * t1938 + minus_gcylinder_wz_leg5 * t1849;
-        let t1957 = s_cylinder_leg5 * t1898;
-        let t1959 = t1856 - gcross_vx_leg5 * t1957;
-        let t1961 = gcross_vy_leg5 * t1957 + t1861;
-        let t1963 = minus_gcross_vz_leg5 * t1957 + t1866;
-        let t1965 = gcross_wx_leg5 * t1957 + t1875;
-        let t1967 = minus_gcross_wy_leg5 * t1957 - t1880;
-        let t1969 = t1893 - gcross_wz_leg5 * t1957;
-        let t1972 = t1855 + rate_dot_cylinder_leg5;
-        let t1974 = c_cylinder_leg5 * (t1904 - t1935) - s_cylinder_leg5 * t1972;
-        let t1977 = gcross_vx_leg5 * t1974 - minus_gcylinder_vx_leg5 * t1896;
-        let t1980 = gcross_vy_leg5 * t1974 + gcylinder_vy_leg5 * t1896;
-        let t1983 = minus_gcross_vz_leg5 * t1974 + minus_gcylinder_vz_leg5 * t1896;
-        let t1986 = gcross_wx_leg5 * t1974 + gcylinder_wx_leg5 * t1896;
-        let t1989 = gcylinder_wy_leg5 * t1896 - minus_gcross_wy_leg5 * t1974;
-        let t1992 = gcross_wz_leg5 * t1974 - minus_gcylinder_wz_leg5 * t1896;
-        let t1993 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t1994 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t1995 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t1996 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t1997 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t1998 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t1999 = 9.81 * s_cross_leg5;
-        let t2000 = s_cylinder_leg5 * t1999;
-        let t2002 = 9.81 * grod_vz_leg5;
-        let t2020 = t1794 * t2002;
-        let t2023 = c_cylinder_leg5 * t1999;
-        let t2025 = 9.81 * t1811;
-        let minus_grod_wz_leg5 = t15 * grod_vy_leg5 - t29 * minus_minus_grod_vx_leg5;
-        let t2038 = 9.81 * c_cross_leg5;
-        let t2046 = t1832 + t1999;
-        let t2048 = t1783 * t1898 + s_cylinder_leg5 * t2046;
-        let t2054 = minus_minus_grod_vx_leg5 * t1827 + grod_vy_leg5 * t1829
-            + grod_vz_leg5 * t1825;
-        let t2055 = t2002 + t2054;
-        let t2058 = t2055 + t1793 * (t1904 + t1935);
-        let t2062 = gcross_vx_leg5 * t2048 + minus_gcylinder_vx_leg5 * t2058
-            - minus_minus_grod_vx_leg5 * t1933;
-        let t2067 = gcross_vy_leg5 * t2048 - gcylinder_vy_leg5 * t2058
-            - grod_vy_leg5 * t1933;
-        let t2072 = minus_gcross_vz_leg5 * t2048 - minus_gcylinder_vz_leg5 * t2058
-            + grod_vz_leg5 * t1933;
-        let t2084 = t1927 - t2025;
-        let t2087 = t1821 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2084 - c_cylinder_leg5 * t2055);
-        let t2090 = gcross_vx_leg5 * t2087 - t1804 * minus_rate_dot_cross_leg5;
-        let t2093 = gcross_vy_leg5 * t2087 - t1798 * minus_rate_dot_cross_leg5;
-        let t2096 = minus_gcross_vz_leg5 * t2087
+        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t1793
+            + grod_vy_leg5 * t1787 + grod_vz_leg5 * t1797;
+        let t1819 = 2.0 * minus_minus_rate_rod_leg5;
+        let minus_rate_dot_cross_leg5 = t1760 * (t1773 + t1807 + t1807 - t1810 * t1819);
+        let rate_cylinder_leg5 = t1780 * t1799;
+        let t1824 = rate_cylinder_leg5 * t1810;
+        let t1825 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1827 = t1824 + t1825 + t1824;
+        let t1828 = s_cylinder_leg5 * t1827;
+        let t1829 = t1828 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t1792 * t1780;
+        let t1832 = t1810 * t1806;
+        let t1833 = minus_gcylinder_vx_leg5 * t1832;
+        let t1834 = gcross_vx_leg5 * t1829 - t1833;
+        let gcross_vy_leg5 = t1760 * t1769;
+        let gcylinder_vy_leg5 = t1786 * t1780;
+        let t1838 = gcylinder_vy_leg5 * t1832;
+        let t1839 = gcross_vy_leg5 * t1829 + t1838;
+        let minus_gcross_vz_leg5 = t1760 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t1796 * t1780;
+        let t1843 = minus_gcylinder_vz_leg5 * t1832;
+        let t1844 = minus_gcross_vz_leg5 * t1829 + t1843;
+        let gcross_wx_leg5 = t43 * minus_gcross_vz_leg5 + t13 * gcross_vy_leg5;
+        let gcylinder_wx_leg5 = t43 * minus_gcylinder_vz_leg5 + t13 * gcylinder_vy_leg5;
+        let t1852 = gcylinder_wx_leg5 * t1832;
+        let t1853 = gcross_wx_leg5 * t1829 + t1852;
+        let gcylinder_wy_leg5 = t13 * minus_gcylinder_vx_leg5
+            - t29 * minus_gcylinder_vz_leg5;
+        let t1857 = gcylinder_wy_leg5 * t1832;
+        let minus_gcross_wy_leg5 = t13 * gcross_vx_leg5 + t29 * minus_gcross_vz_leg5;
+        let t1862 = t1857 - minus_gcross_wy_leg5 * t1829;
+        let gcross_wz_leg5 = t43 * gcross_vx_leg5 - t29 * gcross_vy_leg5;
+        let minus_gcylinder_wz_leg5 = t29 * gcylinder_vy_leg5
+            + t43 * minus_gcylinder_vx_leg5;
+        let t1870 = minus_gcylinder_wz_leg5 * t1832;
+        let t1871 = gcross_wz_leg5 * t1829 - t1870;
+        let t1873 = t1779 * t1829;
+        let t1876 = c_cylinder_leg5 * t1827 - s_cylinder_leg5 * (t1760 * t1873);
+        let t1878 = t1810 * t1810;
+        let t1879 = t1806 * t1806;
+        let t1880 = t1878 - t1879;
+        let t1882 = gcross_vx_leg5 * t1876 - minus_gcylinder_vx_leg5 * t1880;
+        let t1885 = gcross_vy_leg5 * t1876 + gcylinder_vy_leg5 * t1880;
+        let t1888 = minus_gcross_vz_leg5 * t1876 + minus_gcylinder_vz_leg5 * t1880;
+        let t1891 = gcross_wx_leg5 * t1876 + gcylinder_wx_leg5 * t1880;
+        let t1894 = gcylinder_wy_leg5 * t1880 - minus_gcross_wy_leg5 * t1876;
+        let t1897 = gcross_wz_leg5 * t1876 - minus_gcylinder_wz_leg5 * t1880;
+        let t1902 = t1786 * t1770 - t1792 * t1767 - t1796 * t1765;
+        let t1904 = t1902 - rate_cylinder_leg5 * t1819;
+        let t1905 = t1780 * t1904;
+        let rate_dot_cylinder_leg5 = t1905 - t1832;
+        let t1907 = rate_dot_cylinder_leg5 - t1832;
+        let t1909 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1912 = c_cylinder_leg5 * t1907 - s_cylinder_leg5 * (t1909 - t1878);
+        let t1914 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1916 = gcross_vx_leg5 * t1912 + minus_gcylinder_vx_leg5 * t1914;
+        let t1919 = gcross_vy_leg5 * t1912 - gcylinder_vy_leg5 * t1914;
+        let t1922 = minus_gcylinder_vz_leg5 * t1914 - minus_gcross_vz_leg5 * t1912;
+        let t1925 = gcross_wx_leg5 * t1912 - gcylinder_wx_leg5 * t1914;
+        let t1928 = minus_gcross_wy_leg5 * t1912 + gcylinder_wy_leg5 * t1914;
+        let t1931 = gcross_wz_leg5 * t1912 + minus_gcylinder_wz_leg5 * t1914;
+        let t1933 = t1833 - gcross_vx_leg5 * t1828;
+        let t1935 = gcross_vy_leg5 * t1828 + t1838;
+        let t1937 = minus_gcross_vz_leg5 * t1828 + t1843;
+        let t1939 = gcross_wx_leg5 * t1828 + t1852;
+        let t1941 = minus_gcross_wy_leg5 * t1828 - t1857;
+        let t1943 = t1870 - gcross_wz_leg5 * t1828;
+        let t1947 = c_cylinder_leg5 * (t1879 - t1909) - s_cylinder_leg5 * t1905;
+        let t1950 = gcross_vx_leg5 * t1947 - minus_gcylinder_vx_leg5 * t1825;
+        let t1953 = gcross_vy_leg5 * t1947 + gcylinder_vy_leg5 * t1825;
+        let t1956 = minus_gcross_vz_leg5 * t1947 + minus_gcylinder_vz_leg5 * t1825;
+        let t1959 = gcross_wx_leg5 * t1947 + gcylinder_wx_leg5 * t1825;
+        let t1962 = gcylinder_wy_leg5 * t1825 - minus_gcross_wy_leg5 * t1947;
+        let t1965 = gcross_wz_leg5 * t1947 - minus_gcylinder_wz_leg5 * t1825;
+        let t1966 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t1967 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t1968 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t1969 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t1970 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t1971 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t1972 = 9.81 * s_cross_leg5;
+        let t1973 = s_cylinder_leg5 * t1972;
+        let t1975 = 9.81 * grod_vz_leg5;
+        let t1993 = t1780 * t1975;
+        let t1996 = c_cylinder_leg5 * t1972;
+        let t1998 = 9.81 * t1796;
+        let minus_grod_wz_leg5 = t29 * grod_vy_leg5 - t43 * minus_minus_grod_vx_leg5;
+        let t2011 = 9.81 * c_cross_leg5;
+        let t2019 = t1773 + t1972;
+        let t2021 = t1759 * t1827 + s_cylinder_leg5 * t2019;
+        let t2027 = minus_minus_grod_vx_leg5 * t1767 + grod_vy_leg5 * t1770
+            + grod_vz_leg5 * t1765;
+        let t2028 = t1975 + t2027;
+        let t2031 = t2028 + t1779 * (t1879 + t1909);
+        let t2035 = gcross_vx_leg5 * t2021 + minus_gcylinder_vx_leg5 * t2031
+            - minus_minus_grod_vx_leg5 * t1907;
+        let t2040 = gcross_vy_leg5 * t2021 - gcylinder_vy_leg5 * t2031
+            - grod_vy_leg5 * t1907;
+        let t2045 = minus_gcross_vz_leg5 * t2021 - minus_gcylinder_vz_leg5 * t2031
+            + grod_vz_leg5 * t1907;
+        let t2057 = t1902 - t1998;
+        let t2060 = t1804 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2057 - c_cylinder_leg5 * t2028);
+        let t2063 = gcross_vx_leg5 * t2060 - t1789 * minus_rate_dot_cross_leg5;
+        let t2066 = gcross_vy_leg5 * t2060 - t1783 * minus_rate_dot_cross_leg5;
+        let t2069 = minus_gcross_vz_leg5 * t2060
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2108 = t1783 * t1851 - c_cylinder_leg5 * t2046;
-        let t2111 = t1793 * t1972 + t2084;
-        let t2114 = t1903 + t1935;
-        let t2116 = gcross_vx_leg5 * t2108 - minus_gcylinder_vx_leg5 * t2111
-            - minus_minus_grod_vx_leg5 * t2114;
-        let t2121 = gcross_vy_leg5 * t2108 + gcylinder_vy_leg5 * t2111
-            - grod_vy_leg5 * t2114;
-        let t2126 = minus_gcross_vz_leg5 * t2108 + minus_gcylinder_vz_leg5 * t2111
-            + grod_vz_leg5 * t2114;
-        let t2136 = 9.81 + t1825;
-        let minus_minus_rate_dot_rod_leg5 = t1793 * t2114 + t2054;
-        let grod_wx_leg5 = t47 * grod_vy_leg5 - t29 * grod_vz_leg5;
-        let grod_wy_leg5 = t15 * grod_vz_leg5 - t47 * minus_minus_grod_vx_leg5;
-        let t2166 = -minus_minus_rate_rod_leg5;
-        let t2174 = pose[0] + t531 + 0.12360679774997894;
-        let t2177 = pose[1] + t537 + 0.3804226065180615;
-        let t2179 = 0.30901699437494734 * t2174 + 0.9510565162951536 * t2177;
-        let t2181 = pose[2] + t545;
-        let t2183 = t2179 * t2179 + t2181 * t2181;
-        let t2184 = ::overact::math::sqrt(t2183);
-        ::overact::guard::leg(t2184, 0.5513142860385972, "leg6")?;
-        let t2185 = 1.0 / t2184;
-        let c_cross_leg6 = t2181 * t2185;
-        let t2187 = 0.30901699437494734 * c_cross_leg6;
-        let gcross_vx_leg6 = t2185 * t2187;
-        let t2191 = 0.30901699437494734 * t2177 - 0.9510565162951536 * t2174;
-        let t2193 = t2183 + t2191 * t2191;
-        ::overact::guard::reach(t2193, "leg6")?;
-        let t2194 = ::overact::math::sqrt(t2193);
-        ::overact::guard::leg(t2194, 0.5619721604570214, "leg6")?;
-        let t2195 = 1.0 / t2194;
-        let c_cylinder_leg6 = t2184 * t2195;
-        let s_cross_leg6 = t2179 * t2185;
-        let t2199 = 0.9510565162951536 * s_cross_leg6;
-        let s_cylinder_leg6 = t2191 / t2194;
-        let t2202 = 0.30901699437494734 * c_cylinder_leg6 - t2199 * s_cylinder_leg6;
-        let t2203 = twist[1] + t584;
-        let t2205 = 0.30901699437494734 * s_cross_leg6;
-        let t2208 = t2205 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
-        let t2209 = twist[0] + t574;
-        let t2212 = c_cross_leg6 * s_cylinder_leg6;
-        let t2213 = twist[2] + t594;
-        let rate_cylinder_leg6 = t2195 * (t2202 * t2203 - t2208 * t2209 - t2212 * t2213);
-        let t2219 = 0.9510565162951536 * c_cross_leg6;
-        let t2222 = s_cross_leg6 * t2213 - (t2187 * t2209 + t2219 * t2203);
-        let minus_rate_cross_leg6 = t2185 * t2222;
-        let t2224 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2225 = rate_cylinder_leg6 * t2224;
-        let t2226 = acceleration[2] + t629;
-        let t2228 = acceleration[0] + t618;
-        let t2230 = acceleration[1] + t623;
-        let t2233 = s_cross_leg6 * t2226 - (t2187 * t2228 + t2219 * t2230);
-        let t2234 = t2194 * t2225;
-        let t2237 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let minus_minus_grod_vx_leg6 = t2174 * t2195;
-        let grod_vy_leg6 = t2177 * t2195;
+        let t2080 = t1873 - c_cylinder_leg5 * t2019;
+        let t2082 = t1904 + t2057;
+        let t2085 = t1878 + t1909;
+        let t2087 = gcross_vx_leg5 * t2080 - minus_gcylinder_vx_leg5 * t2082
+            - minus_minus_grod_vx_leg5 * t2085;
+        let t2092 = gcross_vy_leg5 * t2080 + gcylinder_vy_leg5 * t2082
+            - grod_vy_leg5 * t2085;
+        let t2097 = minus_gcross_vz_leg5 * t2080 + minus_gcylinder_vz_leg5 * t2082
+            + grod_vz_leg5 * t2085;
+        let t2107 = t486 - t127;
+        let minus_minus_rate_dot_rod_leg5 = t1779 * t2085 + t2027;
+        let grod_wx_leg5 = t13 * grod_vy_leg5 - t43 * grod_vz_leg5;
+        let grod_wy_leg5 = t29 * grod_vz_leg5 - t13 * minus_minus_grod_vx_leg5;
+        let t2137 = -minus_minus_rate_rod_leg5;
+        let t2144 = pose[2] + t539;
+        let t2146 = pose[0] + t525 + 0.12360679774997894;
+        let t2149 = pose[1] + t531 + 0.3804226065180615;
+        let t2151 = 0.30901699437494734 * t2146 + 0.9510565162951536 * t2149;
+        let t2154 = t2151 * t2151 + t2144 * t2144;
+        let t2155 = ::overact::math::sqrt(t2154);
+        ::overact::guard::leg(t2155, 0.5513142860385972, "leg6")?;
+        let c_cross_leg6 = t2144 / t2155;
+        let t2157 = 0.30901699437494734 * c_cross_leg6;
+        let gcross_vx_leg6 = t2157 / t2155;
+        let t2161 = 0.30901699437494734 * t2149 - 0.9510565162951536 * t2146;
+        let t2163 = t2154 + t2161 * t2161;
+        ::overact::guard::reach(t2163, "leg6")?;
+        let t2164 = ::overact::math::sqrt(t2163);
+        ::overact::guard::leg(t2164, 0.5619721604570214, "leg6")?;
+        let c_cylinder_leg6 = t2155 / t2164;
+        let s_cross_leg6 = t2151 / t2155;
+        let t2167 = acceleration[2] + t611;
+        let t2169 = acceleration[0] + t600;
+        let t2171 = 0.9510565162951536 * c_cross_leg6;
+        let t2172 = acceleration[1] + t605;
+        let t2175 = s_cross_leg6 * t2167 - (t2157 * t2169 + t2171 * t2172);
+        let t2176 = twist[2] + t588;
+        let t2178 = twist[0] + t568;
+        let t2180 = twist[1] + t578;
+        let t2183 = s_cross_leg6 * t2176 - (t2157 * t2178 + t2171 * t2180);
+        let minus_rate_cross_leg6 = t2183 / t2155;
+        let t2185 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2186 = 1.0 / t2164;
+        let minus_minus_grod_vx_leg6 = t2146 * t2186;
+        let grod_vy_leg6 = t2149 * t2186;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t2209
-            + grod_vy_leg6 * t2203 + grod_vz_leg6 * t2213;
-        let t2246 = minus_minus_rate_rod_leg6 + minus_minus_rate_rod_leg6;
-        let minus_rate_dot_cross_leg6 = t2185 * (t2233 + t2234 + t2234 - t2237 * t2246);
-        let t2250 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2252 = t2225 + t2225 - t2250;
-        let t2253 = c_cylinder_leg6 * t2252;
-        let minus_gcylinder_vx_leg6 = t2208 * t2195;
-        let t2256 = t2237 * t2224;
-        let t2257 = minus_gcylinder_vx_leg6 * t2256;
-        let t2258 = gcross_vx_leg6 * t2253 - t2257;
-        let gcross_vy_leg6 = t2185 * t2219;
-        let gcylinder_vy_leg6 = t2202 * t2195;
-        let t2262 = gcylinder_vy_leg6 * t2256;
-        let t2263 = gcross_vy_leg6 * t2253 + t2262;
-        let minus_gcross_vz_leg6 = t2185 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t2212 * t2195;
-        let t2267 = minus_gcylinder_vz_leg6 * t2256;
-        let t2268 = minus_gcross_vz_leg6 * t2253 + t2267;
-        let minus_gcross_wx_leg6 = t537 * minus_gcross_vz_leg6 + t545 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t537 * minus_gcylinder_vz_leg6
-            + t545 * gcylinder_vy_leg6;
-        let t2276 = minus_gcylinder_wx_leg6 * t2256;
-        let t2277 = minus_gcross_wx_leg6 * t2253 + t2276;
-        let gcross_wy_leg6 = t545 * gcross_vx_leg6 + t531 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t531 * minus_gcylinder_vz_leg6
-            - t545 * minus_gcylinder_vx_leg6;
-        let t2285 = gcylinder_wy_leg6 * t2256;
-        let t2286 = gcross_wy_leg6 * t2253 + t2285;
-        let gcross_wz_leg6 = t531 * gcross_vy_leg6 - t537 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t531 * gcylinder_vy_leg6
-            + t537 * minus_gcylinder_vx_leg6;
-        let t2294 = gcylinder_wz_leg6 * t2256;
-        let t2295 = gcross_wz_leg6 * t2253 + t2294;
-        let t2296 = rate_cylinder_leg6 * t2237;
-        let t2297 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2299 = t2296 + t2297 + t2296;
-        let t2302 = c_cylinder_leg6 * t2299 - s_cylinder_leg6 * t2252;
-        let t2304 = t2237 * t2237;
-        let t2305 = t2224 * t2224;
-        let t2306 = t2304 - t2305;
-        let t2308 = gcross_vx_leg6 * t2302 - minus_gcylinder_vx_leg6 * t2306;
-        let t2311 = gcross_vy_leg6 * t2302 + gcylinder_vy_leg6 * t2306;
-        let t2314 = minus_gcross_vz_leg6 * t2302 + minus_gcylinder_vz_leg6 * t2306;
-        let t2317 = minus_gcross_wx_leg6 * t2302 + minus_gcylinder_wx_leg6 * t2306;
-        let t2320 = gcross_wy_leg6 * t2302 + gcylinder_wy_leg6 * t2306;
-        let t2323 = gcross_wz_leg6 * t2302 + gcylinder_wz_leg6 * t2306;
-        let t2328 = t2202 * t2230 - t2208 * t2228 - t2212 * t2226;
-        let rate_dot_cylinder_leg6 = t2195
-            * (t2328 - t2194 * t2256 - rate_cylinder_leg6 * t2246);
-        let t2334 = rate_dot_cylinder_leg6 - t2256;
-        let t2336 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t2339 = c_cylinder_leg6 * t2334 - s_cylinder_leg6 * (t2336 - t2304);
-        let t2342 = gcross_vx_leg6 * t2339 + minus_gcylinder_vx_leg6 * t2250;
-        let t2345 = gcross_vy_leg6 * t2339 - gcylinder_vy_leg6 * t2250;
-        let t2348 = minus_gcylinder_vz_leg6 * t2250 - minus_gcross_vz_leg6 * t2339;
-        let t2351 = minus_gcylinder_wx_leg6 * t2250 - minus_gcross_wx_leg6 * t2339;
-        let t2354 = gcross_wy_leg6 * t2339 - gcylinder_wy_leg6 * t2250;
-        let t2357 = gcross_wz_leg6 * t2339 - gcylinder_wz_leg6 * t2250;
-        let t2358 = s_cylinder_leg6 * t2299;
-        let t2360 = t2257 - gcross_vx_leg6 * t2358;
-        let t2362 = gcross_vy_leg6 * t2358 + t2262;
-        let t2364 = minus_gcross_vz_leg6 * t2358 + t2267;
-        let t2366 = minus_gcross_wx_leg6 * t2358 + t2276;
-        let t2368 = gcross_wy_leg6 * t2358 + t2285;
-        let t2370 = gcross_wz_leg6 * t2358 + t2294;
-        let t2373 = t2256 + rate_dot_cylinder_leg6;
-        let t2375 = c_cylinder_leg6 * (t2305 - t2336) - s_cylinder_leg6 * t2373;
-        let t2378 = gcross_vx_leg6 * t2375 - minus_gcylinder_vx_leg6 * t2297;
-        let t2381 = gcross_vy_leg6 * t2375 + gcylinder_vy_leg6 * t2297;
-        let t2384 = minus_gcross_vz_leg6 * t2375 + minus_gcylinder_vz_leg6 * t2297;
-        let t2387 = minus_gcross_wx_leg6 * t2375 + minus_gcylinder_wx_leg6 * t2297;
-        let t2390 = gcross_wy_leg6 * t2375 + gcylinder_wy_leg6 * t2297;
-        let t2393 = gcross_wz_leg6 * t2375 + gcylinder_wz_leg6 * t2297;
-        let t2394 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
-        let t2395 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
-        let t2396 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
-        let t2397 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
-        let t2398 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
-        let t2399 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
-        let t2400 = 9.81 * s_cross_leg6;
-        let t2401 = s_cylinder_leg6 * t2400;
-        let t2403 = 9.81 * grod_vz_leg6;
-        let t2421 = t2195 * t2403;
-        let t2424 = c_cylinder_leg6 * t2400;
-        let t2426 = 9.81 * t2212;
-        let grod_wz_leg6 = t531 * grod_vy_leg6 - t537 * minus_minus_grod_vx_leg6;
-        let t2439 = 9.81 * c_cross_leg6;
-        let t2447 = t2233 + t2400;
-        let t2449 = t2184 * t2299 + s_cylinder_leg6 * t2447;
-        let t2455 = minus_minus_grod_vx_leg6 * t2228 + grod_vy_leg6 * t2230
-            + grod_vz_leg6 * t2226;
-        let t2456 = t2403 + t2455;
-        let t2459 = t2456 + t2194 * (t2305 + t2336);
-        let t2463 = gcross_vx_leg6 * t2449 + minus_gcylinder_vx_leg6 * t2459
-            - minus_minus_grod_vx_leg6 * t2334;
-        let t2468 = gcross_vy_leg6 * t2449 - gcylinder_vy_leg6 * t2459
-            - grod_vy_leg6 * t2334;
-        let t2473 = minus_gcross_vz_leg6 * t2449 - minus_gcylinder_vz_leg6 * t2459
-            + grod_vz_leg6 * t2334;
-        let t2485 = t2328 - t2426;
-        let t2488 = t2222 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2485 - c_cylinder_leg6 * t2456);
-        let t2491 = gcross_vx_leg6 * t2488 - t2205 * minus_rate_dot_cross_leg6;
-        let t2494 = gcross_vy_leg6 * t2488 - t2199 * minus_rate_dot_cross_leg6;
-        let t2497 = minus_gcross_vz_leg6 * t2488
+        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t2178
+            + grod_vy_leg6 * t2180 + grod_vz_leg6 * t2176;
+        let t2195 = minus_minus_rate_rod_leg6 + minus_minus_rate_rod_leg6;
+        let t2197 = t2175 - t2185 * t2195;
+        let t2198 = t2197 / t2164;
+        let t2199 = c_cylinder_leg6 * t2198;
+        let t2201 = 0.30901699437494734 * s_cross_leg6;
+        let s_cylinder_leg6 = t2161 / t2164;
+        let t2205 = t2201 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
+        let minus_gcylinder_vx_leg6 = t2205 * t2186;
+        let t2207 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2208 = t2185 * t2207;
+        let t2209 = minus_gcylinder_vx_leg6 * t2208;
+        let t2210 = gcross_vx_leg6 * t2199 + t2209;
+        let gcross_vy_leg6 = t2171 / t2155;
+        let t2214 = 0.9510565162951536 * s_cross_leg6;
+        let t2216 = 0.30901699437494734 * c_cylinder_leg6 - t2214 * s_cylinder_leg6;
+        let gcylinder_vy_leg6 = t2216 * t2186;
+        let t2218 = gcylinder_vy_leg6 * t2208;
+        let t2219 = t2218 - gcross_vy_leg6 * t2199;
+        let minus_gcross_vz_leg6 = s_cross_leg6 / t2155;
+        let t2222 = c_cross_leg6 * s_cylinder_leg6;
+        let minus_gcylinder_vz_leg6 = t2222 * t2186;
+        let t2224 = minus_gcylinder_vz_leg6 * t2208;
+        let t2225 = t2224 - minus_gcross_vz_leg6 * t2199;
+        let minus_gcross_wx_leg6 = t531 * minus_gcross_vz_leg6 + t539 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t531 * minus_gcylinder_vz_leg6
+            + t539 * gcylinder_vy_leg6;
+        let t2233 = minus_gcylinder_wx_leg6 * t2208;
+        let t2234 = t2233 - minus_gcross_wx_leg6 * t2199;
+        let gcross_wy_leg6 = t539 * gcross_vx_leg6 + t525 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t525 * minus_gcylinder_vz_leg6
+            - t539 * minus_gcylinder_vx_leg6;
+        let t2242 = gcylinder_wy_leg6 * t2208;
+        let t2243 = t2242 - gcross_wy_leg6 * t2199;
+        let gcross_wz_leg6 = t525 * gcross_vy_leg6 - t531 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t525 * gcylinder_vy_leg6
+            + t531 * minus_gcylinder_vx_leg6;
+        let t2251 = gcylinder_wz_leg6 * t2208;
+        let t2252 = t2251 - gcross_wz_leg6 * t2199;
+        let t2257 = t2216 * t2180 - t2205 * t2178 - t2222 * t2176;
+        let rate_cylinder_leg6 = t2186 * t2257;
+        let t2259 = rate_cylinder_leg6 * t2185;
+        let minus_rate_dot_cross_leg6 = (t2197 + 2.0 * (t2257 * t2207)) / t2155;
+        let t2264 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2266 = t2259 + t2264 + t2259;
+        let t2269 = c_cylinder_leg6 * t2266 + s_cylinder_leg6 * t2198;
+        let t2271 = t2185 * t2185;
+        let t2272 = t2207 * t2207;
+        let t2273 = t2271 - t2272;
+        let t2275 = gcross_vx_leg6 * t2269 - minus_gcylinder_vx_leg6 * t2273;
+        let t2278 = gcross_vy_leg6 * t2269 + gcylinder_vy_leg6 * t2273;
+        let t2281 = minus_gcross_vz_leg6 * t2269 + minus_gcylinder_vz_leg6 * t2273;
+        let t2284 = minus_gcross_wx_leg6 * t2269 + minus_gcylinder_wx_leg6 * t2273;
+        let t2287 = gcross_wy_leg6 * t2269 + gcylinder_wy_leg6 * t2273;
+        let t2290 = gcross_wz_leg6 * t2269 + gcylinder_wz_leg6 * t2273;
+        let t2295 = t2216 * t2172 - t2205 * t2169 - t2222 * t2167;
+        let t2297 = t2295 - rate_cylinder_leg6 * t2195;
+        let t2298 = t2186 * t2297;
+        let rate_dot_cylinder_leg6 = t2298 - t2208;
+        let t2300 = rate_dot_cylinder_leg6 - t2208;
+        let t2302 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t2305 = c_cylinder_leg6 * t2300 - s_cylinder_leg6 * (t2302 - t2271);
+        let t2307 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2309 = gcross_vx_leg6 * t2305 + minus_gcylinder_vx_leg6 * t2307;
+        let t2312 = gcross_vy_leg6 * t2305 - gcylinder_vy_leg6 * t2307;
+        let t2315 = minus_gcylinder_vz_leg6 * t2307 - minus_gcross_vz_leg6 * t2305;
+        let t2318 = minus_gcylinder_wx_leg6 * t2307 - minus_gcross_wx_leg6 * t2305;
+        let t2321 = gcross_wy_leg6 * t2305 - gcylinder_wy_leg6 * t2307;
+        let t2324 = gcross_wz_leg6 * t2305 - gcylinder_wz_leg6 * t2307;
+        let t2325 = s_cylinder_leg6 * t2266;
+        let t2327 = t2209 - gcross_vx_leg6 * t2325;
+        let t2329 = gcross_vy_leg6 * t2325 + t2218;
+        let t2331 = minus_gcross_vz_leg6 * t2325 + t2224;
+        let t2333 = minus_gcross_wx_leg6 * t2325 + t2233;
+        let t2335 = gcross_wy_leg6 * t2325 + t2242;
+        let t2337 = gcross_wz_leg6 * t2325 + t2251;
+        let t2341 = c_cylinder_leg6 * (t2272 - t2302) - s_cylinder_leg6 * t2298;
+        let t2344 = gcross_vx_leg6 * t2341 - minus_gcylinder_vx_leg6 * t2264;
+        let t2347 = gcross_vy_leg6 * t2341 + gcylinder_vy_leg6 * t2264;
+        let t2350 = minus_gcross_vz_leg6 * t2341 + minus_gcylinder_vz_leg6 * t2264;
+        let t2353 = minus_gcross_wx_leg6 * t2341 + minus_gcylinder_wx_leg6 * t2264;
+        let t2356 = gcross_wy_leg6 * t2341 + gcylinder_wy_leg6 * t2264;
+        let t2359 = gcross_wz_leg6 * t2341 + gcylinder_wz_leg6 * t2264;
+        let t2360 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
+        let t2361 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
+        let t2362 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
+        let t2363 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
+        let t2364 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
+        let t2365 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
+        let t2366 = 9.81 * s_cross_leg6;
+        let t2367 = s_cylinder_leg6 * t2366;
+        let t2369 = 9.81 * grod_vz_leg6;
+        let t2387 = t2186 * t2369;
+        let t2390 = c_cylinder_leg6 * t2366;
+        let t2392 = 9.81 * t2222;
+        let grod_wz_leg6 = t525 * grod_vy_leg6 - t531 * minus_minus_grod_vx_leg6;
+        let t2405 = 9.81 * c_cross_leg6;
+        let t2413 = t2175 + t2366;
+        let t2415 = t2155 * t2266 + s_cylinder_leg6 * t2413;
+        let t2421 = minus_minus_grod_vx_leg6 * t2169 + grod_vy_leg6 * t2172
+            + grod_vz_leg6 * t2167;
+        let t2422 = t2369 + t2421;
+        let t2425 = t2422 + t2164 * (t2272 + t2302);
+        let t2429 = gcross_vx_leg6 * t2415 + minus_gcylinder_vx_leg6 * t2425
+            - minus_minus_grod_vx_leg6 * t2300;
+        let t2434 = gcross_vy_leg6 * t2415 - gcylinder_vy_leg6 * t2425
+            - grod_vy_leg6 * t2300;
+        let t2439 = minus_gcross_vz_leg6 * t2415 - minus_gcylinder_vz_leg6 * t2425
+            + grod_vz_leg6 * t2300;
+        let t2451 = t2295 - t2392;
+        let t2454 = t2183 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2451 - c_cylinder_leg6 * t2422);
+        let t2457 = gcross_vx_leg6 * t2454 - t2201 * minus_rate_dot_cross_leg6;
+        let t2460 = gcross_vy_leg6 * t2454 - t2214 * minus_rate_dot_cross_leg6;
+        let t2463 = minus_gcross_vz_leg6 * t2454
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2509 = t2184 * t2252 - c_cylinder_leg6 * t2447;
-        let t2512 = t2194 * t2373 + t2485;
-        let t2515 = t2304 + t2336;
-        let t2517 = gcross_vx_leg6 * t2509 - minus_gcylinder_vx_leg6 * t2512
-            - minus_minus_grod_vx_leg6 * t2515;
-        let t2522 = gcross_vy_leg6 * t2509 + gcylinder_vy_leg6 * t2512
-            - grod_vy_leg6 * t2515;
-        let t2527 = minus_gcross_vz_leg6 * t2509 + minus_gcylinder_vz_leg6 * t2512
-            + grod_vz_leg6 * t2515;
-        let t2537 = 9.81 + t2226;
-        let minus_minus_rate_dot_rod_leg6 = t2194 * t2515 + t2455;
-        let grod_wx_leg6 = t537 * grod_vz_leg6 - t545 * grod_vy_leg6;
-        let minus_grod_wy_leg6 = t531 * grod_vz_leg6 - t545 * minus_minus_grod_vx_leg6;
-        let t2567 = -minus_minus_rate_rod_leg6;
-        let t2578 = t5 * acceleration[3] + t20 * acceleration[4] + t38 * acceleration[5];
-        let t2584 = t5 * twist[3] + t20 * twist[4] + t38 * twist[5];
-        let t2585 = t36 + t37;
-        let t2587 = t40 - t41;
-        let t2590 = t23 - t1;
-        let t2592 = t2585 * twist[3] + t2587 * twist[4] + t2590 * twist[5];
-        let t2593 = t2584 * t2592;
-        let t2594 = t10 * t2593;
-        let t2600 = t10 * twist[3] + t24 * twist[4] + t42 * twist[5];
-        let t2601 = t2584 * t2600;
-        let t2602 = t2585 * t2601;
-        let t2605 = t24 * t2593;
-        let t2607 = t2587 * t2601;
-        let t2610 = t42 * t2593;
-        let t2612 = t2590 * t2601;
-        let t2618 = t10 * acceleration[3] + t24 * acceleration[4]
-            + t42 * acceleration[5];
-        let t2619 = t2618 - t2593;
-        let t2621 = t2600 * t2592;
-        let t2622 = t2578 + t2621;
-        let t2625 = t2584 * t2584;
-        let t2626 = t2600 * t2600;
-        let t2627 = t2625 - t2626;
-        let t2644 = t2585 * acceleration[3] + t2587 * acceleration[4]
-            + t2590 * acceleration[5];
-        let t2645 = t2644 + t2601;
-        let t2647 = t2592 * t2592;
-        let t2648 = t2647 - t2625;
-        let t2651 = t2578 - t2621;
-        let t2665 = t5 * t2621;
-        let t2669 = t20 * t2621;
-        let t2673 = t38 * t2621;
-        let t2676 = t2626 - t2647;
-        let t2678 = t2644 - t2601;
-        let t2681 = t2618 + t2593;
+        let t2474 = c_cylinder_leg6 * (t2413 + t2197);
+        let t2476 = t2297 + t2451;
+        let t2479 = t2271 + t2302;
+        let t2481 = gcross_vx_leg6 * t2474 + minus_gcylinder_vx_leg6 * t2476
+            + minus_minus_grod_vx_leg6 * t2479;
+        let t2486 = gcylinder_vy_leg6 * t2476 - gcross_vy_leg6 * t2474
+            - grod_vy_leg6 * t2479;
+        let t2491 = minus_gcylinder_vz_leg6 * t2476 - minus_gcross_vz_leg6 * t2474
+            + grod_vz_leg6 * t2479;
+        let t2501 = t611 + t486;
+        let minus_minus_rate_dot_rod_leg6 = t2164 * t2479 + t2421;
+        let grod_wx_leg6 = t531 * grod_vz_leg6 - t539 * grod_vy_leg6;
+        let minus_grod_wy_leg6 = t525 * grod_vz_leg6 - t539 * minus_minus_grod_vx_leg6;
+        let t2531 = -minus_minus_rate_rod_leg6;
+        let t2542 = t20 * acceleration[3] + t34 * acceleration[4] + t4 * acceleration[5];
+        let t2548 = t20 * twist[3] + t34 * twist[4] + t4 * twist[5];
+        let t2549 = t1 + t3;
+        let t2551 = t6 - t7;
+        let t2554 = t37 - t16;
+        let t2556 = t2549 * twist[3] + t2551 * twist[4] + t2554 * twist[5];
+        let t2557 = t2548 * t2556;
+        let t2558 = t24 * t2557;
+        let t2564 = t24 * twist[3] + t38 * twist[4] + t8 * twist[5];
+        let t2565 = t2548 * t2564;
+        let t2566 = t2549 * t2565;
+        let t2569 = t38 * t2557;
+        let t2571 = t2551 * t2565;
+        let t2574 = t8 * t2557;
+        let t2576 = t2554 * t2565;
+        let t2582 = t24 * acceleration[3] + t38 * acceleration[4] + t8 * acceleration[5];
+        let t2583 = t2582 - t2557;
+        let t2585 = t2564 * t2556;
+        let t2586 = t2542 + t2585;
+        let t2589 = t2548 * t2548;
+        let t2590 = t2564 * t2564;
+        let t2591 = t2589 - t2590;
+        let t2608 = t2549 * acceleration[3] + t2551 * acceleration[4]
+            + t2554 * acceleration[5];
+        let t2609 = t2608 + t2565;
+        let t2611 = t2556 * t2556;
+        let t2612 = t2611 - t2589;
+        let t2615 = t2542 - t2585;
+        let t2629 = t20 * t2585;
+        let t2633 = t34 * t2585;
+        let t2637 = t4 * t2585;
+        let t2640 = t2590 - t2611;
+        let t2642 = t2608 - t2565;
+        let t2645 = t2582 + t2557;
         Ok([
             [
-                t213, t263, -t297, t315, -t333, t349,
-                -(minus_gcross_vx_leg1 * t356 + gcylinder_vx_leg1 * t358), grod_vx_leg1 * t376,
-                -(minus_gcross_vx_leg1 * t394), t213, -t297, -t263, t349, t333, t315, -t418, -t446,
-                t472, t139, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
+                t213, t261, -t295, t312, -t329, t345,
+                -(minus_gcross_vx_leg1 * t352 + gcylinder_vx_leg1 * t354), grod_vx_leg1 * t372,
+                -(minus_gcross_vx_leg1 * t390), t213, -t295, -t261, t345, t329, t312, -t414, -t442,
+                t466, t80, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vx_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_vx_leg1, t523), grod_vx_leg1, t654, t704, -t738, t756,
-                t774, t790, minus_gcross_vx_leg2 * t797 - gcylinder_vx_leg2 * t799,
-                grod_vx_leg2 * t817, -(minus_gcross_vx_leg2 * t835), t654, -t738, -t704, t790,
-                -t774, t756, -t859, -t887, t913, t620, grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
+                -::overact::math::signed(grod_vx_leg1, t517), grod_vx_leg1, t649, t696, -t730, t747,
+                t764, t780, minus_gcross_vx_leg2 * t787 - gcylinder_vx_leg2 * t789,
+                grod_vx_leg2 * t807, -(minus_gcross_vx_leg2 * t825), t649, -t730, -t696, t780,
+                -t764, t747, -t849, -t877, t901, t602, grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vx_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_vx_leg2, t963), grod_vx_leg2, t1055, t1105, t1139,
-                -t1157, t1175, t1191, -(gcross_vx_leg3 * t1198 + gcylinder_vx_leg3 * t1200),
-                minus_minus_grod_vx_leg3 * t1218, gcross_vx_leg3 * t1236, t1055, t1139, -t1105,
-                t1191, -t1175, -t1157, t1260, t1288, t1314, t1025,
+                -::overact::math::signed(grod_vx_leg2, t951), grod_vx_leg2, t1025, t1090, t1124,
+                -t1142, t1159, t1175, -(gcross_vx_leg3 * t1182 + gcylinder_vx_leg3 * t1184),
+                minus_minus_grod_vx_leg3 * t1202, gcross_vx_leg3 * t1220, t1025, t1124, -t1090,
+                t1175, -t1159, -t1142, t1244, t1272, t1296, t985,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_dot_rod_leg3,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(minus_minus_grod_vx_leg3, t1364), minus_minus_grod_vx_leg3,
-                t1456, t1506, t1540, -t1558, t1576, t1592,
-                -(gcross_vx_leg4 * t1599 + gcylinder_vx_leg4 * t1601),
-                minus_minus_grod_vx_leg4 * t1619, gcross_vx_leg4 * t1637, t1456, t1540, -t1506,
-                t1592, -t1576, -t1558, t1661, t1689, t1715, t1426,
+                -::overact::math::signed(minus_minus_grod_vx_leg3, t1346), minus_minus_grod_vx_leg3,
+                t1439, t1486, t1520, -t1537, t1554, t1570,
+                -(gcross_vx_leg4 * t1577 + gcylinder_vx_leg4 * t1579),
+                minus_minus_grod_vx_leg4 * t1597, gcross_vx_leg4 * t1615, t1439, t1520, -t1486,
+                t1570, -t1554, -t1537, t1639, t1667, t1691, t1372,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_dot_rod_leg4,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(minus_minus_grod_vx_leg4, t1765), minus_minus_grod_vx_leg4,
-                t1857, t1907, t1941, t1959, t1977, -t1993,
-                gcross_vx_leg5 * t2000 + minus_gcylinder_vx_leg5 * t2002,
-                minus_minus_grod_vx_leg5 * t2020, gcross_vx_leg5 * t2038, t1857, t1941, -t1907,
-                -t1993, -t1977, t1959, t2062, t2090, t2116, t1827,
+                -::overact::math::signed(minus_minus_grod_vx_leg4, t1741), minus_minus_grod_vx_leg4,
+                t1834, t1882, t1916, t1933, t1950, -t1966,
+                gcross_vx_leg5 * t1973 + minus_gcylinder_vx_leg5 * t1975,
+                minus_minus_grod_vx_leg5 * t1993, gcross_vx_leg5 * t2011, t1834, t1916, -t1882,
+                -t1966, -t1950, t1933, t2035, t2063, t2087, t1767,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_dot_rod_leg5,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(minus_minus_grod_vx_leg5, t2166), minus_minus_grod_vx_leg5,
-                t2258, t2308, t2342, t2360, t2378, -t2394,
-                gcross_vx_leg6 * t2401 + minus_gcylinder_vx_leg6 * t2403,
-                minus_minus_grod_vx_leg6 * t2421, gcross_vx_leg6 * t2439, t2258, t2342, -t2308,
-                -t2394, -t2378, t2360, t2463, t2491, t2517, t2228,
+                -::overact::math::signed(minus_minus_grod_vx_leg5, t2137), minus_minus_grod_vx_leg5,
+                -t2210, t2275, t2309, t2327, t2344, -t2360,
+                gcross_vx_leg6 * t2367 + minus_gcylinder_vx_leg6 * t2369,
+                minus_minus_grod_vx_leg6 * t2387, gcross_vx_leg6 * t2405, -t2210, t2309, -t2275,
+                -t2360, -t2344, t2327, t2429, t2457, -t2481, t2169,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_dot_rod_leg6,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(minus_minus_grod_vx_leg6, t2567), minus_minus_grod_vx_leg6,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t126, t132,
-                t2587 * t116 - t2585 * t120 + t2590 * t124, acceleration[0],
+                -::overact::math::signed(minus_minus_grod_vx_leg6, t2531), minus_minus_grod_vx_leg6,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t67, t73, t2551 * t57 - t2549 * t61 + t2554 * t65,
+                acceleration[0],
             ],
             [
-                t218, t266, t300, t317, t336, -t350,
-                gcross_vy_leg1 * t356 + minus_gcylinder_vy_leg1 * t358,
-                minus_minus_grod_vy_leg1 * t376, gcross_vy_leg1 * t394, t218, t300, -t266, -t350,
-                -t336, t317, t423, t449, -t477, t163,
+                t218, t264, t298, t314, t332, -t346,
+                gcross_vy_leg1 * t352 + minus_gcylinder_vy_leg1 * t354,
+                minus_minus_grod_vy_leg1 * t372, gcross_vy_leg1 * t390, t218, t298, -t264, -t346,
+                -t332, t314, t419, t445, -t471, t105,
                 minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
                 minus_minus_grod_vy_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(minus_minus_grod_vy_leg1, t523), minus_minus_grod_vy_leg1,
-                -t659, -t707, t741, t758, -t777, -t791,
-                minus_gcross_vy_leg2 * t797 + minus_gcylinder_vy_leg2 * t799,
-                minus_minus_grod_vy_leg2 * t817, -(minus_gcross_vy_leg2 * t835), -t659, t741, t707,
-                -t791, t777, t758, -t864, -t890, -t918, t625,
+                -::overact::math::signed(minus_minus_grod_vy_leg1, t517), minus_minus_grod_vy_leg1,
+                -t654, -t699, t733, t749, -t767, -t781,
+                minus_gcross_vy_leg2 * t787 + minus_gcylinder_vy_leg2 * t789,
+                minus_minus_grod_vy_leg2 * t807, -(minus_gcross_vy_leg2 * t825), -t654, t733, t699,
+                -t781, t767, t749, -t854, -t880, -t906, t607,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_dot_rod_leg2,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(minus_minus_grod_vy_leg2, t963), minus_minus_grod_vy_leg2,
-                t1060, t1108, -t1142, t1159, t1178, t1192,
-                minus_gcross_vy_leg3 * t1198 - gcylinder_vy_leg3 * t1200, grod_vy_leg3 * t1218,
-                -(minus_gcross_vy_leg3 * t1236), t1060, -t1142, -t1108, t1192, -t1178, t1159,
-                -t1265, -t1291, t1319, t1023, grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
+                -::overact::math::signed(minus_minus_grod_vy_leg2, t951), minus_minus_grod_vy_leg2,
+                t1034, t1093, -t1127, t1144, t1162, t1176,
+                minus_gcross_vy_leg3 * t1182 - gcylinder_vy_leg3 * t1184, grod_vy_leg3 * t1202,
+                -(minus_gcross_vy_leg3 * t1220), t1034, -t1127, -t1093, t1176, -t1162, t1144,
+                -t1249, -t1275, t1301, t983, grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vy_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_vy_leg3, t1364), grod_vy_leg3, t1461, t1509, -t1543,
-                t1560, t1579, t1593, minus_gcross_vy_leg4 * t1599 - gcylinder_vy_leg4 * t1601,
-                grod_vy_leg4 * t1619, -(minus_gcross_vy_leg4 * t1637), t1461, -t1543, -t1509, t1593,
-                -t1579, t1560, -t1666, -t1692, t1720, t1424,
+                -::overact::math::signed(grod_vy_leg3, t1346), grod_vy_leg3, t1444, t1489, -t1523,
+                t1539, t1557, t1571, minus_gcross_vy_leg4 * t1577 - gcylinder_vy_leg4 * t1579,
+                grod_vy_leg4 * t1597, -(minus_gcross_vy_leg4 * t1615), t1444, -t1523, -t1489, t1571,
+                -t1557, t1539, -t1644, -t1670, t1696, t1370,
                 grod_vy_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_vy_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_vy_leg4, t1765), grod_vy_leg4, t1862, t1910, t1944,
-                -t1961, t1980, t1994, gcross_vy_leg5 * t2000 - gcylinder_vy_leg5 * t2002,
-                grod_vy_leg5 * t2020, gcross_vy_leg5 * t2038, t1862, t1944, -t1910, t1994, -t1980,
-                -t1961, t2067, t2093, t2121, t1829, grod_vy_leg5 * minus_minus_rate_dot_rod_leg5,
+                -::overact::math::signed(grod_vy_leg4, t1741), grod_vy_leg4, t1839, t1885, t1919,
+                -t1935, t1953, t1967, gcross_vy_leg5 * t1973 - gcylinder_vy_leg5 * t1975,
+                grod_vy_leg5 * t1993, gcross_vy_leg5 * t2011, t1839, t1919, -t1885, t1967, -t1953,
+                -t1935, t2040, t2066, t2092, t1770, grod_vy_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_vy_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_vy_leg5, t2166), grod_vy_leg5, t2263, t2311, t2345,
-                -t2362, t2381, t2395, gcross_vy_leg6 * t2401 - gcylinder_vy_leg6 * t2403,
-                grod_vy_leg6 * t2421, gcross_vy_leg6 * t2439, t2263, t2345, -t2311, t2395, -t2381,
-                -t2362, t2468, t2494, t2522, t2230, grod_vy_leg6 * minus_minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_vy_leg5, t2137), grod_vy_leg5, t2219, t2278, t2312,
+                -t2329, t2347, t2361, gcross_vy_leg6 * t2367 - gcylinder_vy_leg6 * t2369,
+                grod_vy_leg6 * t2387, gcross_vy_leg6 * t2405, t2219, t2312, -t2278, t2361, -t2347,
+                -t2329, t2434, t2460, t2486, t2172, grod_vy_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_vy_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vy_leg6, t2567), grod_vy_leg6, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, t150, t156, t2585 * t141 - t2587 * t144 + t2590 * t148, acceleration[1],
+                -::overact::math::signed(grod_vy_leg6, t2531), grod_vy_leg6, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, t92, t98, t2549 * t83 - t2551 * t86 + t2554 * t90, acceleration[1],
             ],
             [
-                -t223, t269, t303, t319, t339, t351,
-                gcross_vz_leg1 * t356 - gcylinder_vz_leg1 * t358,
-                -(gcross_vz_leg1 * t379 + gcylinder_vz_leg1 * t381), gcross_vz_leg1 * t394, -t223,
-                t303, -t269, t351, -t339, t319, t428, t452, t482, t493,
+                -t223, t267, t301, t316, t335, t347,
+                gcross_vz_leg1 * t352 - gcylinder_vz_leg1 * t354,
+                -(gcross_vz_leg1 * t375 + gcylinder_vz_leg1 * t377), gcross_vz_leg1 * t390, -t223,
+                t301, -t267, t347, -t335, t316, t424, t448, t476, t487,
                 grod_vz_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vz_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_vz_leg1, t523), grod_vz_leg1, t664, t710, t744, t760,
-                t780, -t792, minus_gcylinder_vz_leg2 * t799 - gcross_vz_leg2 * t797,
-                -(gcross_vz_leg2 * t820 + minus_gcylinder_vz_leg2 * t822), gcross_vz_leg2 * t835,
-                t664, t744, -t710, -t792, -t780, t760, t869, t893, t923, t933,
+                -::overact::math::signed(grod_vz_leg1, t517), grod_vz_leg1, t659, t702, t736, t751,
+                t770, -t782, minus_gcylinder_vz_leg2 * t789 - gcross_vz_leg2 * t787,
+                -(gcross_vz_leg2 * t810 + minus_gcylinder_vz_leg2 * t812), gcross_vz_leg2 * t825,
+                t659, t736, -t702, -t782, -t770, t751, t859, t883, t911, t921,
                 grod_vz_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vz_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_vz_leg2, t963), grod_vz_leg2, t1065, t1111, t1145,
-                t1161, t1181, -t1193, minus_gcylinder_vz_leg3 * t1200 - gcross_vz_leg3 * t1198,
-                -(gcross_vz_leg3 * t1221 + minus_gcylinder_vz_leg3 * t1223), gcross_vz_leg3 * t1236,
-                t1065, t1145, -t1111, -t1193, -t1181, t1161, t1270, t1294, t1324, t1334,
+                -::overact::math::signed(grod_vz_leg2, t951), grod_vz_leg2, -t1040, t1096, t1130,
+                t1146, t1165, -t1177, minus_gcylinder_vz_leg3 * t1184 - gcross_vz_leg3 * t1182,
+                -(gcross_vz_leg3 * t1205 + minus_gcylinder_vz_leg3 * t1207), gcross_vz_leg3 * t1220,
+                -t1040, t1130, -t1096, -t1177, -t1165, t1146, t1254, t1278, t1306, t1316,
                 grod_vz_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vz_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_vz_leg3, t1364), grod_vz_leg3, t1466, t1512, t1546,
-                t1562, t1582, -t1594, minus_gcylinder_vz_leg4 * t1601 - gcross_vz_leg4 * t1599,
-                -(gcross_vz_leg4 * t1622 + minus_gcylinder_vz_leg4 * t1624), gcross_vz_leg4 * t1637,
-                t1466, t1546, -t1512, -t1594, -t1582, t1562, t1671, t1695, t1725, t1735,
+                -::overact::math::signed(grod_vz_leg3, t1346), grod_vz_leg3, t1449, t1492, t1526,
+                t1541, t1560, -t1572, minus_gcylinder_vz_leg4 * t1579 - gcross_vz_leg4 * t1577,
+                -(gcross_vz_leg4 * t1600 + minus_gcylinder_vz_leg4 * t1602), gcross_vz_leg4 * t1615,
+                t1449, t1526, -t1492, -t1572, -t1560, t1541, t1649, t1673, t1701, t1711,
                 grod_vz_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_vz_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_vz_leg4, t1765), grod_vz_leg4, -t1867, -t1913, t1947,
-                t1963, -t1983, -t1995,
-                minus_gcylinder_vz_leg5 * t2002 - minus_gcross_vz_leg5 * t2000,
-                -(minus_gcross_vz_leg5 * t2023 + minus_gcylinder_vz_leg5 * t2025),
-                -(minus_gcross_vz_leg5 * t2038), -t1867, t1947, t1913, -t1995, t1983, t1963, -t2072,
-                -t2096, -t2126, t2136, grod_vz_leg5 * minus_minus_rate_dot_rod_leg5,
+                -::overact::math::signed(grod_vz_leg4, t1741), grod_vz_leg4, -t1844, -t1888, t1922,
+                t1937, -t1956, -t1968,
+                minus_gcylinder_vz_leg5 * t1975 - minus_gcross_vz_leg5 * t1973,
+                -(minus_gcross_vz_leg5 * t1996 + minus_gcylinder_vz_leg5 * t1998),
+                -(minus_gcross_vz_leg5 * t2011), -t1844, t1922, t1888, -t1968, t1956, t1937, -t2045,
+                -t2069, -t2097, t2107, grod_vz_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_vz_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_vz_leg5, t2166), grod_vz_leg5, -t2268, -t2314, t2348,
-                t2364, -t2384, -t2396,
-                minus_gcylinder_vz_leg6 * t2403 - minus_gcross_vz_leg6 * t2401,
-                -(minus_gcross_vz_leg6 * t2424 + minus_gcylinder_vz_leg6 * t2426),
-                -(minus_gcross_vz_leg6 * t2439), -t2268, t2348, t2314, -t2396, t2384, t2364, -t2473,
-                -t2497, -t2527, t2537, grod_vz_leg6 * minus_minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_vz_leg5, t2137), grod_vz_leg5, -t2225, -t2281, t2315,
+                t2331, -t2350, -t2362,
+                minus_gcylinder_vz_leg6 * t2369 - minus_gcross_vz_leg6 * t2367,
+                -(minus_gcross_vz_leg6 * t2390 + minus_gcylinder_vz_leg6 * t2392),
+                -(minus_gcross_vz_leg6 * t2405), -t2225, t2315, t2281, -t2362, t2350, t2331, -t2439,
+                -t2463, -t2491, t2501, grod_vz_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_vz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vz_leg6, t2567), grod_vz_leg6, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, t173, t179, t2585 * t166 + t2587 * t168 - t2590 * t171, t492,
+                -::overact::math::signed(grod_vz_leg6, t2531), grod_vz_leg6, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, t116, t122, t2549 * t109 + t2551 * t111 - t2554 * t114, t486,
             ],
             [
-                -t232, t272, t306, t321, t342, t352,
-                gcross_wx_leg1 * t356 - gcylinder_wx_leg1 * t358,
-                -(gcross_wx_leg1 * t379 + gcylinder_wx_leg1 * t381), gcross_wx_leg1 * t394, -t232,
-                t306, -t272, t352, -t342, t321, t30 * t428 - t48 * t423, t30 * t452 - t48 * t449,
-                t30 * t482 + t48 * t477, t30 * t493 - t48 * t163,
+                -t232, t270, t304, t318, t338, t348,
+                gcross_wx_leg1 * t352 - gcylinder_wx_leg1 * t354,
+                -(gcross_wx_leg1 * t375 + gcylinder_wx_leg1 * t377), gcross_wx_leg1 * t390, -t232,
+                t304, -t270, t348, -t338, t318, t44 * t424 - t14 * t419, t44 * t448 - t14 * t445,
+                t44 * t476 + t14 * t471, t44 * t487 - t14 * t105,
                 grod_wx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wx_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_wx_leg1, t523), grod_wx_leg1, t673, t713, -t747,
-                -t762, t783, t793, -(gcylinder_wx_leg2 * t799 - minus_gcross_wx_leg2 * t797),
-                gcylinder_wx_leg2 * t822 + minus_gcross_wx_leg2 * t820,
-                -(minus_gcross_wx_leg2 * t835), t673, -t747, -t713, t793, -t783, -t762,
-                -(t538 * t869 + t546 * t864), -(t538 * t893 + t546 * t890),
-                -(t538 * t923 + t546 * t918), t546 * t625 - t538 * t933,
+                -::overact::math::signed(grod_wx_leg1, t517), grod_wx_leg1, t668, t705, -t739,
+                -t753, t773, t783, -(gcylinder_wx_leg2 * t789 - minus_gcross_wx_leg2 * t787),
+                gcylinder_wx_leg2 * t812 + minus_gcross_wx_leg2 * t810,
+                -(minus_gcross_wx_leg2 * t825), t668, -t739, -t705, t783, -t773, -t753,
+                -(t532 * t859 + t540 * t854), -(t532 * t883 + t540 * t880),
+                -(t532 * t911 + t540 * t906), t540 * t607 - t532 * t921,
                 grod_wx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wx_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_wx_leg2, t963), grod_wx_leg2, t1074, t1114, t1148,
-                t1163, t1184, -t1194, minus_gcylinder_wx_leg3 * t1200 - gcross_wx_leg3 * t1198,
-                -(gcross_wx_leg3 * t1221 + minus_gcylinder_wx_leg3 * t1223), gcross_wx_leg3 * t1236,
-                t1074, t1148, -t1114, -t1194, -t1184, t1163, t26 * t1270 + t44 * t1265,
-                t26 * t1294 + t44 * t1291, t26 * t1324 - t44 * t1319, t26 * t1334 - t44 * t1023,
+                -::overact::math::signed(grod_wx_leg2, t951), grod_wx_leg2, -t1049, t1099, t1133,
+                t1148, t1168, -t1178, minus_gcylinder_wx_leg3 * t1184 - gcross_wx_leg3 * t1182,
+                -(gcross_wx_leg3 * t1205 + minus_gcylinder_wx_leg3 * t1207), gcross_wx_leg3 * t1220,
+                -t1049, t1133, -t1099, -t1178, -t1168, t1148, t40 * t1254 + t10 * t1249,
+                t40 * t1278 + t10 * t1275, t40 * t1306 - t10 * t1301, t40 * t1316 - t10 * t983,
                 grod_wx_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_wx_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_wx_leg3, t1364), grod_wx_leg3, t1475, t1515, t1549,
-                t1564, t1585, -t1595, minus_gcylinder_wx_leg4 * t1601 - gcross_wx_leg4 * t1599,
-                -(gcross_wx_leg4 * t1622 + minus_gcylinder_wx_leg4 * t1624), gcross_wx_leg4 * t1637,
-                t1475, t1549, -t1515, -t1595, -t1585, t1564, t536 * t1671 + t544 * t1666,
-                t536 * t1695 + t544 * t1692, t536 * t1725 - t544 * t1720,
-                t536 * t1735 - t544 * t1424, grod_wx_leg4 * minus_minus_rate_dot_rod_leg4,
+                -::overact::math::signed(grod_wx_leg3, t1346), grod_wx_leg3, t1458, t1495, t1529,
+                t1543, t1563, -t1573, minus_gcylinder_wx_leg4 * t1579 - gcross_wx_leg4 * t1577,
+                -(gcross_wx_leg4 * t1600 + minus_gcylinder_wx_leg4 * t1602), gcross_wx_leg4 * t1615,
+                t1458, t1529, -t1495, -t1573, -t1563, t1543, t530 * t1649 + t538 * t1644,
+                t530 * t1673 + t538 * t1670, t530 * t1701 - t538 * t1696,
+                t530 * t1711 - t538 * t1370, grod_wx_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_wx_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_wx_leg4, t1765), grod_wx_leg4, t1876, t1916, t1950,
-                -t1965, t1986, t1996, gcross_wx_leg5 * t2000 - gcylinder_wx_leg5 * t2002,
-                gcross_wx_leg5 * t2023 + gcylinder_wx_leg5 * t2025, gcross_wx_leg5 * t2038, t1876,
-                t1950, -t1916, t1996, -t1986, -t1965, t29 * t2072 + t47 * t2067,
-                t29 * t2096 + t47 * t2093, t29 * t2126 + t47 * t2121, t47 * t1829 - t29 * t2136,
+                -::overact::math::signed(grod_wx_leg4, t1741), grod_wx_leg4, t1853, t1891, t1925,
+                -t1939, t1959, t1969, gcross_wx_leg5 * t1973 - gcylinder_wx_leg5 * t1975,
+                gcross_wx_leg5 * t1996 + gcylinder_wx_leg5 * t1998, gcross_wx_leg5 * t2011, t1853,
+                t1925, -t1891, t1969, -t1959, -t1939, t43 * t2045 + t13 * t2040,
+                t43 * t2069 + t13 * t2066, t43 * t2097 + t13 * t2092, t13 * t1770 - t43 * t2107,
                 grod_wx_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_wx_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_wx_leg5, t2166), grod_wx_leg5, -t2277, -t2317, t2351,
-                t2366, -t2387, -t2397,
-                minus_gcylinder_wx_leg6 * t2403 - minus_gcross_wx_leg6 * t2401,
-                -(minus_gcross_wx_leg6 * t2424 + minus_gcylinder_wx_leg6 * t2426),
-                -(minus_gcross_wx_leg6 * t2439), -t2277, t2351, t2317, -t2397, t2387, t2366,
-                -(t537 * t2473 + t545 * t2468), -(t537 * t2497 + t545 * t2494),
-                -(t537 * t2527 + t545 * t2522), t537 * t2537 - t545 * t2230,
+                -::overact::math::signed(grod_wx_leg5, t2137), grod_wx_leg5, -t2234, -t2284, t2318,
+                t2333, -t2353, -t2363,
+                minus_gcylinder_wx_leg6 * t2369 - minus_gcross_wx_leg6 * t2367,
+                -(minus_gcross_wx_leg6 * t2390 + minus_gcylinder_wx_leg6 * t2392),
+                -(minus_gcross_wx_leg6 * t2405), -t2234, t2318, t2284, -t2363, t2353, t2333,
+                -(t531 * t2439 + t539 * t2434), -(t531 * t2463 + t539 * t2460),
+                -(t531 * t2491 + t539 * t2486), t531 * t2501 - t539 * t2172,
                 grod_wx_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_wx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wx_leg6, t2567), grod_wx_leg6,
-                t5 * t2578 + t2594 - t2602, t5 * t2619 + t10 * t2622 + t2585 * t2627,
-                t5 * t2645 + t10 * t2648 + t2585 * t2651, t10 * t2618 - t2665 + t2602,
-                t5 * t2676 + t10 * t2678 + t2585 * t2681, t2665 - t2594 + t2585 * t2644,
-                t20 * t492 - t38 * acceleration[1], t24 * t492 - t42 * acceleration[1],
-                t2587 * t492 - t2590 * acceleration[1], 0.0,
+                -::overact::math::signed(grod_wx_leg6, t2531), grod_wx_leg6,
+                t20 * t2542 + t2558 - t2566, t20 * t2583 + t24 * t2586 + t2549 * t2591,
+                t20 * t2609 + t24 * t2612 + t2549 * t2615, t24 * t2582 - t2629 + t2566,
+                t20 * t2640 + t24 * t2642 + t2549 * t2645, t2629 - t2558 + t2549 * t2608,
+                t34 * t486 - t4 * acceleration[1], t38 * t486 - t8 * acceleration[1],
+                t2551 * t486 - t2554 * acceleration[1], 0.0,
             ],
             [
-                t241, t275, -t309, t323, -t345, t353,
-                -(minus_gcross_wy_leg1 * t356 + gcylinder_wy_leg1 * t358),
-                minus_gcross_wy_leg1 * t379 - gcylinder_wy_leg1 * t381,
-                -(minus_gcross_wy_leg1 * t394), t241, -t309, -t275, t353, t345, t323,
-                -(t48 * t418 + t16 * t428), -(t48 * t446 + t16 * t452), t48 * t472 - t16 * t482,
-                t48 * t139 - t16 * t493, grod_wy_leg1 * minus_minus_rate_dot_rod_leg1,
+                t241, t273, -t307, t320, -t341, t349,
+                -(minus_gcross_wy_leg1 * t352 + gcylinder_wy_leg1 * t354),
+                minus_gcross_wy_leg1 * t375 - gcylinder_wy_leg1 * t377,
+                -(minus_gcross_wy_leg1 * t390), t241, -t307, -t273, t349, t341, t320,
+                -(t14 * t414 + t30 * t424), -(t14 * t442 + t30 * t448), t14 * t466 - t30 * t476,
+                t14 * t80 - t30 * t487, grod_wy_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wy_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_wy_leg1, t523), grod_wy_leg1, t682, t716, t750, t764,
-                t786, -t794, minus_gcylinder_wy_leg2 * t799 - minus_minus_gcross_wy_leg2 * t797,
-                -(minus_minus_gcross_wy_leg2 * t820 + minus_gcylinder_wy_leg2 * t822),
-                minus_minus_gcross_wy_leg2 * t835, t682, t750, -t716, -t794, -t786, t764,
-                t546 * t859 + t532 * t869, t546 * t887 + t532 * t893, t532 * t923 - t546 * t913,
-                t532 * t933 - t546 * t620, grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
+                -::overact::math::signed(grod_wy_leg1, t517), grod_wy_leg1, t677, t708, t742, t755,
+                t776, -t784, minus_gcylinder_wy_leg2 * t789 - minus_minus_gcross_wy_leg2 * t787,
+                -(minus_minus_gcross_wy_leg2 * t810 + minus_gcylinder_wy_leg2 * t812),
+                minus_minus_gcross_wy_leg2 * t825, t677, t742, -t708, -t784, -t776, t755,
+                t540 * t849 + t526 * t859, t540 * t877 + t526 * t883, t526 * t911 - t540 * t901,
+                t526 * t921 - t540 * t602, grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wy_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_wy_leg2, t963), grod_wy_leg2, t1083, t1117, t1151,
-                -t1165, t1187, t1195, -(gcross_wy_leg3 * t1198 + gcylinder_wy_leg3 * t1200),
-                gcylinder_wy_leg3 * t1223 - gcross_wy_leg3 * t1221, gcross_wy_leg3 * t1236, t1083,
-                t1151, -t1117, t1195, -t1187, -t1165, t44 * t1260 - t12 * t1270,
-                t44 * t1288 - t12 * t1294, t44 * t1314 - t12 * t1324, t44 * t1025 - t12 * t1334,
+                -::overact::math::signed(grod_wy_leg2, t951), grod_wy_leg2, t1058, t1102, t1136,
+                -t1150, t1171, t1179, -(gcross_wy_leg3 * t1182 + gcylinder_wy_leg3 * t1184),
+                gcylinder_wy_leg3 * t1207 - gcross_wy_leg3 * t1205, gcross_wy_leg3 * t1220, t1058,
+                t1136, -t1102, t1179, -t1171, -t1150, t10 * t1244 - t26 * t1254,
+                t10 * t1272 - t26 * t1278, t10 * t1296 - t26 * t1306, t10 * t985 - t26 * t1316,
                 -(minus_grod_wy_leg3 * minus_minus_rate_dot_rod_leg3),
                 -(minus_grod_wy_leg3 * minus_minus_rate_rod_leg3),
-                ::overact::math::signed(minus_grod_wy_leg3, t1364), -minus_grod_wy_leg3, t1484,
-                t1518, t1552, -t1566, t1588, t1596,
-                -(gcross_wy_leg4 * t1599 + gcylinder_wy_leg4 * t1601),
-                gcylinder_wy_leg4 * t1624 - gcross_wy_leg4 * t1622, gcross_wy_leg4 * t1637, t1484,
-                t1552, -t1518, t1596, -t1588, -t1566, t544 * t1661 - t530 * t1671,
-                t544 * t1689 - t530 * t1695, t544 * t1715 - t530 * t1725,
-                t544 * t1426 - t530 * t1735, -(minus_grod_wy_leg4 * minus_minus_rate_dot_rod_leg4),
+                ::overact::math::signed(minus_grod_wy_leg3, t1346), -minus_grod_wy_leg3, t1467,
+                t1498, t1532, -t1545, t1566, t1574,
+                -(gcross_wy_leg4 * t1577 + gcylinder_wy_leg4 * t1579),
+                gcylinder_wy_leg4 * t1602 - gcross_wy_leg4 * t1600, gcross_wy_leg4 * t1615, t1467,
+                t1532, -t1498, t1574, -t1566, -t1545, t538 * t1639 - t524 * t1649,
+                t538 * t1667 - t524 * t1673, t538 * t1691 - t524 * t1701,
+                t538 * t1372 - t524 * t1711, -(minus_grod_wy_leg4 * minus_minus_rate_dot_rod_leg4),
                 -(minus_grod_wy_leg4 * minus_minus_rate_rod_leg4),
-                ::overact::math::signed(minus_grod_wy_leg4, t1765), -minus_grod_wy_leg4, t1885,
-                t1919, -t1953, t1967, t1989, t1997,
-                -(minus_gcross_wy_leg5 * t2000 + gcylinder_wy_leg5 * t2002),
-                gcylinder_wy_leg5 * t2025 - minus_gcross_wy_leg5 * t2023,
-                -(minus_gcross_wy_leg5 * t2038), t1885, -t1953, -t1919, t1997, -t1989, t1967,
-                -(t47 * t2062 + t15 * t2072), -(t47 * t2090 + t15 * t2096),
-                -(t47 * t2116 + t15 * t2126), t15 * t2136 - t47 * t1827,
+                ::overact::math::signed(minus_grod_wy_leg4, t1741), -minus_grod_wy_leg4, t1862,
+                t1894, -t1928, t1941, t1962, t1970,
+                -(minus_gcross_wy_leg5 * t1973 + gcylinder_wy_leg5 * t1975),
+                gcylinder_wy_leg5 * t1998 - minus_gcross_wy_leg5 * t1996,
+                -(minus_gcross_wy_leg5 * t2011), t1862, -t1928, -t1894, t1970, -t1962, t1941,
+                -(t13 * t2035 + t29 * t2045), -(t13 * t2063 + t29 * t2069),
+                -(t13 * t2087 + t29 * t2097), t29 * t2107 - t13 * t1767,
                 grod_wy_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_wy_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_wy_leg5, t2166), grod_wy_leg5, t2286, t2320, t2354,
-                -t2368, t2390, t2398, gcross_wy_leg6 * t2401 - gcylinder_wy_leg6 * t2403,
-                gcross_wy_leg6 * t2424 + gcylinder_wy_leg6 * t2426, gcross_wy_leg6 * t2439, t2286,
-                t2354, -t2320, t2398, -t2390, -t2368, t545 * t2463 + t531 * t2473,
-                t545 * t2491 + t531 * t2497, t545 * t2517 + t531 * t2527,
-                t545 * t2228 - t531 * t2537, -(minus_grod_wy_leg6 * minus_minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_wy_leg5, t2137), grod_wy_leg5, t2243, t2287, t2321,
+                -t2335, t2356, t2364, gcross_wy_leg6 * t2367 - gcylinder_wy_leg6 * t2369,
+                gcross_wy_leg6 * t2390 + gcylinder_wy_leg6 * t2392, gcross_wy_leg6 * t2405, t2243,
+                t2321, -t2287, t2364, -t2356, -t2335, t539 * t2429 + t525 * t2439,
+                t539 * t2457 + t525 * t2463, t525 * t2491 - t539 * t2481,
+                t539 * t2169 - t525 * t2501, -(minus_grod_wy_leg6 * minus_minus_rate_dot_rod_leg6),
                 -(minus_grod_wy_leg6 * minus_minus_rate_rod_leg6),
-                ::overact::math::signed(minus_grod_wy_leg6, t2567), -minus_grod_wy_leg6,
-                t20 * t2578 + t2605 - t2607, t20 * t2619 + t24 * t2622 + t2587 * t2627,
-                t20 * t2645 + t24 * t2648 + t2587 * t2651, t24 * t2618 - t2669 + t2607,
-                t20 * t2676 + t24 * t2678 + t2587 * t2681, t2669 - t2605 + t2587 * t2644,
-                t38 * acceleration[0] - t5 * t492, t42 * acceleration[0] - t10 * t492,
-                t2590 * acceleration[0] - t2585 * t492, 0.0,
+                ::overact::math::signed(minus_grod_wy_leg6, t2531), -minus_grod_wy_leg6,
+                t34 * t2542 + t2569 - t2571, t34 * t2583 + t38 * t2586 + t2551 * t2591,
+                t34 * t2609 + t38 * t2612 + t2551 * t2615, t38 * t2582 - t2633 + t2571,
+                t34 * t2640 + t38 * t2642 + t2551 * t2645, t2633 - t2569 + t2551 * t2608,
+                t4 * acceleration[0] - t20 * t486, t8 * acceleration[0] - t24 * t486,
+                t2554 * acceleration[0] - t2549 * t486, 0.0,
             ],
             [
-                t250, t278, t312, t325, t348, -t354,
-                gcross_wz_leg1 * t356 + minus_gcylinder_wz_leg1 * t358,
-                -(minus_grod_wz_leg1 * t376), gcross_wz_leg1 * t394, t250, t312, -t278, -t354,
-                -t348, t325, t16 * t423 + t30 * t418, t16 * t449 + t30 * t446,
-                -(t16 * t477 + t30 * t472), t16 * t163 - t30 * t139,
+                t250, t276, t310, t322, t344, -t350,
+                gcross_wz_leg1 * t352 + minus_gcylinder_wz_leg1 * t354,
+                -(minus_grod_wz_leg1 * t372), gcross_wz_leg1 * t390, t250, t310, -t276, -t350,
+                -t344, t322, t30 * t419 + t44 * t414, t30 * t445 + t44 * t442,
+                -(t30 * t471 + t44 * t466), t30 * t105 - t44 * t80,
                 -(minus_grod_wz_leg1 * minus_minus_rate_dot_rod_leg1),
                 -(minus_grod_wz_leg1 * minus_minus_rate_rod_leg1),
-                ::overact::math::signed(minus_grod_wz_leg1, t523), -minus_grod_wz_leg1, t691, t719,
-                t753, -t766, t789, t795,
-                -(minus_minus_gcylinder_wz_leg2 * t799 + gcross_wz_leg2 * t797),
-                -(minus_grod_wz_leg2 * t817), gcross_wz_leg2 * t835, t691, t753, -t719, t795, -t789,
-                -t766, t532 * t864 - t538 * t859, t532 * t890 - t538 * t887,
-                t532 * t918 + t538 * t913, t538 * t620 - t532 * t625,
+                ::overact::math::signed(minus_grod_wz_leg1, t517), -minus_grod_wz_leg1, t686, t711,
+                t745, -t757, t779, t785,
+                -(minus_minus_gcylinder_wz_leg2 * t789 + gcross_wz_leg2 * t787),
+                -(minus_grod_wz_leg2 * t807), gcross_wz_leg2 * t825, t686, t745, -t711, t785, -t779,
+                -t757, t526 * t854 - t532 * t849, t526 * t880 - t532 * t877,
+                t526 * t906 + t532 * t901, t532 * t602 - t526 * t607,
                 -(minus_grod_wz_leg2 * minus_minus_rate_dot_rod_leg2),
                 -(minus_grod_wz_leg2 * minus_minus_rate_rod_leg2),
-                ::overact::math::signed(minus_grod_wz_leg2, t963), -minus_grod_wz_leg2, t1092,
-                t1120, -t1154, t1167, t1190, t1196,
-                minus_gcross_wz_leg3 * t1198 - gcylinder_wz_leg3 * t1200, grod_wz_leg3 * t1218,
-                -(minus_gcross_wz_leg3 * t1236), t1092, -t1154, -t1120, t1196, -t1190, t1167,
-                -(t12 * t1265 + t26 * t1260), -(t12 * t1291 + t26 * t1288),
-                t12 * t1319 - t26 * t1314, t12 * t1023 - t26 * t1025,
+                ::overact::math::signed(minus_grod_wz_leg2, t951), -minus_grod_wz_leg2, t1067,
+                t1105, -t1139, t1152, t1174, t1180,
+                minus_gcross_wz_leg3 * t1182 - gcylinder_wz_leg3 * t1184, grod_wz_leg3 * t1202,
+                -(minus_gcross_wz_leg3 * t1220), t1067, -t1139, -t1105, t1180, -t1174, t1152,
+                -(t26 * t1249 + t40 * t1244), -(t26 * t1275 + t40 * t1272),
+                t26 * t1301 - t40 * t1296, t26 * t983 - t40 * t985,
                 grod_wz_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_wz_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_wz_leg3, t1364), grod_wz_leg3, t1493, t1521, -t1555,
-                t1568, t1591, t1597, minus_gcross_wz_leg4 * t1599 - gcylinder_wz_leg4 * t1601,
-                grod_wz_leg4 * t1619, -(minus_gcross_wz_leg4 * t1637), t1493, -t1555, -t1521, t1597,
-                -t1591, t1568, -(t530 * t1666 + t536 * t1661), -(t530 * t1692 + t536 * t1689),
-                t530 * t1720 - t536 * t1715, t530 * t1424 - t536 * t1426,
+                -::overact::math::signed(grod_wz_leg3, t1346), grod_wz_leg3, t1476, t1501, -t1535,
+                t1547, t1569, t1575, minus_gcross_wz_leg4 * t1577 - gcylinder_wz_leg4 * t1579,
+                grod_wz_leg4 * t1597, -(minus_gcross_wz_leg4 * t1615), t1476, -t1535, -t1501, t1575,
+                -t1569, t1547, -(t524 * t1644 + t530 * t1639), -(t524 * t1670 + t530 * t1667),
+                t524 * t1696 - t530 * t1691, t524 * t1370 - t530 * t1372,
                 grod_wz_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_wz_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_wz_leg4, t1765), grod_wz_leg4, t1894, t1922, t1956,
-                t1969, t1992, -t1998, gcross_wz_leg5 * t2000 + minus_gcylinder_wz_leg5 * t2002,
-                -(minus_grod_wz_leg5 * t2020), gcross_wz_leg5 * t2038, t1894, t1956, -t1922, -t1998,
-                -t1992, t1969, t29 * t2062 - t15 * t2067, t29 * t2090 - t15 * t2093,
-                t29 * t2116 - t15 * t2121, t29 * t1827 - t15 * t1829,
+                -::overact::math::signed(grod_wz_leg4, t1741), grod_wz_leg4, t1871, t1897, t1931,
+                t1943, t1965, -t1971, gcross_wz_leg5 * t1973 + minus_gcylinder_wz_leg5 * t1975,
+                -(minus_grod_wz_leg5 * t1993), gcross_wz_leg5 * t2011, t1871, t1931, -t1897, -t1971,
+                -t1965, t1943, t43 * t2035 - t29 * t2040, t43 * t2063 - t29 * t2066,
+                t43 * t2087 - t29 * t2092, t43 * t1767 - t29 * t1770,
                 -(minus_grod_wz_leg5 * minus_minus_rate_dot_rod_leg5),
                 -(minus_grod_wz_leg5 * minus_minus_rate_rod_leg5),
-                ::overact::math::signed(minus_grod_wz_leg5, t2166), -minus_grod_wz_leg5, t2295,
-                t2323, t2357, -t2370, t2393, t2399,
-                gcross_wz_leg6 * t2401 - gcylinder_wz_leg6 * t2403, grod_wz_leg6 * t2421,
-                gcross_wz_leg6 * t2439, t2295, t2357, -t2323, t2399, -t2393, -t2370,
-                t531 * t2468 - t537 * t2463, t531 * t2494 - t537 * t2491,
-                t531 * t2522 - t537 * t2517, t531 * t2230 - t537 * t2228,
+                ::overact::math::signed(minus_grod_wz_leg5, t2137), -minus_grod_wz_leg5, t2252,
+                t2290, t2324, -t2337, t2359, t2365,
+                gcross_wz_leg6 * t2367 - gcylinder_wz_leg6 * t2369, grod_wz_leg6 * t2387,
+                gcross_wz_leg6 * t2405, t2252, t2324, -t2290, t2365, -t2359, -t2337,
+                t525 * t2434 - t531 * t2429, t525 * t2460 - t531 * t2457,
+                t525 * t2486 + t531 * t2481, t525 * t2172 - t531 * t2169,
                 grod_wz_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_wz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wz_leg6, t2567), grod_wz_leg6,
-                t38 * t2578 + t2610 - t2612, t38 * t2619 + t42 * t2622 + t2590 * t2627,
-                t38 * t2645 + t42 * t2648 + t2590 * t2651, t42 * t2618 - t2673 + t2612,
-                t38 * t2676 + t42 * t2678 + t2590 * t2681, t2673 - t2610 + t2590 * t2644,
-                t5 * acceleration[1] - t20 * acceleration[0],
-                t10 * acceleration[1] - t24 * acceleration[0],
-                t2585 * acceleration[1] - t2587 * acceleration[0], 0.0,
+                -::overact::math::signed(grod_wz_leg6, t2531), grod_wz_leg6,
+                t4 * t2542 + t2574 - t2576, t4 * t2583 + t8 * t2586 + t2554 * t2591,
+                t4 * t2609 + t8 * t2612 + t2554 * t2615, t8 * t2582 - t2637 + t2576,
+                t4 * t2640 + t8 * t2642 + t2554 * t2645, t2637 - t2574 + t2554 * t2608,
+                t20 * acceleration[1] - t34 * acceleration[0],
+                t24 * acceleration[1] - t38 * acceleration[0],
+                t2549 * acceleration[1] - t2551 * acceleration[0], 0.0,
             ],
         ])
     }
@@ -4936,7 +4932,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 2601 operations (927 additions, 1662 multiplications, 12 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 2012 intermediates.
+    /// 2563 operations (912 additions, 1609 multiplications, 42 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1974 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4960,1340 +4956,1339 @@ impl Hexapod {
         let t7 = minus_c_cylinder_leg1 * t4 - 0.20791169081775931 * s_cylinder_leg1;
         let t8 = 1.0 / joints[2];
         let gcylinder_vx_leg1 = t7 * t8;
-        let t10 = s_cylinder_leg1 * joints[2];
-        ::overact::guard::leg(t10, 0.5513142860394166, "leg1")?;
-        let t11 = 1.0 / t10;
-        let t12 = 0.9781476007338057 * s_cross_leg1;
-        let t13 = 2.0 * pose[4];
-        let t14 = pose[6] * t13;
-        let t15 = 2.0 * pose[5];
-        let t16 = pose[3] * t15;
-        let t17 = t14 - t16;
-        let t18 = 0.05176380902050415 * t17;
-        let t19 = pose[6] * t15;
-        let t20 = pose[3] * t13;
-        let t21 = t19 + t20;
-        let t22 = 0.19318516525781368 * t21;
-        let t23 = t18 + t22;
-        let t25 = pose[5] * t13;
-        let t26 = 2.0 * pose[6];
-        let t27 = pose[3] * t26;
-        let t28 = t25 + t27;
-        let t29 = 0.05176380902050415 * t28;
-        let t31 = 1.0 - pose[4] * t13;
-        let t32 = pose[6] * t26;
-        let t33 = t31 - t32;
-        let t34 = 0.19318516525781368 * t33;
-        let t35 = t29 + t34;
-        let t37 = t23 * twist[4] - t35 * twist[5];
-        let t38 = 0.19318516525781368 * t28;
-        let t39 = 0.05176380902050415 * t33;
-        let t40 = t38 + t39;
-        let t42 = 0.19318516525781368 * t17;
-        let t43 = 0.05176380902050415 * t21;
-        let t44 = t42 + t43;
-        let t46 = t40 * twist[5] - t44 * twist[4];
-        let t48 = twist[0] - (t37 + t46);
-        let t50 = 0.20791169081775931 * s_cross_leg1;
-        let t51 = pose[5] * t15;
-        let t53 = 1.0 - t51 - t32;
-        let t54 = 0.05176380902050415 * t53;
-        let t55 = t25 - t27;
-        let t56 = 0.19318516525781368 * t55;
-        let t57 = t54 + t56;
-        let t60 = t57 * twist[5] - t23 * twist[3];
-        let t62 = 0.19318516525781368 * t53;
-        let t63 = 0.05176380902050415 * t55;
-        let t64 = t62 + t63;
-        let t66 = t44 * twist[3] - t64 * twist[5];
-        let t68 = twist[1] - (t60 + t66);
-        let t73 = t35 * twist[3] - t57 * twist[4];
-        let t76 = t64 * twist[4] - t40 * twist[3];
-        let t78 = twist[2] - (t73 + t76);
-        let t80 = t12 * t48 - t50 * t68 + minus_c_cross_leg1 * t78;
-        let minus_rate_cross_leg1 = t11 * t80;
-        let t82 = s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t83 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t84 = t82 * t83;
-        let t85 = gcylinder_vx_leg1 * t84;
-        let minus_gcross_vx_leg1 = t12 * t11;
-        let t88 = 0.20791169081775931 * minus_c_cross_leg1;
-        let t91 = minus_c_cylinder_leg1 * t88 + 0.9781476007338057 * s_cylinder_leg1;
-        let t94 = s_cross_leg1 * minus_c_cylinder_leg1;
-        let rate_cylinder_leg1 = t8 * (t7 * t48 - t91 * t68 - t94 * t78);
-        let t98 = rate_cylinder_leg1 * t83;
-        let t99 = twist[3] * twist[4];
-        let t100 = t99 - acceleration[5];
-        let t102 = twist[4] * twist[4];
-        let t103 = twist[5] * twist[5];
-        let t104 = t102 + t103;
-        let t107 = twist[3] * twist[5];
-        let t108 = t107 + acceleration[4];
-        let t110 = t28 * t100 - t53 * t104 + t17 * t108;
-        let t111 = 0.05176380902050415 * t110;
-        let t116 = t33 * t100 - t55 * t104 + t21 * t108;
-        let t117 = 0.19318516525781368 * t116;
-        let t118 = t111 + t117;
-        let t119 = 0.19318516525781368 * t110;
-        let t120 = 0.05176380902050415 * t116;
-        let t121 = t119 + t120;
-        let t123 = acceleration[0] + t121 - t118;
-        let t125 = t99 + acceleration[5];
-        let t127 = twist[3] * twist[3];
-        let t128 = t127 + t103;
-        let t131 = twist[4] * twist[5];
-        let t132 = t131 - acceleration[3];
-        let t134 = t53 * t125 - t28 * t128 + t17 * t132;
-        let t135 = 0.05176380902050415 * t134;
-        let t140 = t55 * t125 - t33 * t128 + t21 * t132;
-        let t141 = 0.19318516525781368 * t140;
-        let t142 = t135 + t141;
-        let t143 = 0.19318516525781368 * t134;
-        let t144 = 0.05176380902050415 * t140;
-        let t145 = t143 + t144;
-        let t147 = acceleration[1] + t145 - t142;
-        let t150 = t107 - acceleration[4];
-        let t152 = t131 + acceleration[3];
-        let t155 = t127 + t102;
-        let t157 = t53 * t150 + t28 * t152 - t17 * t155;
-        let t158 = 0.05176380902050415 * t157;
-        let t163 = t55 * t150 + t33 * t152 - t21 * t155;
-        let t164 = 0.19318516525781368 * t163;
-        let t165 = t158 + t164;
-        let t166 = 0.19318516525781368 * t157;
-        let t167 = 0.05176380902050415 * t163;
-        let t168 = t166 + t167;
-        let t169 = t168 - t165;
-        let t170 = acceleration[2] + t169;
-        let t172 = t12 * t123 - t50 * t147 + minus_c_cross_leg1 * t170;
-        let t173 = joints[2] * t98;
+        let t10 = 0.9781476007338057 * s_cross_leg1;
+        let t11 = 2.0 * pose[4];
+        let t12 = pose[6] * t11;
+        let t13 = 2.0 * pose[5];
+        let t14 = pose[3] * t13;
+        let t15 = t12 - t14;
+        let t16 = 0.05176380902050415 * t15;
+        let t17 = pose[6] * t13;
+        let t18 = pose[3] * t11;
+        let t19 = t17 + t18;
+        let t20 = 0.19318516525781368 * t19;
+        let t21 = t16 + t20;
+        let t23 = pose[5] * t11;
+        let t24 = 2.0 * pose[6];
+        let t25 = pose[3] * t24;
+        let t26 = t23 + t25;
+        let t27 = 0.05176380902050415 * t26;
+        let t29 = 1.0 - pose[4] * t11;
+        let t30 = pose[6] * t24;
+        let t31 = t29 - t30;
+        let t32 = 0.19318516525781368 * t31;
+        let t33 = t27 + t32;
+        let t35 = t21 * twist[4] - t33 * twist[5];
+        let t36 = 0.19318516525781368 * t26;
+        let t37 = 0.05176380902050415 * t31;
+        let t38 = t36 + t37;
+        let t40 = 0.19318516525781368 * t15;
+        let t41 = 0.05176380902050415 * t19;
+        let t42 = t40 + t41;
+        let t44 = t38 * twist[5] - t42 * twist[4];
+        let t46 = twist[0] - (t35 + t44);
+        let t48 = 0.20791169081775931 * s_cross_leg1;
+        let t49 = pose[5] * t13;
+        let t51 = 1.0 - t49 - t30;
+        let t52 = 0.05176380902050415 * t51;
+        let t53 = t23 - t25;
+        let t54 = 0.19318516525781368 * t53;
+        let t55 = t52 + t54;
+        let t58 = t55 * twist[5] - t21 * twist[3];
+        let t60 = 0.19318516525781368 * t51;
+        let t61 = 0.05176380902050415 * t53;
+        let t62 = t60 + t61;
+        let t64 = t42 * twist[3] - t62 * twist[5];
+        let t66 = twist[1] - (t58 + t64);
+        let t71 = t33 * twist[3] - t55 * twist[4];
+        let t74 = t62 * twist[4] - t38 * twist[3];
+        let t76 = twist[2] - (t71 + t74);
+        let t78 = t10 * t46 - t48 * t66 + minus_c_cross_leg1 * t76;
+        let t79 = s_cylinder_leg1 * joints[2];
+        ::overact::guard::leg(t79, 0.5513142860394166, "leg1")?;
+        let minus_rate_cross_leg1 = t78 / t79;
+        let t81 = s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t82 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t83 = t81 * t82;
+        let t84 = gcylinder_vx_leg1 * t83;
+        let minus_gcross_vx_leg1 = t10 / t79;
+        let t86 = twist[3] * twist[4];
+        let t87 = t86 - acceleration[5];
+        let t89 = twist[4] * twist[4];
+        let t90 = twist[5] * twist[5];
+        let t91 = t89 + t90;
+        let t94 = twist[3] * twist[5];
+        let t95 = t94 + acceleration[4];
+        let t97 = t26 * t87 - t51 * t91 + t15 * t95;
+        let t98 = 0.05176380902050415 * t97;
+        let t103 = t31 * t87 - t53 * t91 + t19 * t95;
+        let t104 = 0.19318516525781368 * t103;
+        let t105 = t98 + t104;
+        let t106 = 0.19318516525781368 * t97;
+        let t107 = 0.05176380902050415 * t103;
+        let t108 = t106 + t107;
+        let t110 = acceleration[0] + t108 - t105;
+        let t112 = t86 + acceleration[5];
+        let t114 = twist[3] * twist[3];
+        let t115 = t114 + t90;
+        let t118 = twist[4] * twist[5];
+        let t119 = t118 - acceleration[3];
+        let t121 = t51 * t112 - t26 * t115 + t15 * t119;
+        let t122 = 0.05176380902050415 * t121;
+        let t127 = t53 * t112 - t31 * t115 + t19 * t119;
+        let t128 = 0.19318516525781368 * t127;
+        let t129 = t122 + t128;
+        let t130 = 0.19318516525781368 * t121;
+        let t131 = 0.05176380902050415 * t127;
+        let t132 = t130 + t131;
+        let t134 = acceleration[1] + t132 - t129;
+        let t137 = t94 - acceleration[4];
+        let t139 = t118 + acceleration[3];
+        let t142 = t114 + t89;
+        let t144 = t51 * t137 + t26 * t139 - t15 * t142;
+        let t145 = 0.05176380902050415 * t144;
+        let t150 = t53 * t137 + t31 * t139 - t19 * t142;
+        let t151 = 0.19318516525781368 * t150;
+        let t152 = t145 + t151;
+        let t153 = 0.19318516525781368 * t144;
+        let t154 = 0.05176380902050415 * t150;
+        let t155 = t153 + t154;
+        let t157 = acceleration[2] + t155 - t152;
+        let t159 = t10 * t110 - t48 * t134 + minus_c_cross_leg1 * t157;
         let minus_grod_vx_leg1 = s_cylinder_leg1 * t4
             + 0.20791169081775931 * minus_c_cylinder_leg1;
+        let t165 = 0.20791169081775931 * minus_c_cross_leg1;
         let minus_grod_vy_leg1 = 0.9781476007338057 * minus_c_cylinder_leg1
-            - s_cylinder_leg1 * t88;
+            - s_cylinder_leg1 * t165;
         let grod_vz_leg1 = s_cross_leg1 * s_cylinder_leg1;
-        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t48 + minus_grod_vy_leg1 * t68
-            - grod_vz_leg1 * t78;
-        let t188 = minus_rate_rod_leg1 + minus_rate_rod_leg1;
-        let minus_rate_dot_cross_leg1 = t11 * (t172 + t173 + t173 + t82 * t188);
-        let t192 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t194 = t98 + t98 - t192;
-        let t195 = s_cylinder_leg1 * t194;
-        let t197 = t85 - minus_gcross_vx_leg1 * t195;
-        let gcross_vy_leg1 = t50 * t11;
-        let minus_gcylinder_vy_leg1 = t91 * t8;
-        let t201 = minus_gcylinder_vy_leg1 * t84;
+        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t46 + minus_grod_vy_leg1 * t66
+            - grod_vz_leg1 * t76;
+        let t173 = 2.0 * minus_rate_rod_leg1;
+        let t175 = t159 + t81 * t173;
+        let t179 = minus_c_cylinder_leg1 * t165 + 0.9781476007338057 * s_cylinder_leg1;
+        let t182 = s_cross_leg1 * minus_c_cylinder_leg1;
+        let t184 = t7 * t46 - t179 * t66 - t182 * t76;
+        let t185 = t82 * t184;
+        let minus_rate_dot_cross_leg1 = (t175 + t185 + t185) / t79;
+        let rate_cylinder_leg1 = t8 * t184;
+        let t190 = rate_cylinder_leg1 * t81;
+        let t191 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t193 = t190 + t191 + t190;
+        let t194 = minus_c_cylinder_leg1 * t193;
+        let t195 = t194 - minus_rate_dot_cross_leg1;
+        let t197 = t84 - minus_gcross_vx_leg1 * t195;
+        let gcross_vy_leg1 = t48 / t79;
+        let minus_gcylinder_vy_leg1 = t179 * t8;
+        let t201 = minus_gcylinder_vy_leg1 * t83;
         let t202 = gcross_vy_leg1 * t195 - t201;
-        let minus_gcross_vz_leg1 = minus_c_cross_leg1 * t11;
-        let minus_gcylinder_vz_leg1 = t94 * t8;
-        let t206 = minus_gcylinder_vz_leg1 * t84;
+        let minus_gcross_vz_leg1 = minus_c_cross_leg1 / t79;
+        let minus_gcylinder_vz_leg1 = t182 * t8;
+        let t206 = minus_gcylinder_vz_leg1 * t83;
         let t207 = minus_gcross_vz_leg1 * t195 + t206;
-        let t208 = t44 - t23;
-        let t210 = t40 - t35;
+        let t208 = t42 - t21;
+        let t210 = t38 - t33;
         let gcylinder_wx_leg1 = t208 * minus_gcylinder_vy_leg1
             - t210 * minus_gcylinder_vz_leg1;
-        let t213 = gcylinder_wx_leg1 * t84;
+        let t213 = gcylinder_wx_leg1 * t83;
         let minus_gcross_wx_leg1 = t210 * minus_gcross_vz_leg1 + t208 * gcross_vy_leg1;
         let t218 = t213 - minus_gcross_wx_leg1 * t195;
-        let t219 = t64 - t57;
+        let t219 = t62 - t55;
         let gcross_wy_leg1 = t219 * minus_gcross_vz_leg1 - t208 * minus_gcross_vx_leg1;
         let gcylinder_wy_leg1 = t208 * gcylinder_vx_leg1
             + t219 * minus_gcylinder_vz_leg1;
-        let t227 = gcylinder_wy_leg1 * t84;
+        let t227 = gcylinder_wy_leg1 * t83;
         let t228 = gcross_wy_leg1 * t195 + t227;
         let gcross_wz_leg1 = t219 * gcross_vy_leg1 + t210 * minus_gcross_vx_leg1;
         let minus_gcylinder_wz_leg1 = t219 * minus_gcylinder_vy_leg1
             + t210 * gcylinder_vx_leg1;
-        let t236 = minus_gcylinder_wz_leg1 * t84;
+        let t236 = minus_gcylinder_wz_leg1 * t83;
         let t237 = gcross_wz_leg1 * t195 - t236;
-        let t238 = t82 * t82;
-        let t239 = t83 * t83;
+        let t238 = t81 * t81;
+        let t239 = t82 * t82;
         let t240 = t238 - t239;
-        let t242 = rate_cylinder_leg1 * t82;
-        let t243 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t245 = t242 + t243 + t242;
-        let t248 = s_cylinder_leg1 * t245 - minus_c_cylinder_leg1 * t194;
-        let t250 = gcylinder_vx_leg1 * t240 - minus_gcross_vx_leg1 * t248;
-        let t253 = gcross_vy_leg1 * t248 - minus_gcylinder_vy_leg1 * t240;
-        let t256 = minus_gcross_vz_leg1 * t248 + minus_gcylinder_vz_leg1 * t240;
-        let t259 = gcylinder_wx_leg1 * t240 - minus_gcross_wx_leg1 * t248;
-        let t262 = gcross_wy_leg1 * t248 + gcylinder_wy_leg1 * t240;
-        let t265 = gcross_wz_leg1 * t248 - minus_gcylinder_wz_leg1 * t240;
-        let t270 = t7 * t123 - t91 * t147 - t94 * t170;
-        let t271 = t80 * minus_rate_cross_leg1;
-        let rate_dot_cylinder_leg1 = t8
-            * (t270 - minus_c_cylinder_leg1 * t271 + rate_cylinder_leg1 * t188);
-        let t277 = rate_dot_cylinder_leg1 - t84;
-        let t279 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t282 = s_cylinder_leg1 * t277 - minus_c_cylinder_leg1 * (t279 - t238);
-        let t285 = minus_gcross_vx_leg1 * t282 + gcylinder_vx_leg1 * t192;
-        let t288 = gcross_vy_leg1 * t282 + minus_gcylinder_vy_leg1 * t192;
-        let t291 = minus_gcylinder_vz_leg1 * t192 - minus_gcross_vz_leg1 * t282;
-        let t294 = minus_gcross_wx_leg1 * t282 + gcylinder_wx_leg1 * t192;
-        let t297 = gcross_wy_leg1 * t282 - gcylinder_wy_leg1 * t192;
-        let t300 = gcross_wz_leg1 * t282 + minus_gcylinder_wz_leg1 * t192;
-        let t301 = minus_c_cylinder_leg1 * t245;
-        let t303 = minus_gcross_vx_leg1 * t301 - t85;
-        let t305 = t201 - gcross_vy_leg1 * t301;
-        let t307 = minus_gcross_vz_leg1 * t301 + t206;
-        let t309 = minus_gcross_wx_leg1 * t301 - t213;
-        let t311 = gcross_wy_leg1 * t301 + t227;
-        let t313 = t236 - gcross_wz_leg1 * t301;
-        let t317 = t84 + rate_dot_cylinder_leg1;
-        let t319 = s_cylinder_leg1 * (t239 - t279) - minus_c_cylinder_leg1 * t317;
-        let t321 = gcylinder_vx_leg1 * t243 - minus_gcross_vx_leg1 * t319;
-        let t324 = gcross_vy_leg1 * t319 - minus_gcylinder_vy_leg1 * t243;
-        let t327 = minus_gcross_vz_leg1 * t319 + minus_gcylinder_vz_leg1 * t243;
-        let t330 = gcylinder_wx_leg1 * t243 - minus_gcross_wx_leg1 * t319;
-        let t333 = gcross_wy_leg1 * t319 + gcylinder_wy_leg1 * t243;
-        let t336 = gcross_wz_leg1 * t319 - minus_gcylinder_wz_leg1 * t243;
-        let t337 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
-        let t338 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
-        let t339 = minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
-        let t340 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
-        let t341 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
-        let t342 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
-        let t343 = 9.81 * minus_c_cross_leg1;
-        let t344 = minus_c_cylinder_leg1 * t343;
-        let t346 = 9.81 * grod_vz_leg1;
-        let t364 = t8 * t346;
-        let t367 = s_cylinder_leg1 * t343;
-        let t369 = 9.81 * t94;
+        let t245 = s_cylinder_leg1 * t193 + t175 * (minus_c_cylinder_leg1 / joints[2]);
+        let t247 = gcylinder_vx_leg1 * t240 - minus_gcross_vx_leg1 * t245;
+        let t250 = gcross_vy_leg1 * t245 - minus_gcylinder_vy_leg1 * t240;
+        let t253 = minus_gcross_vz_leg1 * t245 + minus_gcylinder_vz_leg1 * t240;
+        let t256 = gcylinder_wx_leg1 * t240 - minus_gcross_wx_leg1 * t245;
+        let t259 = gcross_wy_leg1 * t245 + gcylinder_wy_leg1 * t240;
+        let t262 = gcross_wz_leg1 * t245 - minus_gcylinder_wz_leg1 * t240;
+        let t267 = t7 * t110 - t179 * t134 - t182 * t157;
+        let t269 = t267 + rate_cylinder_leg1 * t173;
+        let t270 = t269 / joints[2];
+        let rate_dot_cylinder_leg1 = t270 - t83;
+        let t272 = rate_dot_cylinder_leg1 - t83;
+        let t274 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t277 = s_cylinder_leg1 * t272 - minus_c_cylinder_leg1 * (t274 - t238);
+        let t279 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t281 = minus_gcross_vx_leg1 * t277 + gcylinder_vx_leg1 * t279;
+        let t284 = gcross_vy_leg1 * t277 + minus_gcylinder_vy_leg1 * t279;
+        let t287 = minus_gcylinder_vz_leg1 * t279 - minus_gcross_vz_leg1 * t277;
+        let t290 = minus_gcross_wx_leg1 * t277 + gcylinder_wx_leg1 * t279;
+        let t293 = gcross_wy_leg1 * t277 - gcylinder_wy_leg1 * t279;
+        let t296 = gcross_wz_leg1 * t277 + minus_gcylinder_wz_leg1 * t279;
+        let t298 = minus_gcross_vx_leg1 * t194 - t84;
+        let t300 = t201 - gcross_vy_leg1 * t194;
+        let t302 = minus_gcross_vz_leg1 * t194 + t206;
+        let t304 = minus_gcross_wx_leg1 * t194 - t213;
+        let t306 = gcross_wy_leg1 * t194 + t227;
+        let t308 = t236 - gcross_wz_leg1 * t194;
+        let t313 = s_cylinder_leg1 * (t239 - t274) - minus_c_cylinder_leg1 * t270;
+        let t315 = gcylinder_vx_leg1 * t191 - minus_gcross_vx_leg1 * t313;
+        let t318 = gcross_vy_leg1 * t313 - minus_gcylinder_vy_leg1 * t191;
+        let t321 = minus_gcross_vz_leg1 * t313 + minus_gcylinder_vz_leg1 * t191;
+        let t324 = gcylinder_wx_leg1 * t191 - minus_gcross_wx_leg1 * t313;
+        let t327 = gcross_wy_leg1 * t313 + gcylinder_wy_leg1 * t191;
+        let t330 = gcross_wz_leg1 * t313 - minus_gcylinder_wz_leg1 * t191;
+        let t331 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
+        let t332 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
+        let t333 = minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
+        let t334 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
+        let t335 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
+        let t336 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
+        let t337 = 9.81 * minus_c_cross_leg1;
+        let t338 = minus_c_cylinder_leg1 * t337;
+        let t340 = 9.81 * grod_vz_leg1;
+        let t358 = t8 * t340;
+        let t361 = s_cylinder_leg1 * t337;
+        let t363 = 9.81 * t182;
         let grod_wz_leg1 = minus_grod_vx_leg1 * t210 - minus_grod_vy_leg1 * t219;
-        let t382 = 9.81 * s_cross_leg1;
-        let t393 = minus_grod_vx_leg1 * t123 + minus_grod_vy_leg1 * t147
-            - grod_vz_leg1 * t170;
-        let t394 = t393 - t346;
-        let t397 = t394 - joints[2] * (t239 + t279);
-        let t400 = t172 + t343;
-        let t402 = t10 * t245 + minus_c_cylinder_leg1 * t400;
-        let t406 = gcylinder_vx_leg1 * t397 - minus_gcross_vx_leg1 * t402
-            + minus_grod_vx_leg1 * t277;
-        let t411 = gcross_vy_leg1 * t402 - minus_gcylinder_vy_leg1 * t397
-            + minus_grod_vy_leg1 * t277;
-        let t416 = minus_gcross_vz_leg1 * t402 + minus_gcylinder_vz_leg1 * t397
-            + grod_vz_leg1 * t277;
-        let t427 = t270 - t369;
-        let t430 = t271 - (s_cylinder_leg1 * t394 + minus_c_cylinder_leg1 * t427);
-        let t433 = t4 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t430;
-        let t436 = gcross_vy_leg1 * t430 - t88 * minus_rate_dot_cross_leg1;
-        let t439 = minus_gcross_vz_leg1 * t430
+        let t376 = 9.81 * s_cross_leg1;
+        let t387 = minus_grod_vx_leg1 * t110 + minus_grod_vy_leg1 * t134
+            - grod_vz_leg1 * t157;
+        let t388 = t387 - t340;
+        let t391 = t388 - joints[2] * (t239 + t274);
+        let t394 = t159 + t337;
+        let t396 = t79 * t193 + minus_c_cylinder_leg1 * t394;
+        let t400 = gcylinder_vx_leg1 * t391 - minus_gcross_vx_leg1 * t396
+            + minus_grod_vx_leg1 * t272;
+        let t405 = gcross_vy_leg1 * t396 - minus_gcylinder_vy_leg1 * t391
+            + minus_grod_vy_leg1 * t272;
+        let t410 = minus_gcross_vz_leg1 * t396 + minus_gcylinder_vz_leg1 * t391
+            + grod_vz_leg1 * t272;
+        let t422 = t267 - t363;
+        let t425 = t78 * minus_rate_cross_leg1
+            - (s_cylinder_leg1 * t388 + minus_c_cylinder_leg1 * t422);
+        let t428 = t4 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t425;
+        let t431 = gcross_vy_leg1 * t425 - t165 * minus_rate_dot_cross_leg1;
+        let t434 = minus_gcross_vz_leg1 * t425
             + s_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t450 = joints[2] * t317 + t427;
-        let t454 = t10 * t194 - s_cylinder_leg1 * t400;
-        let t457 = t238 + t279;
-        let t459 = gcylinder_vx_leg1 * t450 - minus_gcross_vx_leg1 * t454
-            + minus_grod_vx_leg1 * t457;
-        let t464 = gcross_vy_leg1 * t454 - minus_gcylinder_vy_leg1 * t450
-            + minus_grod_vy_leg1 * t457;
-        let t469 = minus_gcross_vz_leg1 * t454 + minus_gcylinder_vz_leg1 * t450
-            + grod_vz_leg1 * t457;
-        let t479 = acceleration[2] + 9.81;
-        let t480 = t169 + t479;
-        let minus_rate_dot_rod_leg1 = t393 - joints[2] * t457;
+        let t444 = t269 + t422;
+        let t447 = s_cylinder_leg1 * (t394 + t175);
+        let t450 = t238 + t274;
+        let t452 = gcylinder_vx_leg1 * t444 + minus_gcross_vx_leg1 * t447
+            + minus_grod_vx_leg1 * t450;
+        let t457 = minus_grod_vy_leg1 * t450
+            - (gcross_vy_leg1 * t447 + minus_gcylinder_vy_leg1 * t444);
+        let t462 = minus_gcylinder_vz_leg1 * t444 - minus_gcross_vz_leg1 * t447
+            + grod_vz_leg1 * t450;
+        let t472 = t157 + 9.81;
+        let minus_rate_dot_rod_leg1 = t387 - joints[2] * t450;
         let grod_wx_leg1 = grod_vz_leg1 * t210 + minus_grod_vy_leg1 * t208;
         let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t208 + grod_vz_leg1 * t219;
-        let t520 = 0.9781476007338057 * minus_c_cross_leg2;
-        let t523 = minus_c_cylinder_leg2 * t520 + 0.20791169081775931 * s_cylinder_leg2;
-        let t524 = 1.0 / joints[5];
-        let gcylinder_vx_leg2 = t523 * t524;
-        let t526 = s_cylinder_leg2 * joints[5];
-        ::overact::guard::leg(t526, 0.5513142860394165, "leg2")?;
-        let t527 = 1.0 / t526;
-        let t528 = 0.9781476007338057 * s_cross_leg2;
-        let t529 = t43 - t42;
-        let t531 = t39 - t38;
-        let t533 = t529 * twist[4] - t531 * twist[5];
-        let t534 = t18 - t22;
-        let t536 = t29 - t34;
-        let t538 = t534 * twist[4] - t536 * twist[5];
-        let t540 = twist[0] - (t533 + t538);
-        let t542 = 0.20791169081775931 * s_cross_leg2;
-        let t543 = t63 - t62;
-        let t546 = t543 * twist[5] - t529 * twist[3];
-        let t547 = t54 - t56;
-        let t550 = t547 * twist[5] - t534 * twist[3];
-        let t552 = twist[1] - (t546 + t550);
-        let t557 = t531 * twist[3] - t543 * twist[4];
-        let t560 = t536 * twist[3] - t547 * twist[4];
-        let t562 = twist[2] - (t557 + t560);
-        let t564 = t528 * t540 + t542 * t552 + minus_c_cross_leg2 * t562;
-        let minus_rate_cross_leg2 = t527 * t564;
-        let t566 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t567 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t568 = t566 * t567;
-        let t569 = gcylinder_vx_leg2 * t568;
-        let minus_gcross_vx_leg2 = t528 * t527;
-        let t572 = 0.20791169081775931 * minus_c_cross_leg2;
-        let t575 = minus_c_cylinder_leg2 * t572 - 0.9781476007338057 * s_cylinder_leg2;
-        let t578 = s_cross_leg2 * minus_c_cylinder_leg2;
-        let rate_cylinder_leg2 = t524 * (t523 * t540 + t575 * t552 - t578 * t562);
-        let t582 = rate_cylinder_leg2 * t567;
-        let t583 = t120 - t119;
-        let t584 = t111 - t117;
-        let t586 = acceleration[0] - (t583 + t584);
-        let t588 = t144 - t143;
-        let t589 = t135 - t141;
-        let t591 = acceleration[1] - (t588 + t589);
-        let t594 = t167 - t166;
-        let t595 = t158 - t164;
-        let t597 = acceleration[2] - (t594 + t595);
-        let t599 = t528 * t586 + t542 * t591 + minus_c_cross_leg2 * t597;
-        let t600 = joints[5] * t582;
-        let minus_grod_vx_leg2 = s_cylinder_leg2 * t520
+        let t512 = 0.9781476007338057 * minus_c_cross_leg2;
+        let t515 = minus_c_cylinder_leg2 * t512 + 0.20791169081775931 * s_cylinder_leg2;
+        let t516 = 1.0 / joints[5];
+        let gcylinder_vx_leg2 = t515 * t516;
+        let t518 = s_cylinder_leg2 * joints[5];
+        ::overact::guard::leg(t518, 0.5513142860394165, "leg2")?;
+        let t519 = 1.0 / t518;
+        let t520 = 0.9781476007338057 * s_cross_leg2;
+        let t521 = t41 - t40;
+        let t523 = t37 - t36;
+        let t525 = t521 * twist[4] - t523 * twist[5];
+        let t526 = t16 - t20;
+        let t528 = t27 - t32;
+        let t530 = t526 * twist[4] - t528 * twist[5];
+        let t532 = twist[0] - (t525 + t530);
+        let t534 = 0.20791169081775931 * s_cross_leg2;
+        let t535 = t61 - t60;
+        let t538 = t535 * twist[5] - t521 * twist[3];
+        let t539 = t52 - t54;
+        let t542 = t539 * twist[5] - t526 * twist[3];
+        let t544 = twist[1] - (t538 + t542);
+        let t549 = t523 * twist[3] - t535 * twist[4];
+        let t552 = t528 * twist[3] - t539 * twist[4];
+        let t554 = twist[2] - (t549 + t552);
+        let t556 = t520 * t532 + t534 * t544 + minus_c_cross_leg2 * t554;
+        let minus_rate_cross_leg2 = t519 * t556;
+        let t558 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t559 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t560 = t558 * t559;
+        let t561 = gcylinder_vx_leg2 * t560;
+        let minus_gcross_vx_leg2 = t520 * t519;
+        let t563 = t107 - t106;
+        let t564 = t98 - t104;
+        let t566 = acceleration[0] - (t563 + t564);
+        let t568 = t131 - t130;
+        let t569 = t122 - t128;
+        let t571 = acceleration[1] - (t568 + t569);
+        let t574 = t154 - t153;
+        let t575 = t145 - t151;
+        let t577 = acceleration[2] - (t574 + t575);
+        let t579 = t520 * t566 + t534 * t571 + minus_c_cross_leg2 * t577;
+        let t581 = 0.20791169081775931 * minus_c_cross_leg2;
+        let t584 = minus_c_cylinder_leg2 * t581 - 0.9781476007338057 * s_cylinder_leg2;
+        let t587 = s_cross_leg2 * minus_c_cylinder_leg2;
+        let t589 = t515 * t532 + t584 * t544 - t587 * t554;
+        let t590 = t559 * t589;
+        let minus_grod_vx_leg2 = s_cylinder_leg2 * t512
             - 0.20791169081775931 * minus_c_cylinder_leg2;
-        let minus_grod_vy_leg2 = s_cylinder_leg2 * t572
+        let minus_grod_vy_leg2 = s_cylinder_leg2 * t581
             + 0.9781476007338057 * minus_c_cylinder_leg2;
         let grod_vz_leg2 = s_cross_leg2 * s_cylinder_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t540 + minus_grod_vy_leg2 * t552
-            - grod_vz_leg2 * t562;
-        let t615 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
-        let minus_rate_dot_cross_leg2 = t527 * (t599 + t600 + t600 + t566 * t615);
-        let t619 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t621 = t582 + t582 - t619;
-        let t622 = s_cylinder_leg2 * t621;
-        let t624 = t569 - minus_gcross_vx_leg2 * t622;
-        let gcylinder_vy_leg2 = t575 * t524;
-        let t626 = gcylinder_vy_leg2 * t568;
-        let minus_gcross_vy_leg2 = t542 * t527;
-        let t629 = t626 - minus_gcross_vy_leg2 * t622;
-        let minus_gcross_vz_leg2 = minus_c_cross_leg2 * t527;
-        let minus_gcylinder_vz_leg2 = t578 * t524;
-        let t633 = minus_gcylinder_vz_leg2 * t568;
-        let t634 = minus_gcross_vz_leg2 * t622 + t633;
-        let t635 = t529 + t534;
-        let t637 = t531 + t536;
-        let gcross_wx_leg2 = t637 * minus_gcross_vz_leg2 - t635 * minus_gcross_vy_leg2;
-        let minus_minus_gcylinder_wx_leg2 = t637 * minus_gcylinder_vz_leg2
-            + t635 * gcylinder_vy_leg2;
-        let t644 = minus_minus_gcylinder_wx_leg2 * t568;
-        let t645 = gcross_wx_leg2 * t622 + t644;
-        let t646 = t543 + t547;
-        let gcross_wy_leg2 = t635 * minus_gcross_vx_leg2 - t646 * minus_gcross_vz_leg2;
-        let minus_gcylinder_wy_leg2 = t635 * gcylinder_vx_leg2
-            + t646 * minus_gcylinder_vz_leg2;
-        let t654 = minus_gcylinder_wy_leg2 * t568;
-        let t655 = gcross_wy_leg2 * t622 - t654;
-        let gcross_wz_leg2 = t646 * minus_gcross_vy_leg2 - t637 * minus_gcross_vx_leg2;
-        let gcylinder_wz_leg2 = t637 * gcylinder_vx_leg2 - t646 * gcylinder_vy_leg2;
-        let t663 = gcylinder_wz_leg2 * t568;
-        let t664 = gcross_wz_leg2 * t622 + t663;
-        let t665 = t566 * t566;
-        let t666 = t567 * t567;
-        let t667 = t665 - t666;
-        let t669 = rate_cylinder_leg2 * t566;
-        let t670 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t672 = t669 + t670 + t669;
-        let t675 = s_cylinder_leg2 * t672 - minus_c_cylinder_leg2 * t621;
-        let t677 = gcylinder_vx_leg2 * t667 - minus_gcross_vx_leg2 * t675;
-        let t680 = gcylinder_vy_leg2 * t667 - minus_gcross_vy_leg2 * t675;
-        let t683 = minus_gcross_vz_leg2 * t675 + minus_gcylinder_vz_leg2 * t667;
-        let t686 = gcross_wx_leg2 * t675 + minus_minus_gcylinder_wx_leg2 * t667;
-        let t689 = gcross_wy_leg2 * t675 - minus_gcylinder_wy_leg2 * t667;
-        let t692 = gcross_wz_leg2 * t675 + gcylinder_wz_leg2 * t667;
-        let t697 = t523 * t586 + t575 * t591 - t578 * t597;
-        let t698 = t564 * minus_rate_cross_leg2;
-        let rate_dot_cylinder_leg2 = t524
-            * (t697 - minus_c_cylinder_leg2 * t698 + rate_cylinder_leg2 * t615);
-        let t704 = rate_dot_cylinder_leg2 - t568;
-        let t706 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t709 = s_cylinder_leg2 * t704 - minus_c_cylinder_leg2 * (t706 - t665);
-        let t712 = minus_gcross_vx_leg2 * t709 + gcylinder_vx_leg2 * t619;
-        let t715 = minus_gcross_vy_leg2 * t709 + gcylinder_vy_leg2 * t619;
-        let t718 = minus_gcylinder_vz_leg2 * t619 - minus_gcross_vz_leg2 * t709;
-        let t721 = gcross_wx_leg2 * t709 - minus_minus_gcylinder_wx_leg2 * t619;
-        let t724 = gcross_wy_leg2 * t709 + minus_gcylinder_wy_leg2 * t619;
-        let t727 = gcross_wz_leg2 * t709 - gcylinder_wz_leg2 * t619;
-        let t728 = minus_c_cylinder_leg2 * t672;
-        let t730 = minus_gcross_vx_leg2 * t728 - t569;
-        let t732 = minus_gcross_vy_leg2 * t728 - t626;
-        let t734 = minus_gcross_vz_leg2 * t728 + t633;
-        let t736 = t644 + gcross_wx_leg2 * t728;
-        let t738 = gcross_wy_leg2 * t728 - t654;
-        let t740 = gcross_wz_leg2 * t728 + t663;
-        let t744 = t568 + rate_dot_cylinder_leg2;
-        let t746 = s_cylinder_leg2 * (t666 - t706) - minus_c_cylinder_leg2 * t744;
-        let t748 = gcylinder_vx_leg2 * t670 - minus_gcross_vx_leg2 * t746;
-        let t751 = gcylinder_vy_leg2 * t670 - minus_gcross_vy_leg2 * t746;
-        let t754 = minus_gcross_vz_leg2 * t746 + minus_gcylinder_vz_leg2 * t670;
-        let t757 = gcross_wx_leg2 * t746 + minus_minus_gcylinder_wx_leg2 * t670;
-        let t760 = gcross_wy_leg2 * t746 - minus_gcylinder_wy_leg2 * t670;
-        let t763 = gcross_wz_leg2 * t746 + gcylinder_wz_leg2 * t670;
-        let t764 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t765 = gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t766 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t767 = minus_minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t768 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t769 = gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t770 = 9.81 * minus_c_cross_leg2;
-        let t771 = minus_c_cylinder_leg2 * t770;
-        let t773 = 9.81 * grod_vz_leg2;
-        let t791 = t524 * t773;
-        let t794 = s_cylinder_leg2 * t770;
-        let t796 = 9.81 * t578;
-        let grod_wz_leg2 = minus_grod_vy_leg2 * t646 - minus_grod_vx_leg2 * t637;
-        let t809 = 9.81 * s_cross_leg2;
-        let t820 = minus_grod_vx_leg2 * t586 + minus_grod_vy_leg2 * t591
-            - grod_vz_leg2 * t597;
-        let t821 = t820 - t773;
-        let t824 = t821 - joints[5] * (t666 + t706);
-        let t827 = t599 + t770;
-        let t829 = t526 * t672 + minus_c_cylinder_leg2 * t827;
-        let t833 = gcylinder_vx_leg2 * t824 - minus_gcross_vx_leg2 * t829
-            + minus_grod_vx_leg2 * t704;
-        let t838 = gcylinder_vy_leg2 * t824 - minus_gcross_vy_leg2 * t829
-            + minus_grod_vy_leg2 * t704;
-        let t843 = minus_gcross_vz_leg2 * t829 + minus_gcylinder_vz_leg2 * t824
-            + grod_vz_leg2 * t704;
-        let t854 = t697 - t796;
-        let t857 = t698 - (s_cylinder_leg2 * t821 + minus_c_cylinder_leg2 * t854);
-        let t860 = t520 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t857;
-        let t863 = t572 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t857;
-        let t866 = minus_gcross_vz_leg2 * t857
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t532 + minus_grod_vy_leg2 * t544
+            - grod_vz_leg2 * t554;
+        let t605 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
+        let minus_rate_dot_cross_leg2 = t519 * (t579 + t590 + t590 + t558 * t605);
+        let rate_cylinder_leg2 = t516 * t589;
+        let t610 = rate_cylinder_leg2 * t558;
+        let t611 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t613 = t610 + t611 + t610;
+        let t614 = minus_c_cylinder_leg2 * t613;
+        let t615 = t614 - minus_rate_dot_cross_leg2;
+        let t617 = t561 - minus_gcross_vx_leg2 * t615;
+        let gcylinder_vy_leg2 = t584 * t516;
+        let t619 = gcylinder_vy_leg2 * t560;
+        let minus_gcross_vy_leg2 = t534 * t519;
+        let t622 = t619 - minus_gcross_vy_leg2 * t615;
+        let minus_gcross_vz_leg2 = minus_c_cross_leg2 * t519;
+        let minus_gcylinder_vz_leg2 = t587 * t516;
+        let t626 = minus_gcylinder_vz_leg2 * t560;
+        let t627 = minus_gcross_vz_leg2 * t615 + t626;
+        let t628 = t521 + t526;
+        let t630 = t523 + t528;
+        let gcross_wx_leg2 = t630 * minus_gcross_vz_leg2 - t628 * minus_gcross_vy_leg2;
+        let minus_minus_gcylinder_wx_leg2 = t630 * minus_gcylinder_vz_leg2
+            + t628 * gcylinder_vy_leg2;
+        let t637 = minus_minus_gcylinder_wx_leg2 * t560;
+        let t638 = gcross_wx_leg2 * t615 + t637;
+        let t639 = t535 + t539;
+        let gcross_wy_leg2 = t628 * minus_gcross_vx_leg2 - t639 * minus_gcross_vz_leg2;
+        let minus_gcylinder_wy_leg2 = t628 * gcylinder_vx_leg2
+            + t639 * minus_gcylinder_vz_leg2;
+        let t647 = minus_gcylinder_wy_leg2 * t560;
+        let t648 = gcross_wy_leg2 * t615 - t647;
+        let gcross_wz_leg2 = t639 * minus_gcross_vy_leg2 - t630 * minus_gcross_vx_leg2;
+        let gcylinder_wz_leg2 = t630 * gcylinder_vx_leg2 - t639 * gcylinder_vy_leg2;
+        let t656 = gcylinder_wz_leg2 * t560;
+        let t657 = gcross_wz_leg2 * t615 + t656;
+        let t658 = t558 * t558;
+        let t659 = t559 * t559;
+        let t660 = t658 - t659;
+        let t663 = joints[5] * t615;
+        let t666 = s_cylinder_leg2 * t613 - minus_c_cylinder_leg2 * (t519 * t663);
+        let t668 = gcylinder_vx_leg2 * t660 - minus_gcross_vx_leg2 * t666;
+        let t671 = gcylinder_vy_leg2 * t660 - minus_gcross_vy_leg2 * t666;
+        let t674 = minus_gcross_vz_leg2 * t666 + minus_gcylinder_vz_leg2 * t660;
+        let t677 = gcross_wx_leg2 * t666 + minus_minus_gcylinder_wx_leg2 * t660;
+        let t680 = gcross_wy_leg2 * t666 - minus_gcylinder_wy_leg2 * t660;
+        let t683 = gcross_wz_leg2 * t666 + gcylinder_wz_leg2 * t660;
+        let t688 = t515 * t566 + t584 * t571 - t587 * t577;
+        let t690 = t688 + rate_cylinder_leg2 * t605;
+        let t691 = t516 * t690;
+        let rate_dot_cylinder_leg2 = t691 - t560;
+        let t693 = rate_dot_cylinder_leg2 - t560;
+        let t695 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t698 = s_cylinder_leg2 * t693 - minus_c_cylinder_leg2 * (t695 - t658);
+        let t700 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t702 = minus_gcross_vx_leg2 * t698 + gcylinder_vx_leg2 * t700;
+        let t705 = minus_gcross_vy_leg2 * t698 + gcylinder_vy_leg2 * t700;
+        let t708 = minus_gcylinder_vz_leg2 * t700 - minus_gcross_vz_leg2 * t698;
+        let t711 = gcross_wx_leg2 * t698 - minus_minus_gcylinder_wx_leg2 * t700;
+        let t714 = gcross_wy_leg2 * t698 + minus_gcylinder_wy_leg2 * t700;
+        let t717 = gcross_wz_leg2 * t698 - gcylinder_wz_leg2 * t700;
+        let t719 = minus_gcross_vx_leg2 * t614 - t561;
+        let t721 = minus_gcross_vy_leg2 * t614 - t619;
+        let t723 = minus_gcross_vz_leg2 * t614 + t626;
+        let t725 = t637 + gcross_wx_leg2 * t614;
+        let t727 = gcross_wy_leg2 * t614 - t647;
+        let t729 = gcross_wz_leg2 * t614 + t656;
+        let t734 = s_cylinder_leg2 * (t659 - t695) - minus_c_cylinder_leg2 * t691;
+        let t736 = gcylinder_vx_leg2 * t611 - minus_gcross_vx_leg2 * t734;
+        let t739 = gcylinder_vy_leg2 * t611 - minus_gcross_vy_leg2 * t734;
+        let t742 = minus_gcross_vz_leg2 * t734 + minus_gcylinder_vz_leg2 * t611;
+        let t745 = gcross_wx_leg2 * t734 + minus_minus_gcylinder_wx_leg2 * t611;
+        let t748 = gcross_wy_leg2 * t734 - minus_gcylinder_wy_leg2 * t611;
+        let t751 = gcross_wz_leg2 * t734 + gcylinder_wz_leg2 * t611;
+        let t752 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t753 = gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t754 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t755 = minus_minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t756 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t757 = gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t758 = 9.81 * minus_c_cross_leg2;
+        let t759 = minus_c_cylinder_leg2 * t758;
+        let t761 = 9.81 * grod_vz_leg2;
+        let t779 = t516 * t761;
+        let t782 = s_cylinder_leg2 * t758;
+        let t784 = 9.81 * t587;
+        let grod_wz_leg2 = minus_grod_vy_leg2 * t639 - minus_grod_vx_leg2 * t630;
+        let t797 = 9.81 * s_cross_leg2;
+        let t808 = minus_grod_vx_leg2 * t566 + minus_grod_vy_leg2 * t571
+            - grod_vz_leg2 * t577;
+        let t809 = t808 - t761;
+        let t812 = t809 - joints[5] * (t659 + t695);
+        let t815 = t579 + t758;
+        let t817 = t518 * t613 + minus_c_cylinder_leg2 * t815;
+        let t821 = gcylinder_vx_leg2 * t812 - minus_gcross_vx_leg2 * t817
+            + minus_grod_vx_leg2 * t693;
+        let t826 = gcylinder_vy_leg2 * t812 - minus_gcross_vy_leg2 * t817
+            + minus_grod_vy_leg2 * t693;
+        let t831 = minus_gcross_vz_leg2 * t817 + minus_gcylinder_vz_leg2 * t812
+            + grod_vz_leg2 * t693;
+        let t843 = t688 - t784;
+        let t846 = t556 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t809 + minus_c_cylinder_leg2 * t843);
+        let t849 = t512 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t846;
+        let t852 = t581 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t846;
+        let t855 = minus_gcross_vz_leg2 * t846
             + s_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t877 = joints[5] * t744 + t854;
-        let t881 = t526 * t621 - s_cylinder_leg2 * t827;
-        let t884 = t665 + t706;
-        let t886 = gcylinder_vx_leg2 * t877 - minus_gcross_vx_leg2 * t881
-            + minus_grod_vx_leg2 * t884;
-        let t891 = gcylinder_vy_leg2 * t877 - minus_gcross_vy_leg2 * t881
-            + minus_grod_vy_leg2 * t884;
-        let t896 = minus_gcross_vz_leg2 * t881 + minus_gcylinder_vz_leg2 * t877
-            + grod_vz_leg2 * t884;
-        let t906 = 9.81 + t597;
-        let minus_rate_dot_rod_leg2 = t820 - joints[5] * t884;
-        let minus_grod_wx_leg2 = grod_vz_leg2 * t637 + minus_grod_vy_leg2 * t635;
-        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t635 + grod_vz_leg2 * t646;
-        let t944 = 0.30901699437494734 * s_cross_leg3;
-        let t947 = s_cylinder_leg3 * joints[8];
-        ::overact::guard::leg(t947, 0.5513142860394162, "leg3")?;
-        let t948 = 1.0 / t947;
-        let gcross_vx_leg3 = t944 * t948;
-        let t950 = 1.0 / joints[8];
-        let t952 = 0.30901699437494734 * minus_c_cross_leg3;
-        let t954 = 0.9510565162951536 * s_cylinder_leg3 - minus_c_cylinder_leg3 * t952;
-        let t955 = twist[0] + t37;
-        let t957 = 0.9510565162951536 * minus_c_cross_leg3;
-        let t960 = minus_c_cylinder_leg3 * t957 + 0.30901699437494734 * s_cylinder_leg3;
-        let t961 = twist[1] + t60;
-        let t964 = s_cross_leg3 * minus_c_cylinder_leg3;
-        let t965 = twist[2] + t73;
-        let rate_cylinder_leg3 = t950 * (t954 * t955 + t960 * t961 - t964 * t965);
-        let t969 = 0.9510565162951536 * s_cross_leg3;
-        let t974 = t969 * t961 - t944 * t955 + minus_c_cross_leg3 * t965;
-        let minus_rate_cross_leg3 = t948 * t974;
-        let t976 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t977 = rate_cylinder_leg3 * t976;
-        let t978 = acceleration[1] + t142;
-        let t980 = acceleration[0] + t118;
-        let t983 = acceleration[2] + t165;
-        let t985 = t969 * t978 - t944 * t980 + minus_c_cross_leg3 * t983;
-        let t986 = joints[8] * t977;
-        let t989 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_grod_vy_leg3 = s_cylinder_leg3 * t957
-            - 0.30901699437494734 * minus_c_cylinder_leg3;
-        let grod_vx_leg3 = s_cylinder_leg3 * t952
-            + 0.9510565162951536 * minus_c_cylinder_leg3;
+        let t865 = t690 + t843;
+        let t868 = t663 - s_cylinder_leg2 * t815;
+        let t871 = t658 + t695;
+        let t873 = gcylinder_vx_leg2 * t865 - minus_gcross_vx_leg2 * t868
+            + minus_grod_vx_leg2 * t871;
+        let t878 = gcylinder_vy_leg2 * t865 - minus_gcross_vy_leg2 * t868
+            + minus_grod_vy_leg2 * t871;
+        let t883 = minus_gcross_vz_leg2 * t868 + minus_gcylinder_vz_leg2 * t865
+            + grod_vz_leg2 * t871;
+        let t893 = 9.81 + t577;
+        let minus_rate_dot_rod_leg2 = t808 - joints[5] * t871;
+        let minus_grod_wx_leg2 = grod_vz_leg2 * t630 + minus_grod_vy_leg2 * t628;
+        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t628 + grod_vz_leg2 * t639;
+        let t931 = 0.30901699437494734 * s_cross_leg3;
+        let t934 = s_cylinder_leg3 * joints[8];
+        ::overact::guard::leg(t934, 0.5513142860394162, "leg3")?;
+        let gcross_vx_leg3 = t931 / t934;
+        let t936 = 1.0 / joints[8];
+        let t937 = 0.9510565162951536 * s_cross_leg3;
+        let t938 = acceleration[1] + t129;
+        let t940 = acceleration[0] + t105;
+        let t943 = acceleration[2] + t152;
+        let t945 = t937 * t938 - t931 * t940 + minus_c_cross_leg3 * t943;
+        let t946 = 0.9510565162951536 * s_cylinder_leg3;
+        let t947 = 0.30901699437494734 * s_cylinder_leg3;
+        let t948 = minus_c_cross_leg3 * t947;
+        let t949 = joints[8] / t934;
+        let t950 = minus_c_cylinder_leg3 * t949;
+        let t952 = t946 - t948 * t950;
+        let t953 = twist[0] + t35;
+        let t955 = t946 * minus_c_cross_leg3;
+        let t957 = t955 * t950 + t947;
+        let t958 = twist[1] + t58;
+        let t961 = s_cross_leg3 * minus_c_cylinder_leg3;
+        let t962 = twist[2] + t71;
+        let t964 = t952 * t953 + t957 * t958 - t961 * t962;
+        let t969 = t937 * t958 - t931 * t953 + minus_c_cross_leg3 * t962;
+        let minus_rate_cross_leg3 = t969 / t934;
+        let t971 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t972 = t964 * t971;
+        let t975 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_grod_vy_leg3 = t955 - 0.30901699437494734 * minus_c_cylinder_leg3;
+        let grod_vx_leg3 = t948 + 0.9510565162951536 * minus_c_cylinder_leg3;
         let grod_vz_leg3 = s_cross_leg3 * s_cylinder_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t961 - grod_vx_leg3 * t955
-            - grod_vz_leg3 * t965;
-        let t1002 = minus_rate_rod_leg3 + minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = t948 * (t985 + t986 + t986 + t989 * t1002);
-        let t1006 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1008 = t977 + t977 - t1006;
-        let t1009 = s_cylinder_leg3 * t1008;
-        let gcylinder_vx_leg3 = t954 * t950;
-        let t1012 = t989 * t976;
-        let t1013 = gcylinder_vx_leg3 * t1012;
-        let t1014 = gcross_vx_leg3 * t1009 + t1013;
-        let gcylinder_vy_leg3 = t960 * t950;
-        let t1016 = gcylinder_vy_leg3 * t1012;
-        let minus_gcross_vy_leg3 = t969 * t948;
-        let t1019 = t1016 - minus_gcross_vy_leg3 * t1009;
-        let minus_gcross_vz_leg3 = minus_c_cross_leg3 * t948;
-        let minus_gcylinder_vz_leg3 = t964 * t950;
-        let t1023 = minus_gcylinder_vz_leg3 * t1012;
-        let t1024 = minus_gcross_vz_leg3 * t1009 + t1023;
-        let gcross_wx_leg3 = t23 * minus_gcross_vy_leg3 - t35 * minus_gcross_vz_leg3;
-        let minus_gcylinder_wx_leg3 = t35 * minus_gcylinder_vz_leg3
-            + t23 * gcylinder_vy_leg3;
-        let t1032 = minus_gcylinder_wx_leg3 * t1012;
-        let t1033 = gcross_wx_leg3 * t1009 - t1032;
-        let gcross_wy_leg3 = t23 * gcross_vx_leg3 + t57 * minus_gcross_vz_leg3;
-        let gcylinder_wy_leg3 = t23 * gcylinder_vx_leg3 + t57 * minus_gcylinder_vz_leg3;
-        let t1041 = gcylinder_wy_leg3 * t1012;
-        let t1042 = gcross_wy_leg3 * t1009 + t1041;
-        let gcylinder_wz_leg3 = t57 * gcylinder_vy_leg3 - t35 * gcylinder_vx_leg3;
-        let t1046 = gcylinder_wz_leg3 * t1012;
-        let minus_gcross_wz_leg3 = t57 * minus_gcross_vy_leg3 + t35 * gcross_vx_leg3;
-        let t1051 = t1046 - minus_gcross_wz_leg3 * t1009;
-        let t1052 = rate_cylinder_leg3 * t989;
-        let t1053 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1055 = t1052 + t1053 + t1052;
-        let t1058 = s_cylinder_leg3 * t1055 - minus_c_cylinder_leg3 * t1008;
-        let t1060 = t989 * t989;
-        let t1061 = t976 * t976;
-        let t1062 = t1060 - t1061;
-        let t1064 = gcross_vx_leg3 * t1058 + gcylinder_vx_leg3 * t1062;
-        let t1067 = gcylinder_vy_leg3 * t1062 - minus_gcross_vy_leg3 * t1058;
-        let t1070 = minus_gcross_vz_leg3 * t1058 + minus_gcylinder_vz_leg3 * t1062;
-        let t1073 = gcross_wx_leg3 * t1058 - minus_gcylinder_wx_leg3 * t1062;
-        let t1076 = gcross_wy_leg3 * t1058 + gcylinder_wy_leg3 * t1062;
-        let t1079 = gcylinder_wz_leg3 * t1062 - minus_gcross_wz_leg3 * t1058;
-        let t1084 = t954 * t980 + t960 * t978 - t964 * t983;
-        let rate_dot_cylinder_leg3 = t950
-            * (t1084 - joints[8] * t1012 + rate_cylinder_leg3 * t1002);
-        let t1090 = rate_dot_cylinder_leg3 - t1012;
-        let t1092 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1095 = s_cylinder_leg3 * t1090 - minus_c_cylinder_leg3 * (t1092 - t1060);
-        let t1098 = gcross_vx_leg3 * t1095 - gcylinder_vx_leg3 * t1006;
-        let t1101 = minus_gcross_vy_leg3 * t1095 + gcylinder_vy_leg3 * t1006;
-        let t1104 = minus_gcylinder_vz_leg3 * t1006 - minus_gcross_vz_leg3 * t1095;
-        let t1107 = gcross_wx_leg3 * t1095 + minus_gcylinder_wx_leg3 * t1006;
-        let t1110 = gcross_wy_leg3 * t1095 - gcylinder_wy_leg3 * t1006;
-        let t1113 = minus_gcross_wz_leg3 * t1095 + gcylinder_wz_leg3 * t1006;
-        let t1114 = minus_c_cylinder_leg3 * t1055;
-        let t1116 = gcross_vx_leg3 * t1114 + t1013;
-        let t1118 = minus_gcross_vy_leg3 * t1114 - t1016;
-        let t1120 = minus_gcross_vz_leg3 * t1114 + t1023;
-        let t1122 = t1032 - gcross_wx_leg3 * t1114;
-        let t1124 = gcross_wy_leg3 * t1114 + t1041;
-        let t1126 = minus_gcross_wz_leg3 * t1114 - t1046;
-        let t1129 = t1012 + rate_dot_cylinder_leg3;
-        let t1131 = s_cylinder_leg3 * (t1061 - t1092) - minus_c_cylinder_leg3 * t1129;
-        let t1134 = gcross_vx_leg3 * t1131 + gcylinder_vx_leg3 * t1053;
-        let t1137 = gcylinder_vy_leg3 * t1053 - minus_gcross_vy_leg3 * t1131;
-        let t1140 = minus_gcross_vz_leg3 * t1131 + minus_gcylinder_vz_leg3 * t1053;
-        let t1143 = gcross_wx_leg3 * t1131 - minus_gcylinder_wx_leg3 * t1053;
-        let t1146 = gcross_wy_leg3 * t1131 + gcylinder_wy_leg3 * t1053;
-        let t1149 = gcylinder_wz_leg3 * t1053 - minus_gcross_wz_leg3 * t1131;
-        let t1150 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t1151 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t1152 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t1153 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t1154 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t1155 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t1156 = 9.81 * minus_c_cross_leg3;
-        let t1157 = minus_c_cylinder_leg3 * t1156;
-        let t1159 = 9.81 * grod_vz_leg3;
-        let t1177 = t950 * t1159;
-        let t1180 = s_cylinder_leg3 * t1156;
-        let t1182 = 9.81 * t964;
-        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t57 + grod_vx_leg3 * t35;
-        let t1195 = 9.81 * s_cross_leg3;
-        let t1203 = t985 + t1156;
-        let t1205 = t947 * t1055 + minus_c_cylinder_leg3 * t1203;
-        let t1211 = minus_grod_vy_leg3 * t978 - grod_vx_leg3 * t980
-            - grod_vz_leg3 * t983;
-        let t1212 = t1211 - t1159;
-        let t1215 = t1212 - joints[8] * (t1061 + t1092);
-        let t1219 = gcross_vx_leg3 * t1205 + gcylinder_vx_leg3 * t1215
-            - grod_vx_leg3 * t1090;
-        let t1224 = gcylinder_vy_leg3 * t1215 - minus_gcross_vy_leg3 * t1205
-            + minus_grod_vy_leg3 * t1090;
-        let t1229 = minus_gcross_vz_leg3 * t1205 + minus_gcylinder_vz_leg3 * t1215
-            + grod_vz_leg3 * t1090;
-        let t1241 = t1084 - t1182;
-        let t1244 = t974 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1212 + minus_c_cylinder_leg3 * t1241);
-        let t1247 = gcross_vx_leg3 * t1244 - t952 * minus_rate_dot_cross_leg3;
-        let t1250 = t957 * minus_rate_dot_cross_leg3 - minus_gcross_vy_leg3 * t1244;
-        let t1253 = minus_gcross_vz_leg3 * t1244
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t958 - grod_vx_leg3 * t953
+            - grod_vz_leg3 * t962;
+        let t986 = 2.0 * minus_rate_rod_leg3;
+        let t989 = t936 * (t945 + t972 + t972 + t975 * t986);
+        let minus_rate_dot_cross_leg3 = t989 * t949;
+        let rate_cylinder_leg3 = t936 * t964;
+        let t992 = rate_cylinder_leg3 * t975;
+        let t993 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t995 = t992 + t993 + t992;
+        let t996 = s_cylinder_leg3 * t995;
+        let t997 = t996 * t950;
+        let t998 = t997 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t952 * t936;
+        let t1001 = t975 * t971;
+        let t1002 = gcylinder_vx_leg3 * t1001;
+        let t1003 = gcross_vx_leg3 * t998 + t1002;
+        let gcylinder_vy_leg3 = t957 * t936;
+        let t1005 = gcylinder_vy_leg3 * t1001;
+        let minus_gcross_vy_leg3 = t937 / t934;
+        let t1008 = t1005 - minus_gcross_vy_leg3 * t998;
+        let minus_gcross_vz_leg3 = minus_c_cross_leg3 / t934;
+        let minus_gcylinder_vz_leg3 = t961 * t936;
+        let t1012 = minus_gcylinder_vz_leg3 * t1001;
+        let t1013 = minus_gcross_vz_leg3 * t998 + t1012;
+        let gcross_wx_leg3 = t21 * minus_gcross_vy_leg3 - t33 * minus_gcross_vz_leg3;
+        let minus_gcylinder_wx_leg3 = t33 * minus_gcylinder_vz_leg3
+            + t21 * gcylinder_vy_leg3;
+        let t1021 = minus_gcylinder_wx_leg3 * t1001;
+        let t1022 = gcross_wx_leg3 * t998 - t1021;
+        let gcross_wy_leg3 = t21 * gcross_vx_leg3 + t55 * minus_gcross_vz_leg3;
+        let gcylinder_wy_leg3 = t21 * gcylinder_vx_leg3 + t55 * minus_gcylinder_vz_leg3;
+        let t1030 = gcylinder_wy_leg3 * t1001;
+        let t1031 = gcross_wy_leg3 * t998 + t1030;
+        let gcylinder_wz_leg3 = t55 * gcylinder_vy_leg3 - t33 * gcylinder_vx_leg3;
+        let t1035 = gcylinder_wz_leg3 * t1001;
+        let minus_gcross_wz_leg3 = t55 * minus_gcross_vy_leg3 + t33 * gcross_vx_leg3;
+        let t1040 = t1035 - minus_gcross_wz_leg3 * t998;
+        let t1042 = t996 - t998 * t950;
+        let t1044 = t975 * t975;
+        let t1045 = t971 * t971;
+        let t1046 = t1044 - t1045;
+        let t1048 = gcross_vx_leg3 * t1042 + gcylinder_vx_leg3 * t1046;
+        let t1051 = gcylinder_vy_leg3 * t1046 - minus_gcross_vy_leg3 * t1042;
+        let t1054 = minus_gcross_vz_leg3 * t1042 + minus_gcylinder_vz_leg3 * t1046;
+        let t1057 = gcross_wx_leg3 * t1042 - minus_gcylinder_wx_leg3 * t1046;
+        let t1060 = gcross_wy_leg3 * t1042 + gcylinder_wy_leg3 * t1046;
+        let t1063 = gcylinder_wz_leg3 * t1046 - minus_gcross_wz_leg3 * t1042;
+        let t1068 = t952 * t940 + t957 * t938 - t961 * t943;
+        let t1070 = t1068 + rate_cylinder_leg3 * t986;
+        let t1071 = t1070 / joints[8];
+        let rate_dot_cylinder_leg3 = t1071 - t1001;
+        let t1073 = rate_dot_cylinder_leg3 - t1001;
+        let t1075 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1078 = s_cylinder_leg3 * t1073 - minus_c_cylinder_leg3 * (t1075 - t1044);
+        let t1081 = gcross_vx_leg3 * t1078 - gcylinder_vx_leg3 * t989;
+        let t1084 = minus_gcross_vy_leg3 * t1078 + gcylinder_vy_leg3 * t989;
+        let t1087 = minus_gcylinder_vz_leg3 * t989 - minus_gcross_vz_leg3 * t1078;
+        let t1090 = gcross_wx_leg3 * t1078 + minus_gcylinder_wx_leg3 * t989;
+        let t1093 = gcross_wy_leg3 * t1078 - gcylinder_wy_leg3 * t989;
+        let t1096 = minus_gcross_wz_leg3 * t1078 + gcylinder_wz_leg3 * t989;
+        let t1098 = gcross_vx_leg3 * t997 + t1002;
+        let t1100 = minus_gcross_vy_leg3 * t997 - t1005;
+        let t1102 = minus_gcross_vz_leg3 * t997 + t1012;
+        let t1104 = t1021 - gcross_wx_leg3 * t997;
+        let t1106 = gcross_wy_leg3 * t997 + t1030;
+        let t1108 = minus_gcross_wz_leg3 * t997 - t1035;
+        let t1112 = s_cylinder_leg3 * (t1045 - t1075) - minus_c_cylinder_leg3 * t1071;
+        let t1115 = gcross_vx_leg3 * t1112 + gcylinder_vx_leg3 * t993;
+        let t1118 = gcylinder_vy_leg3 * t993 - minus_gcross_vy_leg3 * t1112;
+        let t1121 = minus_gcross_vz_leg3 * t1112 + minus_gcylinder_vz_leg3 * t993;
+        let t1124 = gcross_wx_leg3 * t1112 - minus_gcylinder_wx_leg3 * t993;
+        let t1127 = gcross_wy_leg3 * t1112 + gcylinder_wy_leg3 * t993;
+        let t1130 = gcylinder_wz_leg3 * t993 - minus_gcross_wz_leg3 * t1112;
+        let t1131 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t1132 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t1133 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t1134 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t1135 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t1136 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t1137 = 9.81 * minus_c_cross_leg3;
+        let t1138 = s_cylinder_leg3 * t1137;
+        let t1139 = t1138 * t950;
+        let t1141 = 9.81 * grod_vz_leg3;
+        let t1159 = t1141 / joints[8];
+        let t1163 = 9.81 * t961;
+        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t55 + grod_vx_leg3 * t33;
+        let t1176 = 9.81 * s_cross_leg3;
+        let t1184 = t945 + t1137;
+        let t1186 = t934 * t995 + minus_c_cylinder_leg3 * t1184;
+        let t1192 = minus_grod_vy_leg3 * t938 - grod_vx_leg3 * t940
+            - grod_vz_leg3 * t943;
+        let t1193 = t1192 - t1141;
+        let t1196 = t1193 - joints[8] * (t1045 + t1075);
+        let t1200 = gcross_vx_leg3 * t1186 + gcylinder_vx_leg3 * t1196
+            - grod_vx_leg3 * t1073;
+        let t1205 = gcylinder_vy_leg3 * t1196 - minus_gcross_vy_leg3 * t1186
+            + minus_grod_vy_leg3 * t1073;
+        let t1210 = minus_gcross_vz_leg3 * t1186 + minus_gcylinder_vz_leg3 * t1196
+            + grod_vz_leg3 * t1073;
+        let t1222 = t1068 - t1163;
+        let t1225 = t969 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1193 + minus_c_cylinder_leg3 * t1222);
+        let t1227 = minus_c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t1229 = gcross_vx_leg3 * t1225 - 0.30901699437494734 * t1227;
+        let t1232 = 0.9510565162951536 * t1227 - minus_gcross_vy_leg3 * t1225;
+        let t1235 = minus_gcross_vz_leg3 * t1225
             + s_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t1265 = t947 * t1008 - s_cylinder_leg3 * t1203;
-        let t1268 = joints[8] * t1129 + t1241;
-        let t1271 = t1060 + t1092;
-        let t1273 = gcross_vx_leg3 * t1265 + gcylinder_vx_leg3 * t1268
-            - grod_vx_leg3 * t1271;
-        let t1278 = gcylinder_vy_leg3 * t1268 - minus_gcross_vy_leg3 * t1265
-            + minus_grod_vy_leg3 * t1271;
-        let t1283 = minus_gcross_vz_leg3 * t1265 + minus_gcylinder_vz_leg3 * t1268
-            + grod_vz_leg3 * t1271;
-        let t1293 = 9.81 + t983;
-        let minus_rate_dot_rod_leg3 = t1211 - joints[8] * t1271;
-        let grod_wx_leg3 = grod_vz_leg3 * t35 + minus_grod_vy_leg3 * t23;
-        let grod_wy_leg3 = grod_vx_leg3 * t23 - grod_vz_leg3 * t57;
-        let t1331 = 0.6691306063588579 * s_cross_leg4;
-        let t1334 = s_cylinder_leg4 * joints[11];
-        ::overact::guard::leg(t1334, 0.5513142860394165, "leg4")?;
-        let t1335 = 1.0 / t1334;
-        let gcross_vx_leg4 = t1331 * t1335;
-        let t1337 = 1.0 / joints[11];
-        let t1339 = 0.6691306063588579 * minus_c_cross_leg4;
-        let t1341 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t1339;
-        let t1342 = twist[0] + t533;
-        let t1344 = 0.7431448254773945 * minus_c_cross_leg4;
-        let t1347 = minus_c_cylinder_leg4 * t1344 + 0.6691306063588579 * s_cylinder_leg4;
-        let t1348 = twist[1] + t546;
-        let t1351 = s_cross_leg4 * minus_c_cylinder_leg4;
-        let t1352 = twist[2] + t557;
-        let rate_cylinder_leg4 = t1337 * (t1341 * t1342 + t1347 * t1348 - t1351 * t1352);
-        let t1356 = 0.7431448254773945 * s_cross_leg4;
-        let t1361 = t1356 * t1348 - t1331 * t1342 + minus_c_cross_leg4 * t1352;
-        let minus_rate_cross_leg4 = t1335 * t1361;
-        let t1363 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t1364 = rate_cylinder_leg4 * t1363;
-        let t1365 = acceleration[1] + t588;
-        let t1367 = acceleration[0] + t583;
-        let t1370 = acceleration[2] + t594;
-        let t1372 = t1356 * t1365 - t1331 * t1367 + minus_c_cross_leg4 * t1370;
-        let t1373 = joints[11] * t1364;
-        let t1376 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_grod_vy_leg4 = s_cylinder_leg4 * t1344
-            - 0.6691306063588579 * minus_c_cylinder_leg4;
-        let grod_vx_leg4 = s_cylinder_leg4 * t1339
-            + 0.7431448254773945 * minus_c_cylinder_leg4;
+        let t1247 = joints[8] * t998 - s_cylinder_leg3 * t1184;
+        let t1249 = t1070 + t1222;
+        let t1252 = t1044 + t1075;
+        let t1254 = gcross_vx_leg3 * t1247 + gcylinder_vx_leg3 * t1249
+            - grod_vx_leg3 * t1252;
+        let t1259 = gcylinder_vy_leg3 * t1249 - minus_gcross_vy_leg3 * t1247
+            + minus_grod_vy_leg3 * t1252;
+        let t1264 = minus_gcross_vz_leg3 * t1247 + minus_gcylinder_vz_leg3 * t1249
+            + grod_vz_leg3 * t1252;
+        let t1274 = 9.81 + t943;
+        let minus_rate_dot_rod_leg3 = t1192 - joints[8] * t1252;
+        let grod_wx_leg3 = grod_vz_leg3 * t33 + minus_grod_vy_leg3 * t21;
+        let grod_wy_leg3 = grod_vx_leg3 * t21 - grod_vz_leg3 * t55;
+        let t1312 = 0.6691306063588579 * s_cross_leg4;
+        let t1315 = s_cylinder_leg4 * joints[11];
+        ::overact::guard::leg(t1315, 0.5513142860394165, "leg4")?;
+        let gcross_vx_leg4 = t1312 / t1315;
+        let t1317 = 0.7431448254773945 * s_cross_leg4;
+        let t1318 = acceleration[1] + t568;
+        let t1320 = acceleration[0] + t563;
+        let t1323 = acceleration[2] + t574;
+        let t1325 = t1317 * t1318 - t1312 * t1320 + minus_c_cross_leg4 * t1323;
+        let t1326 = 0.7431448254773945 * s_cylinder_leg4;
+        let t1327 = 0.6691306063588579 * minus_c_cylinder_leg4;
+        let t1329 = t1326 - minus_c_cross_leg4 * t1327;
+        let t1330 = twist[0] + t525;
+        let t1332 = 0.7431448254773945 * minus_c_cylinder_leg4;
+        let t1334 = 0.6691306063588579 * s_cylinder_leg4;
+        let t1335 = minus_c_cross_leg4 * t1332 + t1334;
+        let t1336 = twist[1] + t538;
+        let t1339 = s_cross_leg4 * minus_c_cylinder_leg4;
+        let t1340 = twist[2] + t549;
+        let t1342 = t1329 * t1330 + t1335 * t1336 - t1339 * t1340;
+        let t1347 = t1317 * t1336 - t1312 * t1330 + minus_c_cross_leg4 * t1340;
+        let minus_rate_cross_leg4 = t1347 / t1315;
+        let t1349 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t1350 = t1342 * t1349;
+        let t1353 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_grod_vy_leg4 = t1326 * minus_c_cross_leg4 - t1327;
+        let grod_vx_leg4 = minus_c_cross_leg4 * t1334 + t1332;
         let grod_vz_leg4 = s_cross_leg4 * s_cylinder_leg4;
-        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t1348 - grod_vx_leg4 * t1342
-            - grod_vz_leg4 * t1352;
-        let t1389 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = t1335 * (t1372 + t1373 + t1373 + t1376 * t1389);
-        let t1393 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1395 = t1364 + t1364 - t1393;
-        let t1396 = s_cylinder_leg4 * t1395;
-        let gcylinder_vx_leg4 = t1341 * t1337;
-        let t1399 = t1376 * t1363;
-        let t1400 = gcylinder_vx_leg4 * t1399;
-        let t1401 = gcross_vx_leg4 * t1396 + t1400;
-        let gcylinder_vy_leg4 = t1347 * t1337;
-        let t1403 = gcylinder_vy_leg4 * t1399;
-        let minus_gcross_vy_leg4 = t1356 * t1335;
-        let t1406 = t1403 - minus_gcross_vy_leg4 * t1396;
-        let minus_gcross_vz_leg4 = minus_c_cross_leg4 * t1335;
-        let minus_gcylinder_vz_leg4 = t1351 * t1337;
-        let t1410 = minus_gcylinder_vz_leg4 * t1399;
-        let t1411 = minus_gcross_vz_leg4 * t1396 + t1410;
-        let gcross_wx_leg4 = t529 * minus_gcross_vy_leg4 - t531 * minus_gcross_vz_leg4;
-        let minus_gcylinder_wx_leg4 = t531 * minus_gcylinder_vz_leg4
-            + t529 * gcylinder_vy_leg4;
-        let t1419 = minus_gcylinder_wx_leg4 * t1399;
-        let t1420 = gcross_wx_leg4 * t1396 - t1419;
-        let gcross_wy_leg4 = t529 * gcross_vx_leg4 + t543 * minus_gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t529 * gcylinder_vx_leg4
-            + t543 * minus_gcylinder_vz_leg4;
-        let t1428 = gcylinder_wy_leg4 * t1399;
-        let t1429 = gcross_wy_leg4 * t1396 + t1428;
-        let gcylinder_wz_leg4 = t543 * gcylinder_vy_leg4 - t531 * gcylinder_vx_leg4;
-        let t1433 = gcylinder_wz_leg4 * t1399;
-        let minus_gcross_wz_leg4 = t543 * minus_gcross_vy_leg4 + t531 * gcross_vx_leg4;
-        let t1438 = t1433 - minus_gcross_wz_leg4 * t1396;
-        let t1439 = rate_cylinder_leg4 * t1376;
-        let t1440 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1442 = t1439 + t1440 + t1439;
-        let t1445 = s_cylinder_leg4 * t1442 - minus_c_cylinder_leg4 * t1395;
-        let t1447 = t1376 * t1376;
-        let t1448 = t1363 * t1363;
-        let t1449 = t1447 - t1448;
-        let t1451 = gcross_vx_leg4 * t1445 + gcylinder_vx_leg4 * t1449;
-        let t1454 = gcylinder_vy_leg4 * t1449 - minus_gcross_vy_leg4 * t1445;
-        let t1457 = minus_gcross_vz_leg4 * t1445 + minus_gcylinder_vz_leg4 * t1449;
-        let t1460 = gcross_wx_leg4 * t1445 - minus_gcylinder_wx_leg4 * t1449;
-        let t1463 = gcross_wy_leg4 * t1445 + gcylinder_wy_leg4 * t1449;
-        let t1466 = gcylinder_wz_leg4 * t1449 - minus_gcross_wz_leg4 * t1445;
-        let t1471 = t1341 * t1367 + t1347 * t1365 - t1351 * t1370;
-        let rate_dot_cylinder_leg4 = t1337
-            * (t1471 - joints[11] * t1399 + rate_cylinder_leg4 * t1389);
-        let t1477 = rate_dot_cylinder_leg4 - t1399;
-        let t1479 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1482 = s_cylinder_leg4 * t1477 - minus_c_cylinder_leg4 * (t1479 - t1447);
-        let t1485 = gcross_vx_leg4 * t1482 - gcylinder_vx_leg4 * t1393;
-        let t1488 = minus_gcross_vy_leg4 * t1482 + gcylinder_vy_leg4 * t1393;
-        let t1491 = minus_gcylinder_vz_leg4 * t1393 - minus_gcross_vz_leg4 * t1482;
-        let t1494 = gcross_wx_leg4 * t1482 + minus_gcylinder_wx_leg4 * t1393;
-        let t1497 = gcross_wy_leg4 * t1482 - gcylinder_wy_leg4 * t1393;
-        let t1500 = minus_gcross_wz_leg4 * t1482 + gcylinder_wz_leg4 * t1393;
-        let t1501 = minus_c_cylinder_leg4 * t1442;
-        let t1503 = gcross_vx_leg4 * t1501 + t1400;
-        let t1505 = minus_gcross_vy_leg4 * t1501 - t1403;
-        let t1507 = minus_gcross_vz_leg4 * t1501 + t1410;
-        let t1509 = t1419 - gcross_wx_leg4 * t1501;
-        let t1511 = gcross_wy_leg4 * t1501 + t1428;
-        let t1513 = minus_gcross_wz_leg4 * t1501 - t1433;
-        let t1516 = t1399 + rate_dot_cylinder_leg4;
-        let t1518 = s_cylinder_leg4 * (t1448 - t1479) - minus_c_cylinder_leg4 * t1516;
-        let t1521 = gcross_vx_leg4 * t1518 + gcylinder_vx_leg4 * t1440;
-        let t1524 = gcylinder_vy_leg4 * t1440 - minus_gcross_vy_leg4 * t1518;
-        let t1527 = minus_gcross_vz_leg4 * t1518 + minus_gcylinder_vz_leg4 * t1440;
-        let t1530 = gcross_wx_leg4 * t1518 - minus_gcylinder_wx_leg4 * t1440;
-        let t1533 = gcross_wy_leg4 * t1518 + gcylinder_wy_leg4 * t1440;
-        let t1536 = gcylinder_wz_leg4 * t1440 - minus_gcross_wz_leg4 * t1518;
-        let t1537 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t1538 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t1539 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t1540 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t1541 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t1542 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t1543 = 9.81 * minus_c_cross_leg4;
-        let t1544 = minus_c_cylinder_leg4 * t1543;
-        let t1546 = 9.81 * grod_vz_leg4;
-        let t1564 = t1337 * t1546;
-        let t1567 = s_cylinder_leg4 * t1543;
-        let t1569 = 9.81 * t1351;
-        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t543 + grod_vx_leg4 * t531;
-        let t1582 = 9.81 * s_cross_leg4;
-        let t1590 = t1372 + t1543;
-        let t1592 = t1334 * t1442 + minus_c_cylinder_leg4 * t1590;
-        let t1598 = minus_grod_vy_leg4 * t1365 - grod_vx_leg4 * t1367
-            - grod_vz_leg4 * t1370;
-        let t1599 = t1598 - t1546;
-        let t1602 = t1599 - joints[11] * (t1448 + t1479);
-        let t1606 = gcross_vx_leg4 * t1592 + gcylinder_vx_leg4 * t1602
-            - grod_vx_leg4 * t1477;
-        let t1611 = gcylinder_vy_leg4 * t1602 - minus_gcross_vy_leg4 * t1592
-            + minus_grod_vy_leg4 * t1477;
-        let t1616 = minus_gcross_vz_leg4 * t1592 + minus_gcylinder_vz_leg4 * t1602
-            + grod_vz_leg4 * t1477;
-        let t1628 = t1471 - t1569;
-        let t1631 = t1361 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t1599 + minus_c_cylinder_leg4 * t1628);
-        let t1634 = gcross_vx_leg4 * t1631 - t1339 * minus_rate_dot_cross_leg4;
-        let t1637 = t1344 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t1631;
-        let t1640 = minus_gcross_vz_leg4 * t1631
+        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t1336 - grod_vx_leg4 * t1330
+            - grod_vz_leg4 * t1340;
+        let t1364 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
+        let minus_rate_dot_cross_leg4 = (t1325 + t1350 + t1350 + t1353 * t1364) / t1315;
+        let t1368 = 1.0 / joints[11];
+        let rate_cylinder_leg4 = t1368 * t1342;
+        let t1370 = rate_cylinder_leg4 * t1353;
+        let t1371 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1373 = t1370 + t1371 + t1370;
+        let t1374 = minus_c_cylinder_leg4 * t1373;
+        let t1375 = t1374 - minus_rate_dot_cross_leg4;
+        let gcylinder_vx_leg4 = t1329 * t1368;
+        let t1378 = t1353 * t1349;
+        let t1379 = gcylinder_vx_leg4 * t1378;
+        let t1380 = gcross_vx_leg4 * t1375 + t1379;
+        let gcylinder_vy_leg4 = t1335 * t1368;
+        let t1382 = gcylinder_vy_leg4 * t1378;
+        let minus_gcross_vy_leg4 = t1317 / t1315;
+        let t1385 = t1382 - minus_gcross_vy_leg4 * t1375;
+        let minus_gcross_vz_leg4 = minus_c_cross_leg4 / t1315;
+        let minus_gcylinder_vz_leg4 = t1339 * t1368;
+        let t1389 = minus_gcylinder_vz_leg4 * t1378;
+        let t1390 = minus_gcross_vz_leg4 * t1375 + t1389;
+        let gcross_wx_leg4 = t521 * minus_gcross_vy_leg4 - t523 * minus_gcross_vz_leg4;
+        let minus_gcylinder_wx_leg4 = t523 * minus_gcylinder_vz_leg4
+            + t521 * gcylinder_vy_leg4;
+        let t1398 = minus_gcylinder_wx_leg4 * t1378;
+        let t1399 = gcross_wx_leg4 * t1375 - t1398;
+        let gcross_wy_leg4 = t521 * gcross_vx_leg4 + t535 * minus_gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t521 * gcylinder_vx_leg4
+            + t535 * minus_gcylinder_vz_leg4;
+        let t1407 = gcylinder_wy_leg4 * t1378;
+        let t1408 = gcross_wy_leg4 * t1375 + t1407;
+        let gcylinder_wz_leg4 = t535 * gcylinder_vy_leg4 - t523 * gcylinder_vx_leg4;
+        let t1412 = gcylinder_wz_leg4 * t1378;
+        let minus_gcross_wz_leg4 = t535 * minus_gcross_vy_leg4 + t523 * gcross_vx_leg4;
+        let t1417 = t1412 - minus_gcross_wz_leg4 * t1375;
+        let t1419 = joints[11] * t1375;
+        let t1422 = s_cylinder_leg4 * t1373 - minus_c_cylinder_leg4 * (t1419 / t1315);
+        let t1424 = t1353 * t1353;
+        let t1425 = t1349 * t1349;
+        let t1426 = t1424 - t1425;
+        let t1428 = gcross_vx_leg4 * t1422 + gcylinder_vx_leg4 * t1426;
+        let t1431 = gcylinder_vy_leg4 * t1426 - minus_gcross_vy_leg4 * t1422;
+        let t1434 = minus_gcross_vz_leg4 * t1422 + minus_gcylinder_vz_leg4 * t1426;
+        let t1437 = gcross_wx_leg4 * t1422 - minus_gcylinder_wx_leg4 * t1426;
+        let t1440 = gcross_wy_leg4 * t1422 + gcylinder_wy_leg4 * t1426;
+        let t1443 = gcylinder_wz_leg4 * t1426 - minus_gcross_wz_leg4 * t1422;
+        let t1448 = t1329 * t1320 + t1335 * t1318 - t1339 * t1323;
+        let t1450 = t1448 + rate_cylinder_leg4 * t1364;
+        let t1451 = t1368 * t1450;
+        let rate_dot_cylinder_leg4 = t1451 - t1378;
+        let t1453 = rate_dot_cylinder_leg4 - t1378;
+        let t1455 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1458 = s_cylinder_leg4 * t1453 - minus_c_cylinder_leg4 * (t1455 - t1424);
+        let t1460 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1462 = gcross_vx_leg4 * t1458 - gcylinder_vx_leg4 * t1460;
+        let t1465 = minus_gcross_vy_leg4 * t1458 + gcylinder_vy_leg4 * t1460;
+        let t1468 = minus_gcylinder_vz_leg4 * t1460 - minus_gcross_vz_leg4 * t1458;
+        let t1471 = gcross_wx_leg4 * t1458 + minus_gcylinder_wx_leg4 * t1460;
+        let t1474 = gcross_wy_leg4 * t1458 - gcylinder_wy_leg4 * t1460;
+        let t1477 = minus_gcross_wz_leg4 * t1458 + gcylinder_wz_leg4 * t1460;
+        let t1479 = gcross_vx_leg4 * t1374 + t1379;
+        let t1481 = minus_gcross_vy_leg4 * t1374 - t1382;
+        let t1483 = minus_gcross_vz_leg4 * t1374 + t1389;
+        let t1485 = t1398 - gcross_wx_leg4 * t1374;
+        let t1487 = gcross_wy_leg4 * t1374 + t1407;
+        let t1489 = minus_gcross_wz_leg4 * t1374 - t1412;
+        let t1493 = s_cylinder_leg4 * (t1425 - t1455) - minus_c_cylinder_leg4 * t1451;
+        let t1496 = gcross_vx_leg4 * t1493 + gcylinder_vx_leg4 * t1371;
+        let t1499 = gcylinder_vy_leg4 * t1371 - minus_gcross_vy_leg4 * t1493;
+        let t1502 = minus_gcross_vz_leg4 * t1493 + minus_gcylinder_vz_leg4 * t1371;
+        let t1505 = gcross_wx_leg4 * t1493 - minus_gcylinder_wx_leg4 * t1371;
+        let t1508 = gcross_wy_leg4 * t1493 + gcylinder_wy_leg4 * t1371;
+        let t1511 = gcylinder_wz_leg4 * t1371 - minus_gcross_wz_leg4 * t1493;
+        let t1512 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t1513 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t1514 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t1515 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t1516 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t1517 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t1518 = 9.81 * minus_c_cross_leg4;
+        let t1519 = minus_c_cylinder_leg4 * t1518;
+        let t1521 = 9.81 * grod_vz_leg4;
+        let t1539 = t1368 * t1521;
+        let t1542 = s_cylinder_leg4 * t1518;
+        let t1544 = 9.81 * t1339;
+        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t535 + grod_vx_leg4 * t523;
+        let t1557 = 9.81 * s_cross_leg4;
+        let t1565 = t1325 + t1518;
+        let t1567 = t1315 * t1373 + minus_c_cylinder_leg4 * t1565;
+        let t1573 = minus_grod_vy_leg4 * t1318 - grod_vx_leg4 * t1320
+            - grod_vz_leg4 * t1323;
+        let t1574 = t1573 - t1521;
+        let t1577 = t1574 - joints[11] * (t1425 + t1455);
+        let t1581 = gcross_vx_leg4 * t1567 + gcylinder_vx_leg4 * t1577
+            - grod_vx_leg4 * t1453;
+        let t1586 = gcylinder_vy_leg4 * t1577 - minus_gcross_vy_leg4 * t1567
+            + minus_grod_vy_leg4 * t1453;
+        let t1591 = minus_gcross_vz_leg4 * t1567 + minus_gcylinder_vz_leg4 * t1577
+            + grod_vz_leg4 * t1453;
+        let t1603 = t1448 - t1544;
+        let t1606 = t1347 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1574 + minus_c_cylinder_leg4 * t1603);
+        let t1608 = minus_c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t1610 = gcross_vx_leg4 * t1606 - 0.6691306063588579 * t1608;
+        let t1613 = 0.7431448254773945 * t1608 - minus_gcross_vy_leg4 * t1606;
+        let t1616 = minus_gcross_vz_leg4 * t1606
             + s_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t1652 = t1334 * t1395 - s_cylinder_leg4 * t1590;
-        let t1655 = joints[11] * t1516 + t1628;
-        let t1658 = t1447 + t1479;
-        let t1660 = gcross_vx_leg4 * t1652 + gcylinder_vx_leg4 * t1655
-            - grod_vx_leg4 * t1658;
-        let t1665 = gcylinder_vy_leg4 * t1655 - minus_gcross_vy_leg4 * t1652
-            + minus_grod_vy_leg4 * t1658;
-        let t1670 = minus_gcross_vz_leg4 * t1652 + minus_gcylinder_vz_leg4 * t1655
-            + grod_vz_leg4 * t1658;
-        let t1680 = 9.81 + t1370;
-        let minus_rate_dot_rod_leg4 = t1598 - joints[11] * t1658;
-        let grod_wx_leg4 = grod_vz_leg4 * t531 + minus_grod_vy_leg4 * t529;
-        let grod_wy_leg4 = grod_vx_leg4 * t529 - grod_vz_leg4 * t543;
-        let t1718 = 0.6691306063588579 * s_cross_leg5;
-        let t1721 = s_cylinder_leg5 * joints[14];
-        ::overact::guard::leg(t1721, 0.5513142860394162, "leg5")?;
-        let t1722 = 1.0 / t1721;
-        let gcross_vx_leg5 = t1718 * t1722;
-        let t1724 = 1.0 / joints[14];
-        let t1726 = 0.7431448254773945 * minus_c_cross_leg5;
-        let t1728 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t1726;
-        let t1729 = twist[1] + t66;
-        let t1731 = 0.6691306063588579 * minus_c_cross_leg5;
-        let t1734 = minus_c_cylinder_leg5 * t1731 + 0.7431448254773945 * s_cylinder_leg5;
-        let t1735 = twist[0] + t46;
-        let t1738 = s_cross_leg5 * minus_c_cylinder_leg5;
-        let t1739 = twist[2] + t76;
-        let rate_cylinder_leg5 = t1724 * (t1728 * t1729 - t1734 * t1735 - t1738 * t1739);
-        let t1745 = 0.7431448254773945 * s_cross_leg5;
-        let t1748 = minus_c_cross_leg5 * t1739 - (t1718 * t1735 + t1745 * t1729);
-        let minus_rate_cross_leg5 = t1722 * t1748;
-        let t1750 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1751 = rate_cylinder_leg5 * t1750;
-        let t1752 = acceleration[2] - t168;
-        let t1754 = acceleration[0] - t121;
-        let t1756 = acceleration[1] - t145;
-        let t1759 = minus_c_cross_leg5 * t1752 - (t1718 * t1754 + t1745 * t1756);
-        let t1760 = joints[14] * t1751;
-        let t1763 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1627 = t1419 - s_cylinder_leg4 * t1565;
+        let t1629 = t1450 + t1603;
+        let t1632 = t1424 + t1455;
+        let t1634 = gcross_vx_leg4 * t1627 + gcylinder_vx_leg4 * t1629
+            - grod_vx_leg4 * t1632;
+        let t1639 = gcylinder_vy_leg4 * t1629 - minus_gcross_vy_leg4 * t1627
+            + minus_grod_vy_leg4 * t1632;
+        let t1644 = minus_gcross_vz_leg4 * t1627 + minus_gcylinder_vz_leg4 * t1629
+            + grod_vz_leg4 * t1632;
+        let t1654 = acceleration[2] + 9.81;
+        let t1655 = t574 + t1654;
+        let minus_rate_dot_rod_leg4 = t1573 - joints[11] * t1632;
+        let grod_wx_leg4 = grod_vz_leg4 * t523 + minus_grod_vy_leg4 * t521;
+        let grod_wy_leg4 = grod_vx_leg4 * t521 - grod_vz_leg4 * t535;
+        let t1693 = 0.6691306063588579 * s_cross_leg5;
+        let t1696 = s_cylinder_leg5 * joints[14];
+        ::overact::guard::leg(t1696, 0.5513142860394162, "leg5")?;
+        let gcross_vx_leg5 = t1693 / t1696;
+        let t1698 = acceleration[2] - t155;
+        let t1700 = acceleration[0] - t108;
+        let t1702 = 0.7431448254773945 * s_cross_leg5;
+        let t1703 = acceleration[1] - t132;
+        let t1706 = minus_c_cross_leg5 * t1698 - (t1693 * t1700 + t1702 * t1703);
+        let t1707 = twist[2] + t74;
+        let t1709 = twist[0] + t44;
+        let t1711 = twist[1] + t64;
+        let t1714 = minus_c_cross_leg5 * t1707 - (t1693 * t1709 + t1702 * t1711);
+        let minus_rate_cross_leg5 = t1714 / t1696;
+        let t1716 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1718 = 0.6691306063588579 * minus_c_cross_leg5;
         let minus_grod_vx_leg5 = 0.7431448254773945 * minus_c_cylinder_leg5
-            - s_cylinder_leg5 * t1731;
-        let grod_vy_leg5 = s_cylinder_leg5 * t1726
+            - s_cylinder_leg5 * t1718;
+        let t1722 = 0.7431448254773945 * minus_c_cross_leg5;
+        let grod_vy_leg5 = s_cylinder_leg5 * t1722
             + 0.6691306063588579 * minus_c_cylinder_leg5;
         let grod_vz_leg5 = s_cross_leg5 * s_cylinder_leg5;
-        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t1735 - grod_vy_leg5 * t1729
-            - grod_vz_leg5 * t1739;
-        let t1776 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t1722 * (t1759 + t1760 + t1760 + t1763 * t1776);
-        let t1780 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1782 = t1751 + t1751 - t1780;
-        let t1783 = s_cylinder_leg5 * t1782;
-        let minus_gcylinder_vx_leg5 = t1734 * t1724;
-        let t1786 = t1763 * t1750;
-        let t1787 = minus_gcylinder_vx_leg5 * t1786;
-        let t1788 = gcross_vx_leg5 * t1783 - t1787;
-        let gcross_vy_leg5 = t1745 * t1722;
-        let gcylinder_vy_leg5 = t1728 * t1724;
-        let t1792 = gcylinder_vy_leg5 * t1786;
-        let t1793 = gcross_vy_leg5 * t1783 + t1792;
-        let minus_gcross_vz_leg5 = minus_c_cross_leg5 * t1722;
-        let minus_gcylinder_vz_leg5 = t1738 * t1724;
-        let t1797 = minus_gcylinder_vz_leg5 * t1786;
-        let t1798 = minus_gcross_vz_leg5 * t1783 + t1797;
-        let gcross_wx_leg5 = t40 * minus_gcross_vz_leg5 + t44 * gcross_vy_leg5;
-        let gcylinder_wx_leg5 = t40 * minus_gcylinder_vz_leg5 + t44 * gcylinder_vy_leg5;
-        let t1806 = gcylinder_wx_leg5 * t1786;
-        let t1807 = gcross_wx_leg5 * t1783 + t1806;
-        let gcylinder_wy_leg5 = t44 * minus_gcylinder_vx_leg5
-            - t64 * minus_gcylinder_vz_leg5;
-        let t1811 = gcylinder_wy_leg5 * t1786;
-        let minus_gcross_wy_leg5 = t44 * gcross_vx_leg5 + t64 * minus_gcross_vz_leg5;
-        let t1816 = t1811 - minus_gcross_wy_leg5 * t1783;
-        let gcross_wz_leg5 = t40 * gcross_vx_leg5 - t64 * gcross_vy_leg5;
-        let minus_gcylinder_wz_leg5 = t64 * gcylinder_vy_leg5
-            + t40 * minus_gcylinder_vx_leg5;
-        let t1824 = minus_gcylinder_wz_leg5 * t1786;
-        let t1825 = gcross_wz_leg5 * t1783 - t1824;
-        let t1826 = rate_cylinder_leg5 * t1763;
-        let t1827 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1829 = t1826 + t1827 + t1826;
-        let t1832 = s_cylinder_leg5 * t1829 - minus_c_cylinder_leg5 * t1782;
-        let t1834 = t1763 * t1763;
-        let t1835 = t1750 * t1750;
-        let t1836 = t1834 - t1835;
-        let t1838 = gcross_vx_leg5 * t1832 - minus_gcylinder_vx_leg5 * t1836;
-        let t1841 = gcross_vy_leg5 * t1832 + gcylinder_vy_leg5 * t1836;
-        let t1844 = minus_gcross_vz_leg5 * t1832 + minus_gcylinder_vz_leg5 * t1836;
-        let t1847 = gcross_wx_leg5 * t1832 + gcylinder_wx_leg5 * t1836;
-        let t1850 = gcylinder_wy_leg5 * t1836 - minus_gcross_wy_leg5 * t1832;
-        let t1853 = gcross_wz_leg5 * t1832 - minus_gcylinder_wz_leg5 * t1836;
-        let t1858 = t1728 * t1756 - t1734 * t1754 - t1738 * t1752;
-        let rate_dot_cylinder_leg5 = t1724
-            * (t1858 - joints[14] * t1786 + rate_cylinder_leg5 * t1776);
-        let t1864 = rate_dot_cylinder_leg5 - t1786;
-        let t1866 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1869 = s_cylinder_leg5 * t1864 - minus_c_cylinder_leg5 * (t1866 - t1834);
-        let t1872 = gcross_vx_leg5 * t1869 + minus_gcylinder_vx_leg5 * t1780;
-        let t1875 = gcross_vy_leg5 * t1869 - gcylinder_vy_leg5 * t1780;
-        let t1878 = minus_gcylinder_vz_leg5 * t1780 - minus_gcross_vz_leg5 * t1869;
-        let t1881 = gcross_wx_leg5 * t1869 - gcylinder_wx_leg5 * t1780;
-        let t1884 = minus_gcross_wy_leg5 * t1869 + gcylinder_wy_leg5 * t1780;
-        let t1887 = gcross_wz_leg5 * t1869 + minus_gcylinder_wz_leg5 * t1780;
-        let t1888 = minus_c_cylinder_leg5 * t1829;
-        let t1890 = t1787 - gcross_vx_leg5 * t1888;
-        let t1892 = gcross_vy_leg5 * t1888 + t1792;
-        let t1894 = minus_gcross_vz_leg5 * t1888 + t1797;
-        let t1896 = gcross_wx_leg5 * t1888 + t1806;
-        let t1898 = minus_gcross_wy_leg5 * t1888 - t1811;
-        let t1900 = t1824 - gcross_wz_leg5 * t1888;
-        let t1903 = t1786 + rate_dot_cylinder_leg5;
-        let t1905 = s_cylinder_leg5 * (t1835 - t1866) - minus_c_cylinder_leg5 * t1903;
-        let t1908 = gcross_vx_leg5 * t1905 - minus_gcylinder_vx_leg5 * t1827;
-        let t1911 = gcross_vy_leg5 * t1905 + gcylinder_vy_leg5 * t1827;
-        let t1914 = minus_gcross_vz_leg5 * t1905 + minus_gcylinder_vz_leg5 * t1827;
-        let t1917 = gcross_wx_leg5 * t1905 + gcylinder_wx_leg5 * t1827;
-        let t1920 = gcylinder_wy_leg5 * t1827 - minus_gcross_wy_leg5 * t1905;
-        let t1923 = gcross_wz_leg5 * t1905 - minus_gcylinder_wz_leg5 * t1827;
-        let t1924 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t1925 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t1926 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t1927 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t1928 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t1929 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t1930 = 9.81 * minus_c_cross_leg5;
-        let t1931 = minus_c_cylinder_leg5 * t1930;
-        let t1933 = 9.81 * grod_vz_leg5;
-        let t1951 = t1724 * t1933;
-        let t1954 = s_cylinder_leg5 * t1930;
-        let t1956 = 9.81 * t1738;
-        let minus_grod_wz_leg5 = grod_vy_leg5 * t64 + minus_grod_vx_leg5 * t40;
-        let t1969 = 9.81 * s_cross_leg5;
-        let t1977 = t1759 + t1930;
-        let t1979 = t1721 * t1829 + minus_c_cylinder_leg5 * t1977;
-        let t1985 = minus_grod_vx_leg5 * t1754 - grod_vy_leg5 * t1756
-            - grod_vz_leg5 * t1752;
-        let t1986 = t1985 - t1933;
-        let t1989 = t1986 - joints[14] * (t1835 + t1866);
-        let t1993 = gcross_vx_leg5 * t1979 - minus_gcylinder_vx_leg5 * t1989
-            + minus_grod_vx_leg5 * t1864;
-        let t1998 = gcross_vy_leg5 * t1979 + gcylinder_vy_leg5 * t1989
-            - grod_vy_leg5 * t1864;
-        let t2003 = minus_gcross_vz_leg5 * t1979 + minus_gcylinder_vz_leg5 * t1989
-            + grod_vz_leg5 * t1864;
-        let t2015 = t1858 - t1956;
-        let t2018 = t1748 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t1986 + minus_c_cylinder_leg5 * t2015);
-        let t2021 = gcross_vx_leg5 * t2018 - t1731 * minus_rate_dot_cross_leg5;
-        let t2024 = gcross_vy_leg5 * t2018 - t1726 * minus_rate_dot_cross_leg5;
-        let t2027 = minus_gcross_vz_leg5 * t2018
+        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t1709 - grod_vy_leg5 * t1711
+            - grod_vz_leg5 * t1707;
+        let t1731 = 2.0 * minus_rate_rod_leg5;
+        let t1733 = t1706 + t1716 * t1731;
+        let t1736 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t1722;
+        let t1740 = minus_c_cylinder_leg5 * t1718 + 0.7431448254773945 * s_cylinder_leg5;
+        let t1743 = s_cross_leg5 * minus_c_cylinder_leg5;
+        let t1745 = t1736 * t1711 - t1740 * t1709 - t1743 * t1707;
+        let t1746 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1747 = t1745 * t1746;
+        let minus_rate_dot_cross_leg5 = (t1733 + t1747 + t1747) / t1696;
+        let t1751 = 1.0 / joints[14];
+        let rate_cylinder_leg5 = t1751 * t1745;
+        let t1753 = rate_cylinder_leg5 * t1716;
+        let t1754 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1756 = t1753 + t1754 + t1753;
+        let t1757 = minus_c_cylinder_leg5 * t1756;
+        let t1758 = t1757 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t1740 * t1751;
+        let t1761 = t1716 * t1746;
+        let t1762 = minus_gcylinder_vx_leg5 * t1761;
+        let t1763 = gcross_vx_leg5 * t1758 - t1762;
+        let gcross_vy_leg5 = t1702 / t1696;
+        let gcylinder_vy_leg5 = t1736 * t1751;
+        let t1767 = gcylinder_vy_leg5 * t1761;
+        let t1768 = gcross_vy_leg5 * t1758 + t1767;
+        let minus_gcross_vz_leg5 = minus_c_cross_leg5 / t1696;
+        let minus_gcylinder_vz_leg5 = t1743 * t1751;
+        let t1772 = minus_gcylinder_vz_leg5 * t1761;
+        let t1773 = minus_gcross_vz_leg5 * t1758 + t1772;
+        let gcross_wx_leg5 = t38 * minus_gcross_vz_leg5 + t42 * gcross_vy_leg5;
+        let gcylinder_wx_leg5 = t38 * minus_gcylinder_vz_leg5 + t42 * gcylinder_vy_leg5;
+        let t1781 = gcylinder_wx_leg5 * t1761;
+        let t1782 = gcross_wx_leg5 * t1758 + t1781;
+        let gcylinder_wy_leg5 = t42 * minus_gcylinder_vx_leg5
+            - t62 * minus_gcylinder_vz_leg5;
+        let t1786 = gcylinder_wy_leg5 * t1761;
+        let minus_gcross_wy_leg5 = t42 * gcross_vx_leg5 + t62 * minus_gcross_vz_leg5;
+        let t1791 = t1786 - minus_gcross_wy_leg5 * t1758;
+        let gcross_wz_leg5 = t38 * gcross_vx_leg5 - t62 * gcross_vy_leg5;
+        let minus_gcylinder_wz_leg5 = t62 * gcylinder_vy_leg5
+            + t38 * minus_gcylinder_vx_leg5;
+        let t1799 = minus_gcylinder_wz_leg5 * t1761;
+        let t1800 = gcross_wz_leg5 * t1758 - t1799;
+        let t1804 = s_cylinder_leg5 * t1756
+            + minus_c_cylinder_leg5 * (t1733 / joints[14]);
+        let t1806 = t1716 * t1716;
+        let t1807 = t1746 * t1746;
+        let t1808 = t1806 - t1807;
+        let t1810 = gcross_vx_leg5 * t1804 - minus_gcylinder_vx_leg5 * t1808;
+        let t1813 = gcross_vy_leg5 * t1804 + gcylinder_vy_leg5 * t1808;
+        let t1816 = minus_gcross_vz_leg5 * t1804 + minus_gcylinder_vz_leg5 * t1808;
+        let t1819 = gcross_wx_leg5 * t1804 + gcylinder_wx_leg5 * t1808;
+        let t1822 = gcylinder_wy_leg5 * t1808 - minus_gcross_wy_leg5 * t1804;
+        let t1825 = gcross_wz_leg5 * t1804 - minus_gcylinder_wz_leg5 * t1808;
+        let t1830 = t1736 * t1703 - t1740 * t1700 - t1743 * t1698;
+        let t1832 = t1830 + rate_cylinder_leg5 * t1731;
+        let t1833 = t1832 / joints[14];
+        let rate_dot_cylinder_leg5 = t1833 - t1761;
+        let t1835 = rate_dot_cylinder_leg5 - t1761;
+        let t1837 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1840 = s_cylinder_leg5 * t1835 - minus_c_cylinder_leg5 * (t1837 - t1806);
+        let t1842 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1844 = gcross_vx_leg5 * t1840 + minus_gcylinder_vx_leg5 * t1842;
+        let t1847 = gcross_vy_leg5 * t1840 - gcylinder_vy_leg5 * t1842;
+        let t1850 = minus_gcylinder_vz_leg5 * t1842 - minus_gcross_vz_leg5 * t1840;
+        let t1853 = gcross_wx_leg5 * t1840 - gcylinder_wx_leg5 * t1842;
+        let t1856 = minus_gcross_wy_leg5 * t1840 + gcylinder_wy_leg5 * t1842;
+        let t1859 = gcross_wz_leg5 * t1840 + minus_gcylinder_wz_leg5 * t1842;
+        let t1861 = t1762 - gcross_vx_leg5 * t1757;
+        let t1863 = gcross_vy_leg5 * t1757 + t1767;
+        let t1865 = minus_gcross_vz_leg5 * t1757 + t1772;
+        let t1867 = gcross_wx_leg5 * t1757 + t1781;
+        let t1869 = minus_gcross_wy_leg5 * t1757 - t1786;
+        let t1871 = t1799 - gcross_wz_leg5 * t1757;
+        let t1875 = s_cylinder_leg5 * (t1807 - t1837) - minus_c_cylinder_leg5 * t1833;
+        let t1878 = gcross_vx_leg5 * t1875 - minus_gcylinder_vx_leg5 * t1754;
+        let t1881 = gcross_vy_leg5 * t1875 + gcylinder_vy_leg5 * t1754;
+        let t1884 = minus_gcross_vz_leg5 * t1875 + minus_gcylinder_vz_leg5 * t1754;
+        let t1887 = gcross_wx_leg5 * t1875 + gcylinder_wx_leg5 * t1754;
+        let t1890 = gcylinder_wy_leg5 * t1754 - minus_gcross_wy_leg5 * t1875;
+        let t1893 = gcross_wz_leg5 * t1875 - minus_gcylinder_wz_leg5 * t1754;
+        let t1894 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t1895 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t1896 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t1897 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t1898 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t1899 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t1900 = 9.81 * minus_c_cross_leg5;
+        let t1901 = minus_c_cylinder_leg5 * t1900;
+        let t1903 = 9.81 * grod_vz_leg5;
+        let t1921 = t1903 / joints[14];
+        let t1924 = s_cylinder_leg5 * t1900;
+        let t1926 = 9.81 * t1743;
+        let minus_grod_wz_leg5 = grod_vy_leg5 * t62 + minus_grod_vx_leg5 * t38;
+        let t1939 = 9.81 * s_cross_leg5;
+        let t1947 = t1706 + t1900;
+        let t1949 = t1696 * t1756 + minus_c_cylinder_leg5 * t1947;
+        let t1955 = minus_grod_vx_leg5 * t1700 - grod_vy_leg5 * t1703
+            - grod_vz_leg5 * t1698;
+        let t1956 = t1955 - t1903;
+        let t1959 = t1956 - joints[14] * (t1807 + t1837);
+        let t1963 = gcross_vx_leg5 * t1949 - minus_gcylinder_vx_leg5 * t1959
+            + minus_grod_vx_leg5 * t1835;
+        let t1968 = gcross_vy_leg5 * t1949 + gcylinder_vy_leg5 * t1959
+            - grod_vy_leg5 * t1835;
+        let t1973 = minus_gcross_vz_leg5 * t1949 + minus_gcylinder_vz_leg5 * t1959
+            + grod_vz_leg5 * t1835;
+        let t1985 = t1830 - t1926;
+        let t1988 = t1714 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t1956 + minus_c_cylinder_leg5 * t1985);
+        let t1991 = gcross_vx_leg5 * t1988 - t1718 * minus_rate_dot_cross_leg5;
+        let t1994 = gcross_vy_leg5 * t1988 - t1722 * minus_rate_dot_cross_leg5;
+        let t1997 = minus_gcross_vz_leg5 * t1988
             + s_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2039 = t1721 * t1782 - s_cylinder_leg5 * t1977;
-        let t2042 = joints[14] * t1903 + t2015;
-        let t2045 = t1834 + t1866;
-        let t2047 = gcross_vx_leg5 * t2039 - minus_gcylinder_vx_leg5 * t2042
-            + minus_grod_vx_leg5 * t2045;
-        let t2052 = gcross_vy_leg5 * t2039 + gcylinder_vy_leg5 * t2042
-            - grod_vy_leg5 * t2045;
-        let t2057 = minus_gcross_vz_leg5 * t2039 + minus_gcylinder_vz_leg5 * t2042
-            + grod_vz_leg5 * t2045;
-        let t2067 = 9.81 + t1752;
-        let minus_rate_dot_rod_leg5 = t1985 - joints[14] * t2045;
-        let grod_wx_leg5 = grod_vy_leg5 * t44 - grod_vz_leg5 * t40;
-        let grod_wy_leg5 = minus_grod_vx_leg5 * t44 + grod_vz_leg5 * t64;
-        let t2105 = 0.30901699437494734 * s_cross_leg6;
-        let t2108 = s_cylinder_leg6 * joints[17];
-        ::overact::guard::leg(t2108, 0.5513142860394162, "leg6")?;
-        let t2109 = 1.0 / t2108;
-        let gcross_vx_leg6 = t2105 * t2109;
-        let t2111 = 1.0 / joints[17];
-        let t2113 = 0.9510565162951536 * minus_c_cross_leg6;
-        let t2115 = 0.30901699437494734 * s_cylinder_leg6
-            - minus_c_cylinder_leg6 * t2113;
-        let t2116 = twist[1] + t550;
-        let t2118 = 0.30901699437494734 * minus_c_cross_leg6;
-        let t2121 = minus_c_cylinder_leg6 * t2118 + 0.9510565162951536 * s_cylinder_leg6;
-        let t2122 = twist[0] + t538;
-        let t2125 = s_cross_leg6 * minus_c_cylinder_leg6;
-        let t2126 = twist[2] + t560;
-        let rate_cylinder_leg6 = t2111 * (t2115 * t2116 - t2121 * t2122 - t2125 * t2126);
-        let t2132 = 0.9510565162951536 * s_cross_leg6;
-        let t2135 = minus_c_cross_leg6 * t2126 - (t2105 * t2122 + t2132 * t2116);
-        let minus_rate_cross_leg6 = t2109 * t2135;
-        let t2137 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2138 = rate_cylinder_leg6 * t2137;
-        let t2139 = acceleration[2] + t595;
-        let t2141 = acceleration[0] + t584;
-        let t2143 = acceleration[1] + t589;
-        let t2146 = minus_c_cross_leg6 * t2139 - (t2105 * t2141 + t2132 * t2143);
-        let t2147 = joints[17] * t2138;
-        let t2150 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2008 = s_cylinder_leg5 * (t1947 + t1733);
+        let t2010 = t1832 + t1985;
+        let t2013 = t1806 + t1837;
+        let t2015 = minus_grod_vx_leg5 * t2013
+            - (gcross_vx_leg5 * t2008 + minus_gcylinder_vx_leg5 * t2010);
+        let t2020 = gcylinder_vy_leg5 * t2010 - gcross_vy_leg5 * t2008
+            - grod_vy_leg5 * t2013;
+        let t2025 = minus_gcylinder_vz_leg5 * t2010 - minus_gcross_vz_leg5 * t2008
+            + grod_vz_leg5 * t2013;
+        let t2035 = 9.81 + t1698;
+        let minus_rate_dot_rod_leg5 = t1955 - joints[14] * t2013;
+        let grod_wx_leg5 = grod_vy_leg5 * t42 - grod_vz_leg5 * t38;
+        let grod_wy_leg5 = minus_grod_vx_leg5 * t42 + grod_vz_leg5 * t62;
+        let t2073 = 0.30901699437494734 * s_cross_leg6;
+        let t2076 = s_cylinder_leg6 * joints[17];
+        ::overact::guard::leg(t2076, 0.5513142860394162, "leg6")?;
+        let gcross_vx_leg6 = t2073 / t2076;
+        let t2078 = acceleration[2] + t575;
+        let t2080 = acceleration[0] + t564;
+        let t2082 = 0.9510565162951536 * s_cross_leg6;
+        let t2083 = acceleration[1] + t569;
+        let t2086 = minus_c_cross_leg6 * t2078 - (t2073 * t2080 + t2082 * t2083);
+        let t2088 = 0.9510565162951536 * minus_c_cross_leg6;
+        let t2090 = 0.30901699437494734 * s_cylinder_leg6
+            - minus_c_cylinder_leg6 * t2088;
+        let t2091 = twist[1] + t542;
+        let t2093 = 0.30901699437494734 * minus_c_cross_leg6;
+        let t2096 = minus_c_cylinder_leg6 * t2093 + 0.9510565162951536 * s_cylinder_leg6;
+        let t2097 = twist[0] + t530;
+        let t2100 = s_cross_leg6 * minus_c_cylinder_leg6;
+        let t2101 = twist[2] + t552;
+        let t2103 = t2090 * t2091 - t2096 * t2097 - t2100 * t2101;
+        let t2108 = minus_c_cross_leg6 * t2101 - (t2073 * t2097 + t2082 * t2091);
+        let minus_rate_cross_leg6 = t2108 / t2076;
+        let t2110 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2111 = t2103 * t2110;
+        let t2114 = s_cylinder_leg6 * minus_rate_cross_leg6;
         let minus_grod_vx_leg6 = 0.9510565162951536 * minus_c_cylinder_leg6
-            - s_cylinder_leg6 * t2118;
-        let grod_vy_leg6 = s_cylinder_leg6 * t2113
+            - s_cylinder_leg6 * t2093;
+        let grod_vy_leg6 = s_cylinder_leg6 * t2088
             + 0.30901699437494734 * minus_c_cylinder_leg6;
         let grod_vz_leg6 = s_cross_leg6 * s_cylinder_leg6;
-        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t2122 - grod_vy_leg6 * t2116
-            - grod_vz_leg6 * t2126;
-        let t2163 = minus_rate_rod_leg6 + minus_rate_rod_leg6;
-        let minus_rate_dot_cross_leg6 = t2109 * (t2146 + t2147 + t2147 + t2150 * t2163);
-        let t2167 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2169 = t2138 + t2138 - t2167;
-        let t2170 = s_cylinder_leg6 * t2169;
-        let minus_gcylinder_vx_leg6 = t2121 * t2111;
-        let t2173 = t2150 * t2137;
-        let t2174 = minus_gcylinder_vx_leg6 * t2173;
-        let t2175 = gcross_vx_leg6 * t2170 - t2174;
-        let gcross_vy_leg6 = t2132 * t2109;
-        let gcylinder_vy_leg6 = t2115 * t2111;
-        let t2179 = gcylinder_vy_leg6 * t2173;
-        let t2180 = gcross_vy_leg6 * t2170 + t2179;
-        let minus_gcross_vz_leg6 = minus_c_cross_leg6 * t2109;
-        let minus_gcylinder_vz_leg6 = t2125 * t2111;
-        let t2184 = minus_gcylinder_vz_leg6 * t2173;
-        let t2185 = minus_gcross_vz_leg6 * t2170 + t2184;
-        let minus_gcross_wx_leg6 = t536 * minus_gcross_vz_leg6 + t534 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t536 * minus_gcylinder_vz_leg6
-            + t534 * gcylinder_vy_leg6;
-        let t2193 = minus_gcylinder_wx_leg6 * t2173;
-        let t2194 = minus_gcross_wx_leg6 * t2170 + t2193;
-        let gcross_wy_leg6 = t534 * gcross_vx_leg6 + t547 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t547 * minus_gcylinder_vz_leg6
-            - t534 * minus_gcylinder_vx_leg6;
-        let t2202 = gcylinder_wy_leg6 * t2173;
-        let t2203 = gcross_wy_leg6 * t2170 + t2202;
-        let gcross_wz_leg6 = t547 * gcross_vy_leg6 - t536 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t547 * gcylinder_vy_leg6
-            + t536 * minus_gcylinder_vx_leg6;
-        let t2211 = gcylinder_wz_leg6 * t2173;
-        let t2212 = gcross_wz_leg6 * t2170 + t2211;
-        let t2213 = rate_cylinder_leg6 * t2150;
-        let t2214 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2216 = t2213 + t2214 + t2213;
-        let t2219 = s_cylinder_leg6 * t2216 - minus_c_cylinder_leg6 * t2169;
-        let t2221 = t2150 * t2150;
-        let t2222 = t2137 * t2137;
-        let t2223 = t2221 - t2222;
-        let t2225 = gcross_vx_leg6 * t2219 - minus_gcylinder_vx_leg6 * t2223;
-        let t2228 = gcross_vy_leg6 * t2219 + gcylinder_vy_leg6 * t2223;
-        let t2231 = minus_gcross_vz_leg6 * t2219 + minus_gcylinder_vz_leg6 * t2223;
-        let t2234 = minus_gcross_wx_leg6 * t2219 + minus_gcylinder_wx_leg6 * t2223;
-        let t2237 = gcross_wy_leg6 * t2219 + gcylinder_wy_leg6 * t2223;
-        let t2240 = gcross_wz_leg6 * t2219 + gcylinder_wz_leg6 * t2223;
-        let t2245 = t2115 * t2143 - t2121 * t2141 - t2125 * t2139;
-        let rate_dot_cylinder_leg6 = t2111
-            * (t2245 - joints[17] * t2173 + rate_cylinder_leg6 * t2163);
-        let t2251 = rate_dot_cylinder_leg6 - t2173;
-        let t2253 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t2256 = s_cylinder_leg6 * t2251 - minus_c_cylinder_leg6 * (t2253 - t2221);
-        let t2259 = gcross_vx_leg6 * t2256 + minus_gcylinder_vx_leg6 * t2167;
-        let t2262 = gcross_vy_leg6 * t2256 - gcylinder_vy_leg6 * t2167;
-        let t2265 = minus_gcylinder_vz_leg6 * t2167 - minus_gcross_vz_leg6 * t2256;
-        let t2268 = minus_gcylinder_wx_leg6 * t2167 - minus_gcross_wx_leg6 * t2256;
-        let t2271 = gcross_wy_leg6 * t2256 - gcylinder_wy_leg6 * t2167;
-        let t2274 = gcross_wz_leg6 * t2256 - gcylinder_wz_leg6 * t2167;
-        let t2275 = minus_c_cylinder_leg6 * t2216;
-        let t2277 = t2174 - gcross_vx_leg6 * t2275;
-        let t2279 = gcross_vy_leg6 * t2275 + t2179;
-        let t2281 = minus_gcross_vz_leg6 * t2275 + t2184;
-        let t2283 = minus_gcross_wx_leg6 * t2275 + t2193;
-        let t2285 = gcross_wy_leg6 * t2275 + t2202;
-        let t2287 = gcross_wz_leg6 * t2275 + t2211;
-        let t2290 = t2173 + rate_dot_cylinder_leg6;
-        let t2292 = s_cylinder_leg6 * (t2222 - t2253) - minus_c_cylinder_leg6 * t2290;
-        let t2295 = gcross_vx_leg6 * t2292 - minus_gcylinder_vx_leg6 * t2214;
-        let t2298 = gcross_vy_leg6 * t2292 + gcylinder_vy_leg6 * t2214;
-        let t2301 = minus_gcross_vz_leg6 * t2292 + minus_gcylinder_vz_leg6 * t2214;
-        let t2304 = minus_gcross_wx_leg6 * t2292 + minus_gcylinder_wx_leg6 * t2214;
-        let t2307 = gcross_wy_leg6 * t2292 + gcylinder_wy_leg6 * t2214;
-        let t2310 = gcross_wz_leg6 * t2292 + gcylinder_wz_leg6 * t2214;
-        let t2311 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
-        let t2312 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
-        let t2313 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
-        let t2314 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
-        let t2315 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
-        let t2316 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
-        let t2317 = 9.81 * minus_c_cross_leg6;
-        let t2318 = minus_c_cylinder_leg6 * t2317;
-        let t2320 = 9.81 * grod_vz_leg6;
-        let t2338 = t2111 * t2320;
-        let t2341 = s_cylinder_leg6 * t2317;
-        let t2343 = 9.81 * t2125;
-        let grod_wz_leg6 = grod_vy_leg6 * t547 + minus_grod_vx_leg6 * t536;
-        let t2356 = 9.81 * s_cross_leg6;
-        let t2364 = t2146 + t2317;
-        let t2366 = t2108 * t2216 + minus_c_cylinder_leg6 * t2364;
-        let t2372 = minus_grod_vx_leg6 * t2141 - grod_vy_leg6 * t2143
-            - grod_vz_leg6 * t2139;
-        let t2373 = t2372 - t2320;
-        let t2376 = t2373 - joints[17] * (t2222 + t2253);
-        let t2380 = gcross_vx_leg6 * t2366 - minus_gcylinder_vx_leg6 * t2376
-            + minus_grod_vx_leg6 * t2251;
-        let t2385 = gcross_vy_leg6 * t2366 + gcylinder_vy_leg6 * t2376
-            - grod_vy_leg6 * t2251;
-        let t2390 = minus_gcross_vz_leg6 * t2366 + minus_gcylinder_vz_leg6 * t2376
-            + grod_vz_leg6 * t2251;
-        let t2402 = t2245 - t2343;
-        let t2405 = t2135 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2373 + minus_c_cylinder_leg6 * t2402);
-        let t2408 = gcross_vx_leg6 * t2405 - t2118 * minus_rate_dot_cross_leg6;
-        let t2411 = gcross_vy_leg6 * t2405 - t2113 * minus_rate_dot_cross_leg6;
-        let t2414 = minus_gcross_vz_leg6 * t2405
+        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t2097 - grod_vy_leg6 * t2091
+            - grod_vz_leg6 * t2101;
+        let t2127 = minus_rate_rod_leg6 + minus_rate_rod_leg6;
+        let minus_rate_dot_cross_leg6 = (t2086 + t2111 + t2111 + t2114 * t2127) / t2076;
+        let t2131 = 1.0 / joints[17];
+        let rate_cylinder_leg6 = t2131 * t2103;
+        let t2133 = rate_cylinder_leg6 * t2114;
+        let t2134 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2136 = t2133 + t2134 + t2133;
+        let t2137 = minus_c_cylinder_leg6 * t2136;
+        let t2138 = t2137 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t2096 * t2131;
+        let t2141 = t2114 * t2110;
+        let t2142 = minus_gcylinder_vx_leg6 * t2141;
+        let t2143 = gcross_vx_leg6 * t2138 - t2142;
+        let gcross_vy_leg6 = t2082 / t2076;
+        let gcylinder_vy_leg6 = t2090 * t2131;
+        let t2147 = gcylinder_vy_leg6 * t2141;
+        let t2148 = gcross_vy_leg6 * t2138 + t2147;
+        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t2076;
+        let minus_gcylinder_vz_leg6 = t2100 * t2131;
+        let t2152 = minus_gcylinder_vz_leg6 * t2141;
+        let t2153 = minus_gcross_vz_leg6 * t2138 + t2152;
+        let minus_gcross_wx_leg6 = t528 * minus_gcross_vz_leg6 + t526 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t528 * minus_gcylinder_vz_leg6
+            + t526 * gcylinder_vy_leg6;
+        let t2161 = minus_gcylinder_wx_leg6 * t2141;
+        let t2162 = minus_gcross_wx_leg6 * t2138 + t2161;
+        let gcross_wy_leg6 = t526 * gcross_vx_leg6 + t539 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t539 * minus_gcylinder_vz_leg6
+            - t526 * minus_gcylinder_vx_leg6;
+        let t2170 = gcylinder_wy_leg6 * t2141;
+        let t2171 = gcross_wy_leg6 * t2138 + t2170;
+        let gcross_wz_leg6 = t539 * gcross_vy_leg6 - t528 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t539 * gcylinder_vy_leg6
+            + t528 * minus_gcylinder_vx_leg6;
+        let t2179 = gcylinder_wz_leg6 * t2141;
+        let t2180 = gcross_wz_leg6 * t2138 + t2179;
+        let t2182 = joints[17] * t2138;
+        let t2185 = s_cylinder_leg6 * t2136 - minus_c_cylinder_leg6 * (t2182 / t2076);
+        let t2187 = t2114 * t2114;
+        let t2188 = t2110 * t2110;
+        let t2189 = t2187 - t2188;
+        let t2191 = gcross_vx_leg6 * t2185 - minus_gcylinder_vx_leg6 * t2189;
+        let t2194 = gcross_vy_leg6 * t2185 + gcylinder_vy_leg6 * t2189;
+        let t2197 = minus_gcross_vz_leg6 * t2185 + minus_gcylinder_vz_leg6 * t2189;
+        let t2200 = minus_gcross_wx_leg6 * t2185 + minus_gcylinder_wx_leg6 * t2189;
+        let t2203 = gcross_wy_leg6 * t2185 + gcylinder_wy_leg6 * t2189;
+        let t2206 = gcross_wz_leg6 * t2185 + gcylinder_wz_leg6 * t2189;
+        let t2211 = t2090 * t2083 - t2096 * t2080 - t2100 * t2078;
+        let t2213 = t2211 + rate_cylinder_leg6 * t2127;
+        let t2214 = t2131 * t2213;
+        let rate_dot_cylinder_leg6 = t2214 - t2141;
+        let t2216 = rate_dot_cylinder_leg6 - t2141;
+        let t2218 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t2221 = s_cylinder_leg6 * t2216 - minus_c_cylinder_leg6 * (t2218 - t2187);
+        let t2223 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2225 = gcross_vx_leg6 * t2221 + minus_gcylinder_vx_leg6 * t2223;
+        let t2228 = gcross_vy_leg6 * t2221 - gcylinder_vy_leg6 * t2223;
+        let t2231 = minus_gcylinder_vz_leg6 * t2223 - minus_gcross_vz_leg6 * t2221;
+        let t2234 = minus_gcylinder_wx_leg6 * t2223 - minus_gcross_wx_leg6 * t2221;
+        let t2237 = gcross_wy_leg6 * t2221 - gcylinder_wy_leg6 * t2223;
+        let t2240 = gcross_wz_leg6 * t2221 - gcylinder_wz_leg6 * t2223;
+        let t2242 = t2142 - gcross_vx_leg6 * t2137;
+        let t2244 = gcross_vy_leg6 * t2137 + t2147;
+        let t2246 = minus_gcross_vz_leg6 * t2137 + t2152;
+        let t2248 = minus_gcross_wx_leg6 * t2137 + t2161;
+        let t2250 = gcross_wy_leg6 * t2137 + t2170;
+        let t2252 = gcross_wz_leg6 * t2137 + t2179;
+        let t2256 = s_cylinder_leg6 * (t2188 - t2218) - minus_c_cylinder_leg6 * t2214;
+        let t2259 = gcross_vx_leg6 * t2256 - minus_gcylinder_vx_leg6 * t2134;
+        let t2262 = gcross_vy_leg6 * t2256 + gcylinder_vy_leg6 * t2134;
+        let t2265 = minus_gcross_vz_leg6 * t2256 + minus_gcylinder_vz_leg6 * t2134;
+        let t2268 = minus_gcross_wx_leg6 * t2256 + minus_gcylinder_wx_leg6 * t2134;
+        let t2271 = gcross_wy_leg6 * t2256 + gcylinder_wy_leg6 * t2134;
+        let t2274 = gcross_wz_leg6 * t2256 + gcylinder_wz_leg6 * t2134;
+        let t2275 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
+        let t2276 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
+        let t2277 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
+        let t2278 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
+        let t2279 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
+        let t2280 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
+        let t2281 = 9.81 * minus_c_cross_leg6;
+        let t2282 = minus_c_cylinder_leg6 * t2281;
+        let t2284 = 9.81 * grod_vz_leg6;
+        let t2302 = t2284 / joints[17];
+        let t2305 = s_cylinder_leg6 * t2281;
+        let t2307 = 9.81 * t2100;
+        let grod_wz_leg6 = grod_vy_leg6 * t539 + minus_grod_vx_leg6 * t528;
+        let t2320 = 9.81 * s_cross_leg6;
+        let t2328 = t2086 + t2281;
+        let t2330 = t2076 * t2136 + minus_c_cylinder_leg6 * t2328;
+        let t2336 = minus_grod_vx_leg6 * t2080 - grod_vy_leg6 * t2083
+            - grod_vz_leg6 * t2078;
+        let t2337 = t2336 - t2284;
+        let t2340 = t2337 - joints[17] * (t2188 + t2218);
+        let t2344 = gcross_vx_leg6 * t2330 - minus_gcylinder_vx_leg6 * t2340
+            + minus_grod_vx_leg6 * t2216;
+        let t2349 = gcross_vy_leg6 * t2330 + gcylinder_vy_leg6 * t2340
+            - grod_vy_leg6 * t2216;
+        let t2354 = minus_gcross_vz_leg6 * t2330 + minus_gcylinder_vz_leg6 * t2340
+            + grod_vz_leg6 * t2216;
+        let t2366 = t2211 - t2307;
+        let t2369 = t2108 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2337 + minus_c_cylinder_leg6 * t2366);
+        let t2372 = gcross_vx_leg6 * t2369 - t2093 * minus_rate_dot_cross_leg6;
+        let t2375 = gcross_vy_leg6 * t2369 - t2088 * minus_rate_dot_cross_leg6;
+        let t2378 = minus_gcross_vz_leg6 * t2369
             + s_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2426 = t2108 * t2169 - s_cylinder_leg6 * t2364;
-        let t2429 = joints[17] * t2290 + t2402;
-        let t2432 = t2221 + t2253;
-        let t2434 = gcross_vx_leg6 * t2426 - minus_gcylinder_vx_leg6 * t2429
-            + minus_grod_vx_leg6 * t2432;
-        let t2439 = gcross_vy_leg6 * t2426 + gcylinder_vy_leg6 * t2429
-            - grod_vy_leg6 * t2432;
-        let t2444 = minus_gcross_vz_leg6 * t2426 + minus_gcylinder_vz_leg6 * t2429
-            + grod_vz_leg6 * t2432;
-        let t2454 = 9.81 + t2139;
-        let minus_rate_dot_rod_leg6 = t2372 - joints[17] * t2432;
-        let grod_wx_leg6 = grod_vz_leg6 * t536 - grod_vy_leg6 * t534;
-        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t534 + grod_vz_leg6 * t547;
-        let t2494 = t53 * acceleration[3] + t28 * acceleration[4]
-            + t17 * acceleration[5];
-        let t2500 = t53 * twist[3] + t28 * twist[4] + t17 * twist[5];
-        let t2501 = t14 + t16;
-        let t2503 = t19 - t20;
-        let t2506 = t31 - t51;
-        let t2508 = t2501 * twist[3] + t2503 * twist[4] + t2506 * twist[5];
-        let t2509 = t2500 * t2508;
-        let t2510 = t55 * t2509;
-        let t2516 = t55 * twist[3] + t33 * twist[4] + t21 * twist[5];
-        let t2517 = t2500 * t2516;
-        let t2518 = t2501 * t2517;
-        let t2521 = t33 * t2509;
-        let t2523 = t2503 * t2517;
-        let t2526 = t21 * t2509;
-        let t2528 = t2506 * t2517;
-        let t2534 = t55 * acceleration[3] + t33 * acceleration[4]
-            + t21 * acceleration[5];
-        let t2535 = t2534 - t2509;
-        let t2537 = t2516 * t2508;
-        let t2538 = t2494 + t2537;
-        let t2541 = t2500 * t2500;
-        let t2542 = t2516 * t2516;
-        let t2543 = t2541 - t2542;
-        let t2560 = t2501 * acceleration[3] + t2503 * acceleration[4]
-            + t2506 * acceleration[5];
-        let t2561 = t2560 + t2517;
-        let t2563 = t2508 * t2508;
-        let t2564 = t2563 - t2541;
-        let t2567 = t2494 - t2537;
-        let t2581 = t53 * t2537;
-        let t2585 = t28 * t2537;
-        let t2589 = t17 * t2537;
-        let t2592 = t2542 - t2563;
-        let t2594 = t2560 - t2517;
-        let t2597 = t2534 + t2509;
+        let t2389 = t2182 - s_cylinder_leg6 * t2328;
+        let t2391 = t2213 + t2366;
+        let t2394 = t2187 + t2218;
+        let t2396 = gcross_vx_leg6 * t2389 - minus_gcylinder_vx_leg6 * t2391
+            + minus_grod_vx_leg6 * t2394;
+        let t2401 = gcross_vy_leg6 * t2389 + gcylinder_vy_leg6 * t2391
+            - grod_vy_leg6 * t2394;
+        let t2406 = minus_gcross_vz_leg6 * t2389 + minus_gcylinder_vz_leg6 * t2391
+            + grod_vz_leg6 * t2394;
+        let t2416 = t575 + t1654;
+        let minus_rate_dot_rod_leg6 = t2336 - joints[17] * t2394;
+        let grod_wx_leg6 = grod_vz_leg6 * t528 - grod_vy_leg6 * t526;
+        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t526 + grod_vz_leg6 * t539;
+        let t2456 = t51 * acceleration[3] + t26 * acceleration[4]
+            + t15 * acceleration[5];
+        let t2462 = t51 * twist[3] + t26 * twist[4] + t15 * twist[5];
+        let t2463 = t12 + t14;
+        let t2465 = t17 - t18;
+        let t2468 = t29 - t49;
+        let t2470 = t2463 * twist[3] + t2465 * twist[4] + t2468 * twist[5];
+        let t2471 = t2462 * t2470;
+        let t2472 = t53 * t2471;
+        let t2478 = t53 * twist[3] + t31 * twist[4] + t19 * twist[5];
+        let t2479 = t2462 * t2478;
+        let t2480 = t2463 * t2479;
+        let t2483 = t31 * t2471;
+        let t2485 = t2465 * t2479;
+        let t2488 = t19 * t2471;
+        let t2490 = t2468 * t2479;
+        let t2496 = t53 * acceleration[3] + t31 * acceleration[4]
+            + t19 * acceleration[5];
+        let t2497 = t2496 - t2471;
+        let t2499 = t2478 * t2470;
+        let t2500 = t2456 + t2499;
+        let t2503 = t2462 * t2462;
+        let t2504 = t2478 * t2478;
+        let t2505 = t2503 - t2504;
+        let t2522 = t2463 * acceleration[3] + t2465 * acceleration[4]
+            + t2468 * acceleration[5];
+        let t2523 = t2522 + t2479;
+        let t2525 = t2470 * t2470;
+        let t2526 = t2525 - t2503;
+        let t2529 = t2456 - t2499;
+        let t2543 = t51 * t2499;
+        let t2547 = t26 * t2499;
+        let t2551 = t15 * t2499;
+        let t2554 = t2504 - t2525;
+        let t2556 = t2522 - t2479;
+        let t2559 = t2496 + t2471;
         Ok([
             [
-                t197, t250, -t285, t303, t321, t337,
-                -(minus_gcross_vx_leg1 * t344 + gcylinder_vx_leg1 * t346),
-                -(minus_grod_vx_leg1 * t364), -(minus_gcross_vx_leg1 * t382), t197, -t285, -t250,
-                t337, -t321, t303, t406, t433, t459, t123,
+                t197, t247, -t281, t298, t315, t331,
+                -(minus_gcross_vx_leg1 * t338 + gcylinder_vx_leg1 * t340),
+                -(minus_grod_vx_leg1 * t358), -(minus_gcross_vx_leg1 * t376), t197, -t281, -t247,
+                t331, -t315, t298, t400, t428, t452, t110,
                 minus_grod_vx_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vx_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_vx_leg1, minus_rate_rod_leg1),
-                -minus_grod_vx_leg1, t624, t677, -t712, t730, t748, t764,
-                -(minus_gcross_vx_leg2 * t771 + gcylinder_vx_leg2 * t773),
-                -(minus_grod_vx_leg2 * t791), -(minus_gcross_vx_leg2 * t809), t624, -t712, -t677,
-                t764, -t748, t730, t833, t860, t886, t586,
+                -minus_grod_vx_leg1, t617, t668, -t702, t719, t736, t752,
+                -(minus_gcross_vx_leg2 * t759 + gcylinder_vx_leg2 * t761),
+                -(minus_grod_vx_leg2 * t779), -(minus_gcross_vx_leg2 * t797), t617, -t702, -t668,
+                t752, -t736, t719, t821, t849, t873, t566,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vx_leg2 * minus_rate_rod_leg2,
                 ::overact::math::signed(minus_grod_vx_leg2, minus_rate_rod_leg2),
-                -minus_grod_vx_leg2, t1014, t1064, t1098, -t1116, t1134, t1150,
-                gcross_vx_leg3 * t1157 - gcylinder_vx_leg3 * t1159, grod_vx_leg3 * t1177,
-                gcross_vx_leg3 * t1195, t1014, t1098, -t1064, t1150, -t1134, -t1116, t1219, t1247,
-                t1273, t980, -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
+                -minus_grod_vx_leg2, t1003, t1048, t1081, -t1098, t1115, t1131,
+                gcross_vx_leg3 * t1139 - gcylinder_vx_leg3 * t1141, grod_vx_leg3 * t1159,
+                gcross_vx_leg3 * t1176, t1003, t1081, -t1048, t1131, -t1115, -t1098, t1200, t1229,
+                t1254, t940, -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_vx_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_vx_leg3, minus_rate_rod_leg3), grod_vx_leg3, t1401,
-                t1451, t1485, -t1503, t1521, t1537,
-                gcross_vx_leg4 * t1544 - gcylinder_vx_leg4 * t1546, grod_vx_leg4 * t1564,
-                gcross_vx_leg4 * t1582, t1401, t1485, -t1451, t1537, -t1521, -t1503, t1606, t1634,
-                t1660, t1367, -(grod_vx_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_vx_leg3, minus_rate_rod_leg3), grod_vx_leg3, t1380,
+                t1428, t1462, -t1479, t1496, t1512,
+                gcross_vx_leg4 * t1519 - gcylinder_vx_leg4 * t1521, grod_vx_leg4 * t1539,
+                gcross_vx_leg4 * t1557, t1380, t1462, -t1428, t1512, -t1496, -t1479, t1581, t1610,
+                t1634, t1320, -(grod_vx_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_vx_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_vx_leg4, minus_rate_rod_leg4), grod_vx_leg4, t1788,
-                t1838, t1872, t1890, t1908, -t1924,
-                gcross_vx_leg5 * t1931 + minus_gcylinder_vx_leg5 * t1933,
-                -(minus_grod_vx_leg5 * t1951), gcross_vx_leg5 * t1969, t1788, t1872, -t1838, -t1924,
-                -t1908, t1890, t1993, t2021, t2047, t1754,
+                -::overact::math::signed(grod_vx_leg4, minus_rate_rod_leg4), grod_vx_leg4, t1763,
+                t1810, t1844, t1861, t1878, -t1894,
+                gcross_vx_leg5 * t1901 + minus_gcylinder_vx_leg5 * t1903,
+                -(minus_grod_vx_leg5 * t1921), gcross_vx_leg5 * t1939, t1763, t1844, -t1810, -t1894,
+                -t1878, t1861, t1963, t1991, t2015, t1700,
                 minus_grod_vx_leg5 * minus_rate_dot_rod_leg5,
                 minus_grod_vx_leg5 * minus_rate_rod_leg5,
                 ::overact::math::signed(minus_grod_vx_leg5, minus_rate_rod_leg5),
-                -minus_grod_vx_leg5, t2175, t2225, t2259, t2277, t2295, -t2311,
-                gcross_vx_leg6 * t2318 + minus_gcylinder_vx_leg6 * t2320,
-                -(minus_grod_vx_leg6 * t2338), gcross_vx_leg6 * t2356, t2175, t2259, -t2225, -t2311,
-                -t2295, t2277, t2380, t2408, t2434, t2141,
+                -minus_grod_vx_leg5, t2143, t2191, t2225, t2242, t2259, -t2275,
+                gcross_vx_leg6 * t2282 + minus_gcylinder_vx_leg6 * t2284,
+                -(minus_grod_vx_leg6 * t2302), gcross_vx_leg6 * t2320, t2143, t2225, -t2191, -t2275,
+                -t2259, t2242, t2344, t2372, t2396, t2080,
                 minus_grod_vx_leg6 * minus_rate_dot_rod_leg6,
                 minus_grod_vx_leg6 * minus_rate_rod_leg6,
                 ::overact::math::signed(minus_grod_vx_leg6, minus_rate_rod_leg6),
-                -minus_grod_vx_leg6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t110, t116,
-                t2503 * t100 - t2501 * t104 + t2506 * t108, acceleration[0],
+                -minus_grod_vx_leg6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t97, t103,
+                t2465 * t87 - t2463 * t91 + t2468 * t95, acceleration[0],
             ],
             [
-                t202, t253, t288, t305, t324, -t338,
-                gcross_vy_leg1 * t344 + minus_gcylinder_vy_leg1 * t346,
-                -(minus_grod_vy_leg1 * t364), gcross_vy_leg1 * t382, t202, t288, -t253, -t338,
-                -t324, t305, t411, t436, t464, t147, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
+                t202, t250, t284, t300, t318, -t332,
+                gcross_vy_leg1 * t338 + minus_gcylinder_vy_leg1 * t340,
+                -(minus_grod_vy_leg1 * t358), gcross_vy_leg1 * t376, t202, t284, -t250, -t332,
+                -t318, t300, t405, t431, t457, t134, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vy_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_vy_leg1, minus_rate_rod_leg1),
-                -minus_grod_vy_leg1, t629, t680, -t715, t732, t751, t765,
-                -(minus_gcross_vy_leg2 * t771 + gcylinder_vy_leg2 * t773),
-                -(minus_grod_vy_leg2 * t791), -(minus_gcross_vy_leg2 * t809), t629, -t715, -t680,
-                t765, -t751, t732, t838, t863, t891, t591,
+                -minus_grod_vy_leg1, t622, t671, -t705, t721, t739, t753,
+                -(minus_gcross_vy_leg2 * t759 + gcylinder_vy_leg2 * t761),
+                -(minus_grod_vy_leg2 * t779), -(minus_gcross_vy_leg2 * t797), t622, -t705, -t671,
+                t753, -t739, t721, t826, t852, t878, t571,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vy_leg2 * minus_rate_rod_leg2,
                 ::overact::math::signed(minus_grod_vy_leg2, minus_rate_rod_leg2),
-                -minus_grod_vy_leg2, t1019, t1067, -t1101, t1118, t1137, t1151,
-                -(minus_gcross_vy_leg3 * t1157 + gcylinder_vy_leg3 * t1159),
-                -(minus_grod_vy_leg3 * t1177), -(minus_gcross_vy_leg3 * t1195), t1019, -t1101,
-                -t1067, t1151, -t1137, t1118, t1224, t1250, t1278, t978,
+                -minus_grod_vy_leg2, t1008, t1051, -t1084, t1100, t1118, t1132,
+                -(minus_gcross_vy_leg3 * t1139 + gcylinder_vy_leg3 * t1141),
+                -(minus_grod_vy_leg3 * t1159), -(minus_gcross_vy_leg3 * t1176), t1008, -t1084,
+                -t1051, t1132, -t1118, t1100, t1205, t1232, t1259, t938,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_vy_leg3 * minus_rate_rod_leg3,
                 ::overact::math::signed(minus_grod_vy_leg3, minus_rate_rod_leg3),
-                -minus_grod_vy_leg3, t1406, t1454, -t1488, t1505, t1524, t1538,
-                -(minus_gcross_vy_leg4 * t1544 + gcylinder_vy_leg4 * t1546),
-                -(minus_grod_vy_leg4 * t1564), -(minus_gcross_vy_leg4 * t1582), t1406, -t1488,
-                -t1454, t1538, -t1524, t1505, t1611, t1637, t1665, t1365,
+                -minus_grod_vy_leg3, t1385, t1431, -t1465, t1481, t1499, t1513,
+                -(minus_gcross_vy_leg4 * t1519 + gcylinder_vy_leg4 * t1521),
+                -(minus_grod_vy_leg4 * t1539), -(minus_gcross_vy_leg4 * t1557), t1385, -t1465,
+                -t1431, t1513, -t1499, t1481, t1586, t1613, t1639, t1318,
                 minus_grod_vy_leg4 * minus_rate_dot_rod_leg4,
                 minus_grod_vy_leg4 * minus_rate_rod_leg4,
                 ::overact::math::signed(minus_grod_vy_leg4, minus_rate_rod_leg4),
-                -minus_grod_vy_leg4, t1793, t1841, t1875, -t1892, t1911, t1925,
-                gcross_vy_leg5 * t1931 - gcylinder_vy_leg5 * t1933, grod_vy_leg5 * t1951,
-                gcross_vy_leg5 * t1969, t1793, t1875, -t1841, t1925, -t1911, -t1892, t1998, t2024,
-                t2052, t1756, -(grod_vy_leg5 * minus_rate_dot_rod_leg5),
+                -minus_grod_vy_leg4, t1768, t1813, t1847, -t1863, t1881, t1895,
+                gcross_vy_leg5 * t1901 - gcylinder_vy_leg5 * t1903, grod_vy_leg5 * t1921,
+                gcross_vy_leg5 * t1939, t1768, t1847, -t1813, t1895, -t1881, -t1863, t1968, t1994,
+                t2020, t1703, -(grod_vy_leg5 * minus_rate_dot_rod_leg5),
                 -(grod_vy_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_vy_leg5, minus_rate_rod_leg5), grod_vy_leg5, t2180,
-                t2228, t2262, -t2279, t2298, t2312,
-                gcross_vy_leg6 * t2318 - gcylinder_vy_leg6 * t2320, grod_vy_leg6 * t2338,
-                gcross_vy_leg6 * t2356, t2180, t2262, -t2228, t2312, -t2298, -t2279, t2385, t2411,
-                t2439, t2143, -(grod_vy_leg6 * minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_vy_leg5, minus_rate_rod_leg5), grod_vy_leg5, t2148,
+                t2194, t2228, -t2244, t2262, t2276,
+                gcross_vy_leg6 * t2282 - gcylinder_vy_leg6 * t2284, grod_vy_leg6 * t2302,
+                gcross_vy_leg6 * t2320, t2148, t2228, -t2194, t2276, -t2262, -t2244, t2349, t2375,
+                t2401, t2083, -(grod_vy_leg6 * minus_rate_dot_rod_leg6),
                 -(grod_vy_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_vy_leg6, minus_rate_rod_leg6), grod_vy_leg6, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t134, t140, t2501 * t125 - t2503 * t128 + t2506 * t132,
+                0.0, 0.0, 0.0, 0.0, t121, t127, t2463 * t112 - t2465 * t115 + t2468 * t119,
                 acceleration[1],
             ],
             [
-                -t207, -t256, t291, t307, -t327, -t339,
-                minus_gcylinder_vz_leg1 * t346 - minus_gcross_vz_leg1 * t344,
-                -(minus_gcross_vz_leg1 * t367 + minus_gcylinder_vz_leg1 * t369),
-                -(minus_gcross_vz_leg1 * t382), -t207, t291, t256, -t339, t327, t307, -t416, -t439,
-                -t469, t480, -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
+                -t207, -t253, t287, t302, -t321, -t333,
+                minus_gcylinder_vz_leg1 * t340 - minus_gcross_vz_leg1 * t338,
+                -(minus_gcross_vz_leg1 * t361 + minus_gcylinder_vz_leg1 * t363),
+                -(minus_gcross_vz_leg1 * t376), -t207, t287, t253, -t333, t321, t302, -t410, -t434,
+                -t462, t472, -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_vz_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_vz_leg1, minus_rate_rod_leg1), grod_vz_leg1, -t634,
-                -t683, t718, t734, -t754, -t766,
-                minus_gcylinder_vz_leg2 * t773 - minus_gcross_vz_leg2 * t771,
-                -(minus_gcross_vz_leg2 * t794 + minus_gcylinder_vz_leg2 * t796),
-                -(minus_gcross_vz_leg2 * t809), -t634, t718, t683, -t766, t754, t734, -t843, -t866,
-                -t896, t906, -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
+                -::overact::math::signed(grod_vz_leg1, minus_rate_rod_leg1), grod_vz_leg1, -t627,
+                -t674, t708, t723, -t742, -t754,
+                minus_gcylinder_vz_leg2 * t761 - minus_gcross_vz_leg2 * t759,
+                -(minus_gcross_vz_leg2 * t782 + minus_gcylinder_vz_leg2 * t784),
+                -(minus_gcross_vz_leg2 * t797), -t627, t708, t674, -t754, t742, t723, -t831, -t855,
+                -t883, t893, -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_vz_leg2 * minus_rate_rod_leg2),
-                -::overact::math::signed(grod_vz_leg2, minus_rate_rod_leg2), grod_vz_leg2, -t1024,
-                -t1070, t1104, t1120, -t1140, -t1152,
-                minus_gcylinder_vz_leg3 * t1159 - minus_gcross_vz_leg3 * t1157,
-                -(minus_gcross_vz_leg3 * t1180 + minus_gcylinder_vz_leg3 * t1182),
-                -(minus_gcross_vz_leg3 * t1195), -t1024, t1104, t1070, -t1152, t1140, t1120, -t1229,
-                -t1253, -t1283, t1293, -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
+                -::overact::math::signed(grod_vz_leg2, minus_rate_rod_leg2), grod_vz_leg2, -t1013,
+                -t1054, t1087, t1102, -t1121, -t1133,
+                minus_gcylinder_vz_leg3 * t1141 - minus_gcross_vz_leg3 * t1139,
+                -(minus_gcross_vz_leg3 * t1138 + minus_gcylinder_vz_leg3 * t1163),
+                -(minus_gcross_vz_leg3 * t1176), -t1013, t1087, t1054, -t1133, t1121, t1102, -t1210,
+                -t1235, -t1264, t1274, -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_vz_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_vz_leg3, minus_rate_rod_leg3), grod_vz_leg3, -t1411,
-                -t1457, t1491, t1507, -t1527, -t1539,
-                minus_gcylinder_vz_leg4 * t1546 - minus_gcross_vz_leg4 * t1544,
-                -(minus_gcross_vz_leg4 * t1567 + minus_gcylinder_vz_leg4 * t1569),
-                -(minus_gcross_vz_leg4 * t1582), -t1411, t1491, t1457, -t1539, t1527, t1507, -t1616,
-                -t1640, -t1670, t1680, -(grod_vz_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_vz_leg3, minus_rate_rod_leg3), grod_vz_leg3, -t1390,
+                -t1434, t1468, t1483, -t1502, -t1514,
+                minus_gcylinder_vz_leg4 * t1521 - minus_gcross_vz_leg4 * t1519,
+                -(minus_gcross_vz_leg4 * t1542 + minus_gcylinder_vz_leg4 * t1544),
+                -(minus_gcross_vz_leg4 * t1557), -t1390, t1468, t1434, -t1514, t1502, t1483, -t1591,
+                -t1616, -t1644, t1655, -(grod_vz_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_vz_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_vz_leg4, minus_rate_rod_leg4), grod_vz_leg4, -t1798,
-                -t1844, t1878, t1894, -t1914, -t1926,
-                minus_gcylinder_vz_leg5 * t1933 - minus_gcross_vz_leg5 * t1931,
-                -(minus_gcross_vz_leg5 * t1954 + minus_gcylinder_vz_leg5 * t1956),
-                -(minus_gcross_vz_leg5 * t1969), -t1798, t1878, t1844, -t1926, t1914, t1894, -t2003,
-                -t2027, -t2057, t2067, -(grod_vz_leg5 * minus_rate_dot_rod_leg5),
+                -::overact::math::signed(grod_vz_leg4, minus_rate_rod_leg4), grod_vz_leg4, -t1773,
+                -t1816, t1850, t1865, -t1884, -t1896,
+                minus_gcylinder_vz_leg5 * t1903 - minus_gcross_vz_leg5 * t1901,
+                -(minus_gcross_vz_leg5 * t1924 + minus_gcylinder_vz_leg5 * t1926),
+                -(minus_gcross_vz_leg5 * t1939), -t1773, t1850, t1816, -t1896, t1884, t1865, -t1973,
+                -t1997, -t2025, t2035, -(grod_vz_leg5 * minus_rate_dot_rod_leg5),
                 -(grod_vz_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_vz_leg5, minus_rate_rod_leg5), grod_vz_leg5, -t2185,
-                -t2231, t2265, t2281, -t2301, -t2313,
-                minus_gcylinder_vz_leg6 * t2320 - minus_gcross_vz_leg6 * t2318,
-                -(minus_gcross_vz_leg6 * t2341 + minus_gcylinder_vz_leg6 * t2343),
-                -(minus_gcross_vz_leg6 * t2356), -t2185, t2265, t2231, -t2313, t2301, t2281, -t2390,
-                -t2414, -t2444, t2454, -(grod_vz_leg6 * minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_vz_leg5, minus_rate_rod_leg5), grod_vz_leg5, -t2153,
+                -t2197, t2231, t2246, -t2265, -t2277,
+                minus_gcylinder_vz_leg6 * t2284 - minus_gcross_vz_leg6 * t2282,
+                -(minus_gcross_vz_leg6 * t2305 + minus_gcylinder_vz_leg6 * t2307),
+                -(minus_gcross_vz_leg6 * t2320), -t2153, t2231, t2197, -t2277, t2265, t2246, -t2354,
+                -t2378, -t2406, t2416, -(grod_vz_leg6 * minus_rate_dot_rod_leg6),
                 -(grod_vz_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_vz_leg6, minus_rate_rod_leg6), grod_vz_leg6, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t157, t163, t2501 * t150 + t2503 * t152 - t2506 * t155, t479,
+                0.0, 0.0, 0.0, 0.0, t144, t150, t2463 * t137 + t2465 * t139 - t2468 * t142, t1654,
             ],
             [
-                t218, t259, -t294, t309, t330, t340,
-                -(minus_gcross_wx_leg1 * t344 + gcylinder_wx_leg1 * t346),
-                gcylinder_wx_leg1 * t369 - minus_gcross_wx_leg1 * t367,
-                -(minus_gcross_wx_leg1 * t382), t218, -t294, -t259, t340, -t330, t309,
-                -(t210 * t416 + t208 * t411), -(t210 * t439 + t208 * t436),
-                -(t210 * t469 + t208 * t464), t210 * t480 - t208 * t147,
+                t218, t256, -t290, t304, t324, t334,
+                -(minus_gcross_wx_leg1 * t338 + gcylinder_wx_leg1 * t340),
+                gcylinder_wx_leg1 * t363 - minus_gcross_wx_leg1 * t361,
+                -(minus_gcross_wx_leg1 * t376), t218, -t290, -t256, t334, -t324, t304,
+                -(t210 * t410 + t208 * t405), -(t210 * t434 + t208 * t431),
+                -(t210 * t462 + t208 * t457), t210 * t472 - t208 * t134,
                 -(grod_wx_leg1 * minus_rate_dot_rod_leg1), -(grod_wx_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_wx_leg1, minus_rate_rod_leg1), grod_wx_leg1, t645,
-                t686, t721, -t736, t757, t767,
-                gcross_wx_leg2 * t771 - minus_minus_gcylinder_wx_leg2 * t773,
-                gcross_wx_leg2 * t794 + minus_minus_gcylinder_wx_leg2 * t796, gcross_wx_leg2 * t809,
-                t645, t721, -t686, t767, -t757, -t736, t637 * t843 + t635 * t838,
-                t637 * t866 + t635 * t863, t637 * t896 + t635 * t891, t635 * t591 - t637 * t906,
+                -::overact::math::signed(grod_wx_leg1, minus_rate_rod_leg1), grod_wx_leg1, t638,
+                t677, t711, -t725, t745, t755,
+                gcross_wx_leg2 * t759 - minus_minus_gcylinder_wx_leg2 * t761,
+                gcross_wx_leg2 * t782 + minus_minus_gcylinder_wx_leg2 * t784, gcross_wx_leg2 * t797,
+                t638, t711, -t677, t755, -t745, -t725, t630 * t831 + t628 * t826,
+                t630 * t855 + t628 * t852, t630 * t883 + t628 * t878, t628 * t571 - t630 * t893,
                 minus_grod_wx_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_wx_leg2 * minus_rate_rod_leg2,
                 ::overact::math::signed(minus_grod_wx_leg2, minus_rate_rod_leg2),
-                -minus_grod_wx_leg2, t1033, t1073, t1107, t1122, t1143, -t1153,
-                gcross_wx_leg3 * t1157 + minus_gcylinder_wx_leg3 * t1159,
-                gcross_wx_leg3 * t1180 - minus_gcylinder_wx_leg3 * t1182, gcross_wx_leg3 * t1195,
-                t1033, t1107, -t1073, -t1153, -t1143, t1122, -(t35 * t1229 + t23 * t1224),
-                -(t35 * t1253 + t23 * t1250), -(t35 * t1283 + t23 * t1278),
-                t35 * t1293 - t23 * t978, -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
+                -minus_grod_wx_leg2, t1022, t1057, t1090, t1104, t1124, -t1134,
+                gcross_wx_leg3 * t1139 + minus_gcylinder_wx_leg3 * t1141,
+                gcross_wx_leg3 * t1138 - minus_gcylinder_wx_leg3 * t1163, gcross_wx_leg3 * t1176,
+                t1022, t1090, -t1057, -t1134, -t1124, t1104, -(t33 * t1210 + t21 * t1205),
+                -(t33 * t1235 + t21 * t1232), -(t33 * t1264 + t21 * t1259),
+                t33 * t1274 - t21 * t938, -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_wx_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_wx_leg3, minus_rate_rod_leg3), grod_wx_leg3, t1420,
-                t1460, t1494, t1509, t1530, -t1540,
-                gcross_wx_leg4 * t1544 + minus_gcylinder_wx_leg4 * t1546,
-                gcross_wx_leg4 * t1567 - minus_gcylinder_wx_leg4 * t1569, gcross_wx_leg4 * t1582,
-                t1420, t1494, -t1460, -t1540, -t1530, t1509, -(t531 * t1616 + t529 * t1611),
-                -(t531 * t1640 + t529 * t1637), -(t531 * t1670 + t529 * t1665),
-                t531 * t1680 - t529 * t1365, -(grod_wx_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_wx_leg3, minus_rate_rod_leg3), grod_wx_leg3, t1399,
+                t1437, t1471, t1485, t1505, -t1515,
+                gcross_wx_leg4 * t1519 + minus_gcylinder_wx_leg4 * t1521,
+                gcross_wx_leg4 * t1542 - minus_gcylinder_wx_leg4 * t1544, gcross_wx_leg4 * t1557,
+                t1399, t1471, -t1437, -t1515, -t1505, t1485, -(t523 * t1591 + t521 * t1586),
+                -(t523 * t1616 + t521 * t1613), -(t523 * t1644 + t521 * t1639),
+                t523 * t1655 - t521 * t1318, -(grod_wx_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_wx_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_wx_leg4, minus_rate_rod_leg4), grod_wx_leg4, t1807,
-                t1847, t1881, -t1896, t1917, t1927,
-                gcross_wx_leg5 * t1931 - gcylinder_wx_leg5 * t1933,
-                gcross_wx_leg5 * t1954 + gcylinder_wx_leg5 * t1956, gcross_wx_leg5 * t1969, t1807,
-                t1881, -t1847, t1927, -t1917, -t1896, t40 * t2003 + t44 * t1998,
-                t40 * t2027 + t44 * t2024, t40 * t2057 + t44 * t2052, t44 * t1756 - t40 * t2067,
+                -::overact::math::signed(grod_wx_leg4, minus_rate_rod_leg4), grod_wx_leg4, t1782,
+                t1819, t1853, -t1867, t1887, t1897,
+                gcross_wx_leg5 * t1901 - gcylinder_wx_leg5 * t1903,
+                gcross_wx_leg5 * t1924 + gcylinder_wx_leg5 * t1926, gcross_wx_leg5 * t1939, t1782,
+                t1853, -t1819, t1897, -t1887, -t1867, t38 * t1973 + t42 * t1968,
+                t38 * t1997 + t42 * t1994, t38 * t2025 + t42 * t2020, t42 * t1703 - t38 * t2035,
                 -(grod_wx_leg5 * minus_rate_dot_rod_leg5), -(grod_wx_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_wx_leg5, minus_rate_rod_leg5), grod_wx_leg5, -t2194,
-                -t2234, t2268, t2283, -t2304, -t2314,
-                minus_gcylinder_wx_leg6 * t2320 - minus_gcross_wx_leg6 * t2318,
-                -(minus_gcross_wx_leg6 * t2341 + minus_gcylinder_wx_leg6 * t2343),
-                -(minus_gcross_wx_leg6 * t2356), -t2194, t2268, t2234, -t2314, t2304, t2283,
-                -(t536 * t2390 + t534 * t2385), -(t536 * t2414 + t534 * t2411),
-                -(t536 * t2444 + t534 * t2439), t536 * t2454 - t534 * t2143,
+                -::overact::math::signed(grod_wx_leg5, minus_rate_rod_leg5), grod_wx_leg5, -t2162,
+                -t2200, t2234, t2248, -t2268, -t2278,
+                minus_gcylinder_wx_leg6 * t2284 - minus_gcross_wx_leg6 * t2282,
+                -(minus_gcross_wx_leg6 * t2305 + minus_gcylinder_wx_leg6 * t2307),
+                -(minus_gcross_wx_leg6 * t2320), -t2162, t2234, t2200, -t2278, t2268, t2248,
+                -(t528 * t2354 + t526 * t2349), -(t528 * t2378 + t526 * t2375),
+                -(t528 * t2406 + t526 * t2401), t528 * t2416 - t526 * t2083,
                 -(grod_wx_leg6 * minus_rate_dot_rod_leg6), -(grod_wx_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_wx_leg6, minus_rate_rod_leg6), grod_wx_leg6,
-                t53 * t2494 + t2510 - t2518, t53 * t2535 + t55 * t2538 + t2501 * t2543,
-                t53 * t2561 + t55 * t2564 + t2501 * t2567, t55 * t2534 - t2581 + t2518,
-                t53 * t2592 + t55 * t2594 + t2501 * t2597, t2581 - t2510 + t2501 * t2560,
-                t28 * t479 - t17 * acceleration[1], t33 * t479 - t21 * acceleration[1],
-                t2503 * t479 - t2506 * acceleration[1], 0.0,
+                t51 * t2456 + t2472 - t2480, t51 * t2497 + t53 * t2500 + t2463 * t2505,
+                t51 * t2523 + t53 * t2526 + t2463 * t2529, t53 * t2496 - t2543 + t2480,
+                t51 * t2554 + t53 * t2556 + t2463 * t2559, t2543 - t2472 + t2463 * t2522,
+                t26 * t1654 - t15 * acceleration[1], t31 * t1654 - t19 * acceleration[1],
+                t2465 * t1654 - t2468 * acceleration[1], 0.0,
             ],
             [
-                t228, t262, t297, -t311, t333, t341,
-                gcross_wy_leg1 * t344 - gcylinder_wy_leg1 * t346,
-                gcross_wy_leg1 * t367 + gcylinder_wy_leg1 * t369, gcross_wy_leg1 * t382, t228, t297,
-                -t262, t341, -t333, -t311, t208 * t406 + t219 * t416, t208 * t433 + t219 * t439,
-                t208 * t459 + t219 * t469, t208 * t123 - t219 * t480,
+                t228, t259, t293, -t306, t327, t335,
+                gcross_wy_leg1 * t338 - gcylinder_wy_leg1 * t340,
+                gcross_wy_leg1 * t361 + gcylinder_wy_leg1 * t363, gcross_wy_leg1 * t376, t228, t293,
+                -t259, t335, -t327, -t306, t208 * t400 + t219 * t410, t208 * t428 + t219 * t434,
+                t208 * t452 + t219 * t462, t208 * t110 - t219 * t472,
                 minus_grod_wy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_wy_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_wy_leg1, minus_rate_rod_leg1),
-                -minus_grod_wy_leg1, t655, t689, t724, -t738, t760, -t768,
-                gcross_wy_leg2 * t771 + minus_gcylinder_wy_leg2 * t773,
-                gcross_wy_leg2 * t794 - minus_gcylinder_wy_leg2 * t796, gcross_wy_leg2 * t809, t655,
-                t724, -t689, -t768, -t760, -t738, -(t635 * t833 + t646 * t843),
-                -(t635 * t860 + t646 * t866), -(t635 * t886 + t646 * t896),
-                t646 * t906 - t635 * t586, -(minus_minus_grod_wy_leg2 * minus_rate_dot_rod_leg2),
+                -minus_grod_wy_leg1, t648, t680, t714, -t727, t748, -t756,
+                gcross_wy_leg2 * t759 + minus_gcylinder_wy_leg2 * t761,
+                gcross_wy_leg2 * t782 - minus_gcylinder_wy_leg2 * t784, gcross_wy_leg2 * t797, t648,
+                t714, -t680, -t756, -t748, -t727, -(t628 * t821 + t639 * t831),
+                -(t628 * t849 + t639 * t855), -(t628 * t873 + t639 * t883),
+                t639 * t893 - t628 * t566, -(minus_minus_grod_wy_leg2 * minus_rate_dot_rod_leg2),
                 -(minus_minus_grod_wy_leg2 * minus_rate_rod_leg2),
                 -::overact::math::signed(minus_minus_grod_wy_leg2, minus_rate_rod_leg2),
-                minus_minus_grod_wy_leg2, t1042, t1076, t1110, -t1124, t1146, t1154,
-                gcross_wy_leg3 * t1157 - gcylinder_wy_leg3 * t1159,
-                gcross_wy_leg3 * t1180 + gcylinder_wy_leg3 * t1182, gcross_wy_leg3 * t1195, t1042,
-                t1110, -t1076, t1154, -t1146, -t1124, t23 * t1219 + t57 * t1229,
-                t23 * t1247 + t57 * t1253, t23 * t1273 + t57 * t1283, t23 * t980 - t57 * t1293,
+                minus_minus_grod_wy_leg2, t1031, t1060, t1093, -t1106, t1127, t1135,
+                gcross_wy_leg3 * t1139 - gcylinder_wy_leg3 * t1141,
+                gcross_wy_leg3 * t1138 + gcylinder_wy_leg3 * t1163, gcross_wy_leg3 * t1176, t1031,
+                t1093, -t1060, t1135, -t1127, -t1106, t21 * t1200 + t55 * t1210,
+                t21 * t1229 + t55 * t1235, t21 * t1254 + t55 * t1264, t21 * t940 - t55 * t1274,
                 -(grod_wy_leg3 * minus_rate_dot_rod_leg3), -(grod_wy_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_wy_leg3, minus_rate_rod_leg3), grod_wy_leg3, t1429,
-                t1463, t1497, -t1511, t1533, t1541,
-                gcross_wy_leg4 * t1544 - gcylinder_wy_leg4 * t1546,
-                gcross_wy_leg4 * t1567 + gcylinder_wy_leg4 * t1569, gcross_wy_leg4 * t1582, t1429,
-                t1497, -t1463, t1541, -t1533, -t1511, t529 * t1606 + t543 * t1616,
-                t529 * t1634 + t543 * t1640, t529 * t1660 + t543 * t1670,
-                t529 * t1367 - t543 * t1680, -(grod_wy_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_wy_leg3, minus_rate_rod_leg3), grod_wy_leg3, t1408,
+                t1440, t1474, -t1487, t1508, t1516,
+                gcross_wy_leg4 * t1519 - gcylinder_wy_leg4 * t1521,
+                gcross_wy_leg4 * t1542 + gcylinder_wy_leg4 * t1544, gcross_wy_leg4 * t1557, t1408,
+                t1474, -t1440, t1516, -t1508, -t1487, t521 * t1581 + t535 * t1591,
+                t521 * t1610 + t535 * t1616, t521 * t1634 + t535 * t1644,
+                t521 * t1320 - t535 * t1655, -(grod_wy_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_wy_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_wy_leg4, minus_rate_rod_leg4), grod_wy_leg4, t1816,
-                t1850, -t1884, t1898, t1920, t1928,
-                -(minus_gcross_wy_leg5 * t1931 + gcylinder_wy_leg5 * t1933),
-                gcylinder_wy_leg5 * t1956 - minus_gcross_wy_leg5 * t1954,
-                -(minus_gcross_wy_leg5 * t1969), t1816, -t1884, -t1850, t1928, -t1920, t1898,
-                -(t44 * t1993 + t64 * t2003), -(t44 * t2021 + t64 * t2027),
-                -(t44 * t2047 + t64 * t2057), t64 * t2067 - t44 * t1754,
+                -::overact::math::signed(grod_wy_leg4, minus_rate_rod_leg4), grod_wy_leg4, t1791,
+                t1822, -t1856, t1869, t1890, t1898,
+                -(minus_gcross_wy_leg5 * t1901 + gcylinder_wy_leg5 * t1903),
+                gcylinder_wy_leg5 * t1926 - minus_gcross_wy_leg5 * t1924,
+                -(minus_gcross_wy_leg5 * t1939), t1791, -t1856, -t1822, t1898, -t1890, t1869,
+                -(t42 * t1963 + t62 * t1973), -(t42 * t1991 + t62 * t1997),
+                -(t42 * t2015 + t62 * t2025), t62 * t2035 - t42 * t1700,
                 -(grod_wy_leg5 * minus_rate_dot_rod_leg5), -(grod_wy_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_wy_leg5, minus_rate_rod_leg5), grod_wy_leg5, t2203,
-                t2237, t2271, -t2285, t2307, t2315,
-                gcross_wy_leg6 * t2318 - gcylinder_wy_leg6 * t2320,
-                gcross_wy_leg6 * t2341 + gcylinder_wy_leg6 * t2343, gcross_wy_leg6 * t2356, t2203,
-                t2271, -t2237, t2315, -t2307, -t2285, t534 * t2380 + t547 * t2390,
-                t534 * t2408 + t547 * t2414, t534 * t2434 + t547 * t2444,
-                t534 * t2141 - t547 * t2454, minus_grod_wy_leg6 * minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_wy_leg5, minus_rate_rod_leg5), grod_wy_leg5, t2171,
+                t2203, t2237, -t2250, t2271, t2279,
+                gcross_wy_leg6 * t2282 - gcylinder_wy_leg6 * t2284,
+                gcross_wy_leg6 * t2305 + gcylinder_wy_leg6 * t2307, gcross_wy_leg6 * t2320, t2171,
+                t2237, -t2203, t2279, -t2271, -t2250, t526 * t2344 + t539 * t2354,
+                t526 * t2372 + t539 * t2378, t526 * t2396 + t539 * t2406,
+                t526 * t2080 - t539 * t2416, minus_grod_wy_leg6 * minus_rate_dot_rod_leg6,
                 minus_grod_wy_leg6 * minus_rate_rod_leg6,
                 ::overact::math::signed(minus_grod_wy_leg6, minus_rate_rod_leg6),
-                -minus_grod_wy_leg6, t28 * t2494 + t2521 - t2523,
-                t28 * t2535 + t33 * t2538 + t2503 * t2543,
-                t28 * t2561 + t33 * t2564 + t2503 * t2567, t33 * t2534 - t2585 + t2523,
-                t28 * t2592 + t33 * t2594 + t2503 * t2597, t2585 - t2521 + t2503 * t2560,
-                t17 * acceleration[0] - t53 * t479, t21 * acceleration[0] - t55 * t479,
-                t2506 * acceleration[0] - t2501 * t479, 0.0,
+                -minus_grod_wy_leg6, t26 * t2456 + t2483 - t2485,
+                t26 * t2497 + t31 * t2500 + t2465 * t2505,
+                t26 * t2523 + t31 * t2526 + t2465 * t2529, t31 * t2496 - t2547 + t2485,
+                t26 * t2554 + t31 * t2556 + t2465 * t2559, t2547 - t2483 + t2465 * t2522,
+                t15 * acceleration[0] - t51 * t1654, t19 * acceleration[0] - t53 * t1654,
+                t2468 * acceleration[0] - t2463 * t1654, 0.0,
             ],
             [
-                t237, t265, t300, t313, t336, -t342,
-                gcross_wz_leg1 * t344 + minus_gcylinder_wz_leg1 * t346, grod_wz_leg1 * t364,
-                gcross_wz_leg1 * t382, t237, t300, -t265, -t342, -t336, t313,
-                t219 * t411 - t210 * t406, t219 * t436 - t210 * t433, t219 * t464 - t210 * t459,
-                t219 * t147 - t210 * t123, -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
+                t237, t262, t296, t308, t330, -t336,
+                gcross_wz_leg1 * t338 + minus_gcylinder_wz_leg1 * t340, grod_wz_leg1 * t358,
+                gcross_wz_leg1 * t376, t237, t296, -t262, -t336, -t330, t308,
+                t219 * t405 - t210 * t400, t219 * t431 - t210 * t428, t219 * t457 - t210 * t452,
+                t219 * t134 - t210 * t110, -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_wz_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_wz_leg1, minus_rate_rod_leg1), grod_wz_leg1, t664,
-                t692, t727, -t740, t763, t769, gcross_wz_leg2 * t771 - gcylinder_wz_leg2 * t773,
-                grod_wz_leg2 * t791, gcross_wz_leg2 * t809, t664, t727, -t692, t769, -t763, -t740,
-                t637 * t833 - t646 * t838, t637 * t860 - t646 * t863, t637 * t886 - t646 * t891,
-                t637 * t586 - t646 * t591, -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                -::overact::math::signed(grod_wz_leg1, minus_rate_rod_leg1), grod_wz_leg1, t657,
+                t683, t717, -t729, t751, t757, gcross_wz_leg2 * t759 - gcylinder_wz_leg2 * t761,
+                grod_wz_leg2 * t779, gcross_wz_leg2 * t797, t657, t717, -t683, t757, -t751, -t729,
+                t630 * t821 - t639 * t826, t630 * t849 - t639 * t852, t630 * t873 - t639 * t878,
+                t630 * t566 - t639 * t571, -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wz_leg2 * minus_rate_rod_leg2),
-                -::overact::math::signed(grod_wz_leg2, minus_rate_rod_leg2), grod_wz_leg2, t1051,
-                t1079, -t1113, t1126, t1149, t1155,
-                -(minus_gcross_wz_leg3 * t1157 + gcylinder_wz_leg3 * t1159),
-                -(minus_grod_wz_leg3 * t1177), -(minus_gcross_wz_leg3 * t1195), t1051, -t1113,
-                -t1079, t1155, -t1149, t1126, t57 * t1224 - t35 * t1219, t57 * t1250 - t35 * t1247,
-                t57 * t1278 - t35 * t1273, t57 * t978 - t35 * t980,
+                -::overact::math::signed(grod_wz_leg2, minus_rate_rod_leg2), grod_wz_leg2, t1040,
+                t1063, -t1096, t1108, t1130, t1136,
+                -(minus_gcross_wz_leg3 * t1139 + gcylinder_wz_leg3 * t1141),
+                -(minus_grod_wz_leg3 * t1159), -(minus_gcross_wz_leg3 * t1176), t1040, -t1096,
+                -t1063, t1136, -t1130, t1108, t55 * t1205 - t33 * t1200, t55 * t1232 - t33 * t1229,
+                t55 * t1259 - t33 * t1254, t55 * t938 - t33 * t940,
                 minus_grod_wz_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_wz_leg3 * minus_rate_rod_leg3,
                 ::overact::math::signed(minus_grod_wz_leg3, minus_rate_rod_leg3),
-                -minus_grod_wz_leg3, t1438, t1466, -t1500, t1513, t1536, t1542,
-                -(minus_gcross_wz_leg4 * t1544 + gcylinder_wz_leg4 * t1546),
-                -(minus_grod_wz_leg4 * t1564), -(minus_gcross_wz_leg4 * t1582), t1438, -t1500,
-                -t1466, t1542, -t1536, t1513, t543 * t1611 - t531 * t1606,
-                t543 * t1637 - t531 * t1634, t543 * t1665 - t531 * t1660,
-                t543 * t1365 - t531 * t1367, minus_grod_wz_leg4 * minus_rate_dot_rod_leg4,
+                -minus_grod_wz_leg3, t1417, t1443, -t1477, t1489, t1511, t1517,
+                -(minus_gcross_wz_leg4 * t1519 + gcylinder_wz_leg4 * t1521),
+                -(minus_grod_wz_leg4 * t1539), -(minus_gcross_wz_leg4 * t1557), t1417, -t1477,
+                -t1443, t1517, -t1511, t1489, t535 * t1586 - t523 * t1581,
+                t535 * t1613 - t523 * t1610, t535 * t1639 - t523 * t1634,
+                t535 * t1318 - t523 * t1320, minus_grod_wz_leg4 * minus_rate_dot_rod_leg4,
                 minus_grod_wz_leg4 * minus_rate_rod_leg4,
                 ::overact::math::signed(minus_grod_wz_leg4, minus_rate_rod_leg4),
-                -minus_grod_wz_leg4, t1825, t1853, t1887, t1900, t1923, -t1929,
-                gcross_wz_leg5 * t1931 + minus_gcylinder_wz_leg5 * t1933,
-                -(minus_grod_wz_leg5 * t1951), gcross_wz_leg5 * t1969, t1825, t1887, -t1853, -t1929,
-                -t1923, t1900, t40 * t1993 - t64 * t1998, t40 * t2021 - t64 * t2024,
-                t40 * t2047 - t64 * t2052, t40 * t1754 - t64 * t1756,
+                -minus_grod_wz_leg4, t1800, t1825, t1859, t1871, t1893, -t1899,
+                gcross_wz_leg5 * t1901 + minus_gcylinder_wz_leg5 * t1903,
+                -(minus_grod_wz_leg5 * t1921), gcross_wz_leg5 * t1939, t1800, t1859, -t1825, -t1899,
+                -t1893, t1871, t38 * t1963 - t62 * t1968, t38 * t1991 - t62 * t1994,
+                t38 * t2015 - t62 * t2020, t38 * t1700 - t62 * t1703,
                 minus_grod_wz_leg5 * minus_rate_dot_rod_leg5,
                 minus_grod_wz_leg5 * minus_rate_rod_leg5,
                 ::overact::math::signed(minus_grod_wz_leg5, minus_rate_rod_leg5),
-                -minus_grod_wz_leg5, t2212, t2240, t2274, -t2287, t2310, t2316,
-                gcross_wz_leg6 * t2318 - gcylinder_wz_leg6 * t2320, grod_wz_leg6 * t2338,
-                gcross_wz_leg6 * t2356, t2212, t2274, -t2240, t2316, -t2310, -t2287,
-                t547 * t2385 - t536 * t2380, t547 * t2411 - t536 * t2408,
-                t547 * t2439 - t536 * t2434, t547 * t2143 - t536 * t2141,
+                -minus_grod_wz_leg5, t2180, t2206, t2240, -t2252, t2274, t2280,
+                gcross_wz_leg6 * t2282 - gcylinder_wz_leg6 * t2284, grod_wz_leg6 * t2302,
+                gcross_wz_leg6 * t2320, t2180, t2240, -t2206, t2280, -t2274, -t2252,
+                t539 * t2349 - t528 * t2344, t539 * t2375 - t528 * t2372,
+                t539 * t2401 - t528 * t2396, t539 * t2083 - t528 * t2080,
                 -(grod_wz_leg6 * minus_rate_dot_rod_leg6), -(grod_wz_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_wz_leg6, minus_rate_rod_leg6), grod_wz_leg6,
-                t17 * t2494 + t2526 - t2528, t17 * t2535 + t21 * t2538 + t2506 * t2543,
-                t17 * t2561 + t21 * t2564 + t2506 * t2567, t21 * t2534 - t2589 + t2528,
-                t17 * t2592 + t21 * t2594 + t2506 * t2597, t2589 - t2526 + t2506 * t2560,
-                t53 * acceleration[1] - t28 * acceleration[0],
-                t55 * acceleration[1] - t33 * acceleration[0],
-                t2501 * acceleration[1] - t2503 * acceleration[0], 0.0,
+                t15 * t2456 + t2488 - t2490, t15 * t2497 + t19 * t2500 + t2468 * t2505,
+                t15 * t2523 + t19 * t2526 + t2468 * t2529, t19 * t2496 - t2551 + t2490,
+                t15 * t2554 + t19 * t2556 + t2468 * t2559, t2551 - t2488 + t2468 * t2522,
+                t51 * acceleration[1] - t26 * acceleration[0],
+                t53 * acceleration[1] - t31 * acceleration[0],
+                t2463 * acceleration[1] - t2465 * acceleration[0], 0.0,
             ],
         ])
     }
@@ -6308,7 +6303,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 3288 operations (1268 additions, 1996 multiplications, 24 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2685 intermediates.
+    /// 3239 operations (1247 additions, 1922 multiplications, 70 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2636 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6375,1407 +6370,1397 @@ impl Hexapod {
         let t62 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(t62, 0.5619721604570214, "leg1")?;
         let t63 = 1.0 / t62;
-        let c_cylinder_leg1 = t52 * t63;
-        let minus_s_cross_leg1 = t34 * t53;
-        let minus_s_cylinder_leg1 = t59 / t62;
-        let t67 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
-        let t70 = 0.9781476007338057 * t67 - 0.20791169081775931 * c_cylinder_leg1;
         let grod_vx_leg1 = t18 * t63;
-        let t72 = grod_vx_leg1 * actuator_velocities[0];
-        let t73 = t14 - t13;
-        let t74 = t6 - t11;
-        let t75 = t73 + t74;
-        let t77 = pose[0] - t75 - 0.3912590402935223;
-        let t79 = t28 - t27;
-        let t80 = t21 - t25;
-        let t81 = t79 + t80;
-        let t83 = pose[1] - t81 - 0.08316467632710373;
-        let t85 = 0.9781476007338057 * t77 + 0.20791169081775931 * t83;
-        let t87 = t46 - t45;
-        let t88 = t39 - t43;
-        let t89 = t87 + t88;
-        let t90 = pose[2] - t89;
-        let t92 = t85 * t85 + t90 * t90;
-        let t95 = 0.20791169081775931 * t77 - 0.9781476007338057 * t83;
-        let t97 = t92 + t95 * t95;
-        ::overact::guard::reach(t97, "leg2")?;
-        let t98 = ::overact::math::sqrt(t97);
-        ::overact::guard::leg(t98, 0.5619721604570214, "leg2")?;
-        let t99 = 1.0 / t98;
-        let grod_vx_leg2 = t77 * t99;
-        let t101 = grod_vx_leg2 * actuator_velocities[1];
-        let t104 = pose[0] + t12 + 0.12360679774997894;
-        let t106 = pose[1] + t26 - 0.3804226065180615;
-        let t109 = 0.9510565162951536 * t106 - 0.30901699437494734 * t104;
-        let t111 = pose[2] + t44;
-        let t113 = t109 * t109 + t111 * t111;
-        let t116 = 0.9510565162951536 * t104 + 0.30901699437494734 * t106;
-        let t118 = t113 + t116 * t116;
-        ::overact::guard::reach(t118, "leg3")?;
-        let t119 = ::overact::math::sqrt(t118);
-        ::overact::guard::leg(t119, 0.5619721604570214, "leg3")?;
-        let t120 = 1.0 / t119;
-        let minus_minus_grod_vx_leg3 = t104 * t120;
-        let t122 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
-        let t125 = pose[0] + t73 + 0.2676522425435432;
-        let t127 = pose[1] + t79 - 0.2972579301909578;
-        let t130 = 0.7431448254773945 * t127 - 0.6691306063588579 * t125;
-        let t132 = pose[2] + t87;
-        let t134 = t130 * t130 + t132 * t132;
-        let t137 = 0.7431448254773945 * t125 + 0.6691306063588579 * t127;
-        let t139 = t134 + t137 * t137;
-        ::overact::guard::reach(t139, "leg4")?;
-        let t140 = ::overact::math::sqrt(t139);
-        ::overact::guard::leg(t140, 0.5619721604570214, "leg4")?;
-        let t141 = 1.0 / t140;
-        let minus_minus_grod_vx_leg4 = t125 * t141;
-        let t143 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
-        let t146 = pose[0] - t15 + 0.2676522425435432;
-        let t149 = pose[1] - t29 + 0.2972579301909578;
-        let t151 = 0.6691306063588579 * t146 + 0.7431448254773945 * t149;
-        let t155 = 0.6691306063588579 * t149 - 0.7431448254773945 * t146;
-        let t156 = t155 * t155;
-        let t158 = pose[2] - t47;
-        let t160 = t151 * t151 + t156 + t158 * t158;
-        ::overact::guard::reach(t160, "leg5")?;
-        let t161 = ::overact::math::sqrt(t160);
-        ::overact::guard::leg(t161, 0.5619721604570214, "leg5")?;
-        let t162 = 1.0 / t161;
-        let minus_minus_grod_vx_leg5 = t146 * t162;
-        let t164 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
-        let t167 = pose[0] + t74 + 0.12360679774997894;
-        let t170 = pose[1] + t80 + 0.3804226065180615;
-        let t172 = 0.30901699437494734 * t167 + 0.9510565162951536 * t170;
-        let t176 = 0.30901699437494734 * t170 - 0.9510565162951536 * t167;
-        let t177 = t176 * t176;
-        let t179 = pose[2] + t88;
-        let t181 = t172 * t172 + t177 + t179 * t179;
-        ::overact::guard::reach(t181, "leg6")?;
+        let minus_minus_grod_vy_leg1 = t32 * t63;
+        let c_cylinder_leg1 = t52 / t62;
+        let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
+        let grod_wy_leg1 = t48 * grod_vx_leg1 - t16 * grod_vz_leg1;
+        let t71 = grod_wy_leg1 * actuator_velocities[0];
+        let t72 = t46 - t45;
+        let t73 = t39 - t43;
+        let t74 = t72 + t73;
+        let t75 = t14 - t13;
+        let t76 = t6 - t11;
+        let t77 = t75 + t76;
+        let t79 = pose[0] - t77 - 0.3912590402935223;
+        let t81 = t28 - t27;
+        let t82 = t21 - t25;
+        let t83 = t81 + t82;
+        let t85 = pose[1] - t83 - 0.08316467632710373;
+        let t87 = 0.9781476007338057 * t79 + 0.20791169081775931 * t85;
+        let t89 = pose[2] - t74;
+        let t91 = t87 * t87 + t89 * t89;
+        let t94 = 0.20791169081775931 * t79 - 0.9781476007338057 * t85;
+        let t96 = t91 + t94 * t94;
+        ::overact::guard::reach(t96, "leg2")?;
+        let t97 = ::overact::math::sqrt(t96);
+        ::overact::guard::leg(t97, 0.5619721604570214, "leg2")?;
+        let grod_vx_leg2 = t79 / t97;
+        let t100 = ::overact::math::sqrt(t91);
+        ::overact::guard::leg(t100, 0.5513142860385972, "leg2")?;
+        let t101 = 1.0 / t100;
+        let c_cross_leg2 = t89 * t101;
+        let t103 = 1.0 / t97;
+        let c_cylinder_leg2 = t100 * t103;
+        let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
+        let grod_wy_leg2 = t77 * grod_vz_leg2 - t74 * grod_vx_leg2;
+        let t108 = grod_wy_leg2 * actuator_velocities[1];
+        let t111 = pose[0] + t12 + 0.12360679774997894;
+        let t113 = pose[1] + t26 - 0.3804226065180615;
+        let t116 = 0.9510565162951536 * t113 - 0.30901699437494734 * t111;
+        let t118 = pose[2] + t44;
+        let t120 = t116 * t116 + t118 * t118;
+        let t123 = 0.9510565162951536 * t111 + 0.30901699437494734 * t113;
+        let t125 = t120 + t123 * t123;
+        ::overact::guard::reach(t125, "leg3")?;
+        let t126 = ::overact::math::sqrt(t125);
+        ::overact::guard::leg(t126, 0.5619721604570214, "leg3")?;
+        let minus_minus_grod_vx_leg3 = t111 / t126;
+        let t129 = ::overact::math::sqrt(t120);
+        ::overact::guard::leg(t129, 0.5513142860385972, "leg3")?;
+        let c_cross_leg3 = t118 / t129;
+        let t131 = 1.0 / t126;
+        let c_cylinder_leg3 = t129 * t131;
+        let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
+        let minus_grod_wy_leg3 = t12 * grod_vz_leg3 - t44 * minus_minus_grod_vx_leg3;
+        let t136 = minus_grod_wy_leg3 * actuator_velocities[2];
+        let t139 = pose[0] + t75 + 0.2676522425435432;
+        let t141 = pose[1] + t81 - 0.2972579301909578;
+        let t144 = 0.7431448254773945 * t141 - 0.6691306063588579 * t139;
+        let t146 = pose[2] + t72;
+        let t148 = t144 * t144 + t146 * t146;
+        let t151 = 0.7431448254773945 * t139 + 0.6691306063588579 * t141;
+        let t153 = t148 + t151 * t151;
+        ::overact::guard::reach(t153, "leg4")?;
+        let t154 = ::overact::math::sqrt(t153);
+        ::overact::guard::leg(t154, 0.5619721604570214, "leg4")?;
+        let minus_minus_grod_vx_leg4 = t139 / t154;
+        let t157 = ::overact::math::sqrt(t148);
+        ::overact::guard::leg(t157, 0.5513142860385972, "leg4")?;
+        let t158 = 1.0 / t157;
+        let c_cross_leg4 = t146 * t158;
+        let c_cylinder_leg4 = t157 / t154;
+        let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
+        let minus_grod_wy_leg4 = t75 * grod_vz_leg4 - t72 * minus_minus_grod_vx_leg4;
+        let t164 = minus_grod_wy_leg4 * actuator_velocities[3];
+        let t167 = pose[0] - t15 + 0.2676522425435432;
+        let t170 = pose[1] - t29 + 0.2972579301909578;
+        let t172 = 0.6691306063588579 * t167 + 0.7431448254773945 * t170;
+        let t174 = pose[2] - t47;
+        let t176 = t172 * t172 + t174 * t174;
+        let t179 = 0.6691306063588579 * t170 - 0.7431448254773945 * t167;
+        let t181 = t176 + t179 * t179;
+        ::overact::guard::reach(t181, "leg5")?;
         let t182 = ::overact::math::sqrt(t181);
-        ::overact::guard::leg(t182, 0.5619721604570214, "leg6")?;
+        ::overact::guard::leg(t182, 0.5619721604570214, "leg5")?;
         let t183 = 1.0 / t182;
-        let minus_minus_grod_vx_leg6 = t167 * t183;
-        let t185 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
-        let t186 = t72 + t101 + t122 + t143 + t164 + t185;
-        let t189 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
-        let t197 = t189 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
+        let minus_minus_grod_vx_leg5 = t167 * t183;
+        let t186 = ::overact::math::sqrt(t176);
+        ::overact::guard::leg(t186, 0.5513142860385972, "leg5")?;
+        let t187 = 1.0 / t186;
+        let c_cross_leg5 = t174 * t187;
+        let c_cylinder_leg5 = t186 / t182;
+        let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
+        let grod_wy_leg5 = t15 * grod_vz_leg5 - t47 * minus_minus_grod_vx_leg5;
+        let t193 = grod_wy_leg5 * actuator_velocities[4];
+        let t196 = pose[0] + t76 + 0.12360679774997894;
+        let t199 = pose[1] + t82 + 0.3804226065180615;
+        let t201 = 0.30901699437494734 * t196 + 0.9510565162951536 * t199;
+        let t203 = pose[2] + t73;
+        let t205 = t201 * t201 + t203 * t203;
+        let t208 = 0.30901699437494734 * t199 - 0.9510565162951536 * t196;
+        let t210 = t205 + t208 * t208;
+        ::overact::guard::reach(t210, "leg6")?;
+        let t211 = ::overact::math::sqrt(t210);
+        ::overact::guard::leg(t211, 0.5619721604570214, "leg6")?;
+        let t212 = 1.0 / t211;
+        let minus_minus_grod_vx_leg6 = t196 * t212;
+        let t215 = ::overact::math::sqrt(t205);
+        ::overact::guard::leg(t215, 0.5513142860385972, "leg6")?;
+        let t216 = 1.0 / t215;
+        let c_cross_leg6 = t203 * t216;
+        let c_cylinder_leg6 = t215 / t211;
+        let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
+        let minus_grod_wy_leg6 = t76 * grod_vz_leg6 - t73 * minus_minus_grod_vx_leg6;
+        let t222 = minus_grod_wy_leg6 * actuator_velocities[5];
+        let t224 = grod_vx_leg1 * actuator_velocities[0];
+        let t225 = grod_vx_leg2 * actuator_velocities[1];
+        let t227 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
+        let t229 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
+        let t231 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
+        let t233 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
+        let t234 = t224 + t225 + t227 + t229 + t231 + t233;
+        let t245 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
+            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
+            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
+            + minus_minus_grod_vx_leg5 * grod_wy_leg5
+            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
+        let t248 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
+        let t256 = t248 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
             + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
             + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
             + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
-        ::overact::guard::platform(t197, 0.625174737048712, "actuators")?;
-        ::overact::guard::platform(t197, 0.625174737048712, "actuators")?;
-        let t198 = 1.0 / t197;
-        let minus_minus_grod_vy_leg1 = t32 * t63;
-        let minus_minus_grod_vy_leg2 = t83 * t99;
-        let grod_vy_leg3 = t106 * t120;
-        let grod_vy_leg4 = t127 * t141;
-        let grod_vy_leg5 = t149 * t162;
-        let grod_vy_leg6 = t170 * t183;
-        let t216 = grod_vx_leg1 * minus_minus_grod_vy_leg1
+        ::overact::guard::platform(t256, 0.625174737048712, "actuators")?;
+        ::overact::guard::platform(t256, 0.625174737048712, "actuators")?;
+        let t257 = t245 / t256;
+        let grod_wx_leg1 = t30 * grod_vz_leg1 - t48 * minus_minus_grod_vy_leg1;
+        let minus_minus_grod_vy_leg2 = t85 * t103;
+        let grod_wx_leg2 = t74 * minus_minus_grod_vy_leg2 - t83 * grod_vz_leg2;
+        let grod_vy_leg3 = t113 * t131;
+        let grod_wx_leg3 = t26 * grod_vz_leg3 - t44 * grod_vy_leg3;
+        let grod_vy_leg4 = t141 / t154;
+        let grod_wx_leg4 = t81 * grod_vz_leg4 - t72 * grod_vy_leg4;
+        let grod_vy_leg5 = t170 * t183;
+        let grod_wx_leg5 = t47 * grod_vy_leg5 - t29 * grod_vz_leg5;
+        let grod_vy_leg6 = t199 * t212;
+        let grod_wx_leg6 = t82 * grod_vz_leg6 - t73 * grod_vy_leg6;
+        let t293 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
+            + minus_minus_grod_vx_leg3 * grod_wx_leg3
+            + minus_minus_grod_vx_leg4 * grod_wx_leg4
+            + minus_minus_grod_vx_leg5 * grod_wx_leg5
+            + minus_minus_grod_vx_leg6 * grod_wx_leg6;
+        let grod_wz_leg3 = t12 * grod_vy_leg3 - t26 * minus_minus_grod_vx_leg3;
+        let minus_grod_wz_leg1 = t30 * grod_vx_leg1 - t16 * minus_minus_grod_vy_leg1;
+        let minus_grod_wz_leg2 = t77 * minus_minus_grod_vy_leg2 - t83 * grod_vx_leg2;
+        let grod_wz_leg4 = t75 * grod_vy_leg4 - t81 * minus_minus_grod_vx_leg4;
+        let minus_grod_wz_leg5 = t15 * grod_vy_leg5 - t29 * minus_minus_grod_vx_leg5;
+        let grod_wz_leg6 = t76 * grod_vy_leg6 - t82 * minus_minus_grod_vx_leg6;
+        let t322 = grod_vz_leg3 * grod_wz_leg3
+            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
+            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
+            + grod_vz_leg6 * grod_wz_leg6;
+        let t334 = grod_vx_leg1 * minus_minus_grod_vy_leg1
             + grod_vx_leg2 * minus_minus_grod_vy_leg2
             + minus_minus_grod_vx_leg3 * grod_vy_leg3
             + minus_minus_grod_vx_leg4 * grod_vy_leg4
             + minus_minus_grod_vx_leg5 * grod_vy_leg5
             + minus_minus_grod_vx_leg6 * grod_vy_leg6;
-        let t217 = t216 * t198;
-        let t220 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
+        let t336 = t293 + t322 + t334 * t257;
+        let t339 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
             + minus_minus_grod_vy_leg2 * minus_minus_grod_vy_leg2;
-        let t230 = t220 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
-            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t216 * t217;
-        ::overact::guard::platform(t230, 0.6251747370487124, "actuators")?;
-        ::overact::guard::platform(t230, 0.6251747370487124, "actuators")?;
-        let t231 = 1.0 / t230;
-        let t232 = grod_vy_leg3 * actuator_velocities[2];
-        let t233 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
-        let t234 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
-        let t237 = grod_vy_leg4 * actuator_velocities[3];
-        let t239 = grod_vy_leg5 * actuator_velocities[4];
-        let t241 = grod_vy_leg6 * actuator_velocities[5];
-        let t244 = t232 + t233 + t234 + t237 + t239 + t241 - t186 * t217;
-        let t246 = ::overact::math::sqrt(t113);
-        ::overact::guard::leg(t246, 0.5513142860385972, "leg3")?;
-        let t247 = 1.0 / t246;
-        let c_cross_leg3 = t111 * t247;
-        let c_cylinder_leg3 = t246 * t120;
-        let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let t254 = ::overact::math::sqrt(t92);
-        ::overact::guard::leg(t254, 0.5513142860385972, "leg2")?;
-        let t255 = 1.0 / t254;
-        let c_cross_leg2 = t90 * t255;
-        let c_cylinder_leg2 = t254 * t99;
-        let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let t262 = ::overact::math::sqrt(t134);
-        ::overact::guard::leg(t262, 0.5513142860385972, "leg4")?;
-        let t263 = 1.0 / t262;
-        let c_cross_leg4 = t132 * t263;
-        let c_cylinder_leg4 = t262 * t141;
-        let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let t270 = ::overact::math::sqrt(t160 - t156);
-        ::overact::guard::leg(t270, 0.5513142860385972, "leg5")?;
-        let t271 = 1.0 / t270;
-        let c_cross_leg5 = t158 * t271;
-        let c_cylinder_leg5 = t270 * t162;
-        let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let t278 = ::overact::math::sqrt(t181 - t177);
-        ::overact::guard::leg(t278, 0.5513142860385972, "leg6")?;
-        let t279 = 1.0 / t278;
-        let c_cross_leg6 = t179 * t279;
-        let c_cylinder_leg6 = t278 * t183;
-        let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let t284 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
-            + grod_vz_leg2 * minus_minus_grod_vy_leg2 + grod_vz_leg4 * grod_vy_leg4
-            + grod_vz_leg5 * grod_vy_leg5 + grod_vz_leg6 * grod_vy_leg6;
-        let t295 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
+        let t348 = t334 / t256;
+        let t350 = t339 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
+            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t334 * t348;
+        ::overact::guard::platform(t350, 0.6251747370487124, "actuators")?;
+        ::overact::guard::platform(t350, 0.6251747370487124, "actuators")?;
+        let t351 = t336 / t350;
+        let t352 = grod_vy_leg3 * actuator_velocities[2];
+        let t353 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
+        let t354 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
+        let t357 = grod_vy_leg4 * actuator_velocities[3];
+        let t359 = grod_vy_leg5 * actuator_velocities[4];
+        let t361 = grod_vy_leg6 * actuator_velocities[5];
+        let t364 = t352 + t353 + t354 + t357 + t359 + t361 - t234 * t348;
+        let t377 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
+            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
+            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
+        let t388 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
             + grod_vz_leg3 * minus_minus_grod_vx_leg3
             + grod_vz_leg4 * minus_minus_grod_vx_leg4
             + grod_vz_leg5 * minus_minus_grod_vx_leg5
             + grod_vz_leg6 * minus_minus_grod_vx_leg6;
-        let t296 = t295 * t198;
-        let t298 = t284 - t216 * t296;
-        let t299 = t298 * t231;
-        let t309 = 2.0 - t189 - t220 + grod_vz_leg3 * grod_vz_leg3
+        let t401 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
+            + grod_vz_leg2 * minus_minus_grod_vy_leg2 + grod_vz_leg4 * grod_vy_leg4
+            + grod_vz_leg5 * grod_vy_leg5 + grod_vz_leg6 * grod_vy_leg6;
+        let t402 = t388 / t256;
+        let t404 = t401 - t334 * t402;
+        let t406 = t377 - t388 * t257 + t404 * t351;
+        let t416 = 2.0 - t248 - t339 + grod_vz_leg3 * grod_vz_leg3
             + grod_vz_leg4 * grod_vz_leg4 + grod_vz_leg5 * grod_vz_leg5
             + grod_vz_leg6 * grod_vz_leg6;
-        let t313 = t309 - t295 * t296 - t298 * t299;
-        ::overact::guard::platform(t313, 4.7496505259025765, "actuators")?;
-        ::overact::guard::platform(t313, 4.7496505259025765, "actuators")?;
-        let t314 = 1.0 / t313;
-        let t315 = grod_vz_leg1 * actuator_velocities[0];
-        let t316 = grod_vz_leg2 * actuator_velocities[1];
-        let t318 = grod_vz_leg3 * actuator_velocities[2];
-        let t320 = grod_vz_leg4 * actuator_velocities[3];
-        let t322 = grod_vz_leg5 * actuator_velocities[4];
-        let t324 = grod_vz_leg6 * actuator_velocities[5];
-        let t329 = t315 + t316 + t318 + t320 + t322 + t324 - t186 * t296 - t299 * t244;
-        let grod_wx_leg1 = t30 * grod_vz_leg1 - t48 * minus_minus_grod_vy_leg1;
-        let grod_wx_leg2 = t89 * minus_minus_grod_vy_leg2 - t81 * grod_vz_leg2;
-        let grod_wx_leg3 = t26 * grod_vz_leg3 - t44 * grod_vy_leg3;
-        let grod_wx_leg4 = t79 * grod_vz_leg4 - t87 * grod_vy_leg4;
-        let grod_wx_leg5 = t47 * grod_vy_leg5 - t29 * grod_vz_leg5;
-        let grod_wx_leg6 = t80 * grod_vz_leg6 - t88 * grod_vy_leg6;
-        let t359 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
-            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
-            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
-        let t370 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
-            + minus_minus_grod_vx_leg3 * grod_wx_leg3
-            + minus_minus_grod_vx_leg4 * grod_wx_leg4
-            + minus_minus_grod_vx_leg5 * grod_wx_leg5
-            + minus_minus_grod_vx_leg6 * grod_wx_leg6;
-        let t371 = t370 * t198;
-        let t384 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
-            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
-            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
-        let t386 = t384 - t216 * t371;
-        let t387 = t386 * t231;
-        let t389 = t359 - t295 * t371 - t298 * t387;
-        let t390 = t389 * t314;
-        let t401 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
-            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
-            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
-        let t407 = t401 - t370 * t371 - t386 * t387 - t389 * t390;
-        ::overact::guard::platform(t407, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t407, 0.06850454637148076, "actuators")?;
-        let t408 = 1.0 / t407;
-        let t409 = grod_wx_leg1 * actuator_velocities[0];
-        let t410 = grod_wx_leg2 * actuator_velocities[1];
-        let t412 = grod_wx_leg3 * actuator_velocities[2];
-        let t414 = grod_wx_leg4 * actuator_velocities[3];
-        let t416 = grod_wx_leg5 * actuator_velocities[4];
-        let t418 = grod_wx_leg6 * actuator_velocities[5];
-        let t425 = t409 + t410 + t412 + t414 + t416 + t418 - t186 * t371 - t387 * t244
-            - t390 * t329;
-        let grod_wy_leg1 = t48 * grod_vx_leg1 - t16 * grod_vz_leg1;
-        let grod_wy_leg2 = t75 * grod_vz_leg2 - t89 * grod_vx_leg2;
-        let minus_grod_wy_leg3 = t12 * grod_vz_leg3 - t44 * minus_minus_grod_vx_leg3;
-        let minus_grod_wy_leg4 = t73 * grod_vz_leg4 - t87 * minus_minus_grod_vx_leg4;
-        let grod_wy_leg5 = t15 * grod_vz_leg5 - t47 * minus_minus_grod_vx_leg5;
-        let minus_grod_wy_leg6 = t74 * grod_vz_leg6 - t88 * minus_minus_grod_vx_leg6;
-        let t455 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
+        let t419 = t404 / t350;
+        let t421 = t416 - t388 * t402 - t404 * t419;
+        ::overact::guard::platform(t421, 4.7496505259025765, "actuators")?;
+        ::overact::guard::platform(t421, 4.7496505259025765, "actuators")?;
+        let t422 = t406 / t421;
+        let t423 = grod_vz_leg1 * actuator_velocities[0];
+        let t424 = grod_vz_leg2 * actuator_velocities[1];
+        let t426 = grod_vz_leg3 * actuator_velocities[2];
+        let t428 = grod_vz_leg4 * actuator_velocities[3];
+        let t430 = grod_vz_leg5 * actuator_velocities[4];
+        let t432 = grod_vz_leg6 * actuator_velocities[5];
+        let t437 = t423 + t424 + t426 + t428 + t430 + t432 - t234 * t402 - t419 * t364;
+        let t439 = t71 + t108 - t136 - t164 + t193 - t222 - t234 * t257 + t351 * t364
+            - t422 * t437;
+        let t450 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
             - grod_wx_leg3 * minus_grod_wy_leg3 - grod_wx_leg4 * minus_grod_wy_leg4
             + grod_wx_leg5 * grod_wy_leg5 - grod_wx_leg6 * minus_grod_wy_leg6;
-        let t466 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
-            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
-            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
-            + minus_minus_grod_vx_leg5 * grod_wy_leg5
-            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
-        let t467 = t466 * t198;
-        let grod_wz_leg3 = t12 * grod_vy_leg3 - t26 * minus_minus_grod_vx_leg3;
-        let minus_grod_wz_leg1 = t30 * grod_vx_leg1 - t16 * minus_minus_grod_vy_leg1;
-        let minus_grod_wz_leg2 = t75 * minus_minus_grod_vy_leg2 - t81 * grod_vx_leg2;
-        let grod_wz_leg4 = t73 * grod_vy_leg4 - t79 * minus_minus_grod_vx_leg4;
-        let minus_grod_wz_leg5 = t15 * grod_vy_leg5 - t29 * minus_minus_grod_vx_leg5;
-        let grod_wz_leg6 = t74 * grod_vy_leg6 - t80 * minus_minus_grod_vx_leg6;
-        let t498 = grod_vz_leg3 * grod_wz_leg3
-            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
-            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
-            + grod_vz_leg6 * grod_wz_leg6;
-        let t501 = t370 + t498 + t216 * t467;
-        let t502 = t501 * t231;
-        let t515 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
-            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
-            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
-        let t519 = t515 - t295 * t467 + t298 * t502;
-        let t520 = t519 * t314;
-        let t522 = t455 - t370 * t467 + t386 * t502 - t389 * t520;
-        let t523 = t522 * t408;
-        let t534 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
+        let t463 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
+            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
+            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
+        let t464 = t293 / t256;
+        let t466 = t463 - t334 * t464;
+        let t479 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
+            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
+            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
+        let t482 = t466 / t350;
+        let t484 = t479 - t388 * t464 - t404 * t482;
+        let t486 = t450 - t293 * t257 + t466 * t351 - t484 * t422;
+        let t497 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
+            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
+            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
+        let t502 = t484 / t421;
+        let t504 = t497 - t293 * t464 - t466 * t482 - t484 * t502;
+        ::overact::guard::platform(t504, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t504, 0.06850454637148076, "actuators")?;
+        let t505 = t486 / t504;
+        let t506 = grod_wx_leg1 * actuator_velocities[0];
+        let t507 = grod_wx_leg2 * actuator_velocities[1];
+        let t509 = grod_wx_leg3 * actuator_velocities[2];
+        let t511 = grod_wx_leg4 * actuator_velocities[3];
+        let t513 = grod_wx_leg5 * actuator_velocities[4];
+        let t515 = grod_wx_leg6 * actuator_velocities[5];
+        let t522 = t506 + t507 + t509 + t511 + t513 + t515 - t234 * t464 - t482 * t364
+            - t502 * t437;
+        let t524 = t439 - t505 * t522;
+        let t535 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
             + minus_grod_wy_leg3 * minus_grod_wy_leg3
             + minus_grod_wy_leg4 * minus_grod_wy_leg4 + grod_wy_leg5 * grod_wy_leg5
             + minus_grod_wy_leg6 * minus_grod_wy_leg6;
-        let t542 = t534 - t466 * t467 - t501 * t502 - t519 * t520 - t522 * t523;
-        ::overact::guard::platform(t542, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t542, 0.06850454637148076, "actuators")?;
-        let t543 = 1.0 / t542;
-        let t544 = grod_wy_leg1 * actuator_velocities[0];
-        let t545 = grod_wy_leg2 * actuator_velocities[1];
-        let t547 = minus_grod_wy_leg3 * actuator_velocities[2];
-        let t549 = minus_grod_wy_leg4 * actuator_velocities[3];
-        let t551 = grod_wy_leg5 * actuator_velocities[4];
-        let t553 = minus_grod_wy_leg6 * actuator_velocities[5];
-        let t560 = t544 + t545 - t547 - t549 + t551 - t553 - t186 * t467 + t502 * t244
-            - t520 * t329;
-        let t562 = t560 - t523 * t425;
-        let t574 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
+        let t543 = t535 - t245 * t257 - t336 * t351 - t406 * t422 - t486 * t505;
+        ::overact::guard::platform(t543, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t543, 0.06850454637148076, "actuators")?;
+        let t555 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
             + minus_grod_wy_leg3 * grod_wz_leg3 + minus_grod_wy_leg4 * grod_wz_leg4
             + grod_wy_leg5 * minus_grod_wz_leg5 + minus_grod_wy_leg6 * grod_wz_leg6;
-        let t585 = minus_minus_grod_vx_leg6 * grod_wz_leg6
+        let t566 = minus_minus_grod_vx_leg6 * grod_wz_leg6
             - (minus_minus_grod_vx_leg5 * minus_grod_wz_leg5
                 + grod_vx_leg1 * minus_grod_wz_leg1 + grod_vx_leg2 * minus_grod_wz_leg2
                 - minus_minus_grod_vx_leg3 * grod_wz_leg3
                 - minus_minus_grod_vx_leg4 * grod_wz_leg4);
-        let t586 = t585 * t198;
-        let t599 = grod_vy_leg3 * grod_wz_leg3
+        let t567 = t566 / t256;
+        let t580 = grod_vy_leg3 * grod_wz_leg3
             - (minus_minus_grod_vy_leg1 * minus_grod_wz_leg1
                 + minus_minus_grod_vy_leg2 * minus_grod_wz_leg2)
             + grod_vy_leg4 * grod_wz_leg4 - grod_vy_leg5 * minus_grod_wz_leg5
             + grod_vy_leg6 * grod_wz_leg6;
-        let t601 = t599 - t216 * t586;
-        let t602 = t601 * t231;
-        let t608 = t498 - t295 * t586 - t298 * t602;
-        let t609 = t608 * t314;
-        let t622 = grod_wx_leg3 * grod_wz_leg3
+        let t582 = t580 - t334 * t567;
+        let t583 = t582 / t350;
+        let t589 = t322 - t388 * t567 - t404 * t583;
+        let t590 = t589 / t421;
+        let t603 = grod_wx_leg3 * grod_wz_leg3
             - (grod_wx_leg1 * minus_grod_wz_leg1 + grod_wx_leg2 * minus_grod_wz_leg2)
             + grod_wx_leg4 * grod_wz_leg4 - grod_wx_leg5 * minus_grod_wz_leg5
             + grod_wx_leg6 * grod_wz_leg6;
-        let t628 = t622 - t370 * t586 - t386 * t602 - t389 * t609;
-        let t629 = t628 * t408;
-        let t631 = t574 + t466 * t586 - t501 * t602 + t519 * t609 + t522 * t629;
-        let t632 = t631 * t543;
-        let t643 = minus_grod_wz_leg1 * minus_grod_wz_leg1
+        let t609 = t603 - t293 * t567 - t466 * t583 - t484 * t590;
+        let t610 = t609 / t504;
+        let t612 = t555 + t245 * t567 - t336 * t583 + t406 * t590 + t486 * t610;
+        let t613 = t612 / t543;
+        let t614 = grod_wz_leg3 * actuator_velocities[2];
+        let t615 = minus_grod_wz_leg1 * actuator_velocities[0];
+        let t616 = minus_grod_wz_leg2 * actuator_velocities[1];
+        let t619 = grod_wz_leg4 * actuator_velocities[3];
+        let t621 = minus_grod_wz_leg5 * actuator_velocities[4];
+        let t623 = grod_wz_leg6 * actuator_velocities[5];
+        let t630 = t614 - (t615 + t616) + t619 - t621 + t623 - t234 * t567 - t583 * t364
+            - t590 * t437;
+        let t645 = minus_grod_wz_leg1 * minus_grod_wz_leg1
             + minus_grod_wz_leg2 * minus_grod_wz_leg2 + grod_wz_leg3 * grod_wz_leg3
             + grod_wz_leg4 * grod_wz_leg4 + minus_grod_wz_leg5 * minus_grod_wz_leg5
             + grod_wz_leg6 * grod_wz_leg6;
-        let t653 = t643 - t585 * t586 - t601 * t602 - t608 * t609 - t628 * t629
-            - t631 * t632;
-        ::overact::guard::platform(t653, 0.03606775827473607, "actuators")?;
-        ::overact::guard::platform(t653, 0.03606775827473607, "actuators")?;
-        let t654 = 1.0 / t653;
-        let t655 = grod_wz_leg3 * actuator_velocities[2];
-        let t656 = minus_grod_wz_leg1 * actuator_velocities[0];
-        let t657 = minus_grod_wz_leg2 * actuator_velocities[1];
-        let t660 = grod_wz_leg4 * actuator_velocities[3];
-        let t662 = minus_grod_wz_leg5 * actuator_velocities[4];
-        let t664 = grod_wz_leg6 * actuator_velocities[5];
-        let t671 = t655 - (t656 + t657) + t660 - t662 + t664 - t186 * t586 - t602 * t244
-            - t609 * t329;
-        let t676 = t654 * (t671 - t629 * t425 + t632 * t562);
-        let t678 = t543 * t562 + t632 * t676;
-        let t682 = t408 * t425 - t523 * t678 - t629 * t676;
-        let t688 = t314 * t329 - t390 * t682 - t520 * t678 - t609 * t676;
-        let t696 = t231 * t244 - t299 * t688 - t387 * t682 + t502 * t678 - t602 * t676;
-        let t706 = t186 * t198 - t217 * t696 - t296 * t688 - t371 * t682 - t467 * t678
-            - t586 * t676;
-        let t709 = t44 * t678 - t26 * t676;
-        let t712 = t29 * t676 - t47 * t678;
-        let t714 = t706 - (t709 + t712);
-        let t718 = 0.20791169081775931 * t67 + 0.9781476007338057 * c_cylinder_leg1;
-        let t721 = t12 * t676 - t44 * t682;
-        let t724 = t47 * t682 - t15 * t676;
-        let t726 = t696 - (t721 + t724);
-        let t729 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t732 = t26 * t682 - t12 * t678;
-        let t735 = t15 * t678 - t29 * t682;
-        let t737 = t688 - (t732 + t735);
-        let rate_cylinder_leg1 = t63 * (t70 * t714 - t718 * t726 + t729 * t737);
-        let t742 = 0.20791169081775931 * c_cross_leg1;
-        let t746 = t55 * t714 - t742 * t726 - minus_s_cross_leg1 * t737;
-        let minus_rate_cross_leg1 = t53 * t746;
-        let t748 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t749 = rate_cylinder_leg1 * t748;
-        let t750 = t678 * t682;
-        let t752 = t682 * t682;
-        let t753 = t676 * t676;
-        let t754 = t752 + t753;
-        let t755 = t20 * t754;
-        let t757 = t676 * t678;
-        let t759 = t5 * t750 - t755 + t38 * t757;
-        let t760 = 0.05176380902050415 * t759;
-        let t762 = t24 * t754;
-        let t765 = t10 * t750 - t762 + t42 * t757;
-        let t766 = 0.19318516525781368 * t765;
-        let t767 = t760 + t766;
-        let t768 = 0.19318516525781368 * t759;
-        let t769 = 0.05176380902050415 * t765;
-        let t770 = t768 + t769;
-        let t774 = t678 * t678;
-        let t775 = t774 + t753;
-        let t776 = t5 * t775;
-        let t778 = t676 * t682;
-        let t780 = t20 * t750 - t776 + t38 * t778;
-        let t781 = 0.05176380902050415 * t780;
-        let t783 = t10 * t775;
-        let t786 = t24 * t750 - t783 + t42 * t778;
-        let t787 = 0.19318516525781368 * t786;
-        let t788 = t781 + t787;
-        let t789 = 0.19318516525781368 * t780;
-        let t790 = 0.05176380902050415 * t786;
-        let t791 = t789 + t790;
-        let t797 = t5 * t682 + t20 * t678;
-        let t799 = t752 + t774;
-        let t800 = t38 * t799;
-        let t801 = t676 * t797 - t800;
-        let t802 = 0.05176380902050415 * t801;
-        let t805 = t10 * t682 + t24 * t678;
-        let t807 = t42 * t799;
-        let t808 = t676 * t805 - t807;
-        let t809 = 0.19318516525781368 * t808;
-        let t810 = t802 + t809;
-        let t811 = 0.19318516525781368 * t801;
-        let t812 = 0.05176380902050415 * t808;
-        let t813 = t811 + t812;
-        let t817 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t818 = t817 * t817;
-        let t819 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t820 = t818 + t819;
-        let t821 = t62 * t820;
-        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t770 - t767)
-            + grod_vx_leg1 * (t791 - t788) + grod_vz_leg1 * (t813 - t810) + t821;
-        let t823 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
-        let t825 = t769 - t768;
-        let t826 = t760 - t766;
-        let t829 = t790 - t789;
-        let t830 = t781 - t787;
-        let t834 = t812 - t811;
-        let t835 = t802 - t809;
-        let t839 = 0.9781476007338057 * c_cross_leg2;
-        let t842 = t87 * t678 - t79 * t676;
-        let t845 = t88 * t678 - t80 * t676;
-        let t847 = t706 - (t842 + t845);
-        let t849 = 0.20791169081775931 * c_cross_leg2;
-        let t852 = t73 * t676 - t87 * t682;
-        let t855 = t74 * t676 - t88 * t682;
-        let t857 = t696 - (t852 + t855);
-        let minus_s_cross_leg2 = t85 * t255;
-        let t863 = t79 * t682 - t73 * t678;
-        let t866 = t80 * t682 - t74 * t678;
-        let t868 = t688 - (t863 + t866);
-        let t870 = t839 * t847 + t849 * t857 - minus_s_cross_leg2 * t868;
-        let minus_rate_cross_leg2 = t255 * t870;
-        let t872 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t873 = t872 * t872;
-        let s_cylinder_leg2 = t95 / t98;
-        let t876 = minus_s_cross_leg2 * s_cylinder_leg2;
-        let t878 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t876;
-        let t882 = 0.20791169081775931 * t876 + 0.9781476007338057 * c_cylinder_leg2;
-        let t885 = c_cross_leg2 * s_cylinder_leg2;
-        let rate_cylinder_leg2 = t99 * (t878 * t847 - t882 * t857 - t885 * t868);
-        let t889 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t890 = t873 + t889;
-        let t891 = t98 * t890;
-        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t825 + t826)
-            + grod_vx_leg2 * (t829 + t830) + grod_vz_leg2 * (t834 + t835) - t891;
-        let t893 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
-        let t901 = 0.9510565162951536 * c_cross_leg3;
-        let t902 = t696 + t721;
-        let t904 = 0.30901699437494734 * c_cross_leg3;
-        let t905 = t706 + t709;
-        let minus_s_cross_leg3 = t109 * t247;
-        let t909 = t688 + t732;
-        let t911 = t901 * t902 - t904 * t905 - minus_s_cross_leg3 * t909;
-        let minus_rate_cross_leg3 = t247 * t911;
-        let t913 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t914 = t913 * t913;
-        let s_cylinder_leg3 = t116 / t119;
-        let t916 = minus_s_cross_leg3 * s_cylinder_leg3;
-        let t919 = 0.30901699437494734 * t916 + 0.9510565162951536 * c_cylinder_leg3;
-        let t923 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t916;
-        let t926 = c_cross_leg3 * s_cylinder_leg3;
-        let rate_cylinder_leg3 = t120 * (t919 * t905 + t923 * t902 - t926 * t909);
-        let t930 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t931 = t914 + t930;
-        let t932 = t119 * t931;
-        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t788
-            + grod_vy_leg3 * t767 + grod_vz_leg3 * t810 + t932;
-        let t934 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
-        let t942 = 0.7431448254773945 * c_cross_leg4;
-        let t943 = t696 + t852;
-        let t945 = 0.6691306063588579 * c_cross_leg4;
-        let t946 = t706 + t842;
-        let minus_s_cross_leg4 = t130 * t263;
-        let t950 = t688 + t863;
-        let t952 = t942 * t943 - t945 * t946 - minus_s_cross_leg4 * t950;
-        let minus_rate_cross_leg4 = t263 * t952;
-        let t954 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t955 = t954 * t954;
-        let s_cylinder_leg4 = t137 / t140;
-        let t957 = minus_s_cross_leg4 * s_cylinder_leg4;
-        let t960 = 0.6691306063588579 * t957 + 0.7431448254773945 * c_cylinder_leg4;
-        let t964 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t957;
-        let t967 = c_cross_leg4 * s_cylinder_leg4;
-        let rate_cylinder_leg4 = t141 * (t960 * t946 + t964 * t943 - t967 * t950);
-        let t971 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t972 = t955 + t971;
-        let t973 = t140 * t972;
-        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t829
-            + grod_vy_leg4 * t825 + grod_vz_leg4 * t834 + t973;
-        let t975 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
-        let s_cross_leg5 = t151 * t271;
-        let t984 = t688 + t735;
-        let t986 = 0.6691306063588579 * c_cross_leg5;
-        let t987 = t706 + t712;
-        let t989 = 0.7431448254773945 * c_cross_leg5;
-        let t990 = t696 + t724;
-        let t993 = s_cross_leg5 * t984 - (t986 * t987 + t989 * t990);
-        let minus_rate_cross_leg5 = t271 * t993;
-        let t995 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t996 = t995 * t995;
-        let s_cylinder_leg5 = t155 / t161;
-        let t999 = s_cross_leg5 * s_cylinder_leg5;
-        let t1001 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t999;
-        let t1005 = 0.6691306063588579 * t999 + 0.7431448254773945 * c_cylinder_leg5;
-        let t1008 = c_cross_leg5 * s_cylinder_leg5;
-        let rate_cylinder_leg5 = t162 * (t1001 * t990 - t1005 * t987 - t1008 * t984);
-        let t1012 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1013 = t996 + t1012;
-        let t1014 = t161 * t1013;
-        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t770
-            + minus_minus_grod_vx_leg5 * t791 + grod_vz_leg5 * t813 - t1014;
-        let t1016 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
-        let s_cross_leg6 = t172 * t279;
-        let t1025 = t688 + t866;
-        let t1027 = 0.30901699437494734 * c_cross_leg6;
-        let t1028 = t706 + t845;
-        let t1030 = 0.9510565162951536 * c_cross_leg6;
-        let t1031 = t696 + t855;
-        let t1034 = s_cross_leg6 * t1025 - (t1027 * t1028 + t1030 * t1031);
-        let minus_rate_cross_leg6 = t279 * t1034;
-        let t1036 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1037 = t1036 * t1036;
-        let s_cylinder_leg6 = t176 / t182;
-        let t1040 = s_cross_leg6 * s_cylinder_leg6;
-        let t1042 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1040;
-        let t1046 = 0.30901699437494734 * t1040 + 0.9510565162951536 * c_cylinder_leg6;
-        let t1049 = c_cross_leg6 * s_cylinder_leg6;
-        let rate_cylinder_leg6 = t183 * (t1042 * t1031 - t1046 * t1028 - t1049 * t1025);
-        let t1053 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1054 = t1037 + t1053;
-        let t1055 = t182 * t1054;
-        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t830
-            + grod_vy_leg6 * t826 + grod_vz_leg6 * t835 + t1055;
-        let t1057 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
-        let t1059 = grod_vx_leg1 * t823 + grod_vx_leg2 * t893
-            + minus_minus_grod_vx_leg3 * t934 + minus_minus_grod_vx_leg4 * t975
-            + minus_minus_grod_vx_leg5 * t1016 + minus_minus_grod_vx_leg6 * t1057;
-        let t1071 = grod_vy_leg3 * t934 + minus_minus_grod_vy_leg1 * t823
-            + minus_minus_grod_vy_leg2 * t893 + grod_vy_leg4 * t975
-            + grod_vy_leg5 * t1016 + grod_vy_leg6 * t1057;
-        let t1073 = t1071 - t217 * t1059;
-        let t1085 = grod_vz_leg1 * t823 + grod_vz_leg2 * t893 + grod_vz_leg3 * t934
-            + grod_vz_leg4 * t975 + grod_vz_leg5 * t1016 + grod_vz_leg6 * t1057;
-        let t1089 = t1085 - t296 * t1059 - t299 * t1073;
-        let t1101 = grod_wx_leg1 * t823 + grod_wx_leg2 * t893 + grod_wx_leg3 * t934
-            + grod_wx_leg4 * t975 + grod_wx_leg5 * t1016 + grod_wx_leg6 * t1057;
-        let t1107 = t1101 - t371 * t1059 - t387 * t1073 - t390 * t1089;
-        let t1119 = grod_wy_leg1 * t823 + grod_wy_leg2 * t893 - minus_grod_wy_leg3 * t934
-            - minus_grod_wy_leg4 * t975 + grod_wy_leg5 * t1016
-            - minus_grod_wy_leg6 * t1057;
-        let t1127 = t1119 - t467 * t1059 + t502 * t1073 - t520 * t1089 - t523 * t1107;
-        let t1139 = grod_wz_leg3 * t934
-            - (minus_grod_wz_leg1 * t823 + minus_grod_wz_leg2 * t893)
-            + grod_wz_leg4 * t975 - minus_grod_wz_leg5 * t1016 + grod_wz_leg6 * t1057;
-        let t1149 = t1139 - t586 * t1059 - t602 * t1073 - t609 * t1089 - t629 * t1107
-            + t632 * t1127;
-        let t1150 = t654 * t1149;
-        let t1152 = t543 * t1127 + t632 * t1150;
-        let t1156 = t408 * t1107 - t523 * t1152 - t629 * t1150;
-        let t1162 = t314 * t1089 - t390 * t1156 - t520 * t1152 - t609 * t1150;
-        let t1170 = t231 * t1073 - t299 * t1162 - t387 * t1156 + t502 * t1152
-            - t602 * t1150;
-        let t1180 = t198 * t1059 - t217 * t1170 - t296 * t1162 - t371 * t1156
-            - t467 * t1152 - t586 * t1150;
-        let t1181 = t750 - t1150;
-        let t1184 = t778 + t1152;
-        let t1186 = t20 * t1181 - t776 + t38 * t1184;
-        let t1187 = 0.05176380902050415 * t1186;
-        let t1191 = t24 * t1181 - t783 + t42 * t1184;
-        let t1192 = 0.19318516525781368 * t1191;
-        let t1193 = t1187 + t1192;
-        let t1194 = 0.19318516525781368 * t1186;
-        let t1195 = 0.05176380902050415 * t1191;
-        let t1196 = t1194 + t1195;
-        let t1198 = t1180 + t1196 - t1193;
-        let t1200 = t750 + t1150;
-        let t1203 = t757 - t1156;
-        let t1205 = t5 * t1200 - t755 + t38 * t1203;
-        let t1206 = 0.05176380902050415 * t1205;
-        let t1210 = t10 * t1200 - t762 + t42 * t1203;
-        let t1211 = 0.19318516525781368 * t1210;
-        let t1212 = t1206 + t1211;
-        let t1213 = 0.19318516525781368 * t1205;
-        let t1214 = 0.05176380902050415 * t1210;
-        let t1215 = t1213 + t1214;
-        let t1217 = t1170 + t1215 - t1212;
-        let t1220 = t778 - t1152;
-        let t1222 = t757 + t1156;
-        let t1225 = t5 * t1220 + t20 * t1222 - t800;
-        let t1226 = 0.05176380902050415 * t1225;
-        let t1230 = t10 * t1220 + t24 * t1222 - t807;
-        let t1231 = 0.19318516525781368 * t1230;
-        let t1232 = t1226 + t1231;
-        let t1233 = 0.19318516525781368 * t1225;
-        let t1234 = 0.05176380902050415 * t1230;
-        let t1235 = t1233 + t1234;
-        let t1236 = t1235 - t1232;
-        let t1237 = t1162 + t1236;
-        let t1239 = t55 * t1198 - t742 * t1217 - minus_s_cross_leg1 * t1237;
-        let t1240 = t62 * t749;
-        let t1243 = actuator_velocities[0] + actuator_velocities[0];
-        let minus_rate_dot_cross_leg1 = t53 * (t1239 - t1240 - t1240 - t817 * t1243);
-        let t1247 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1249 = t749 + t1247 + t749;
-        let t1250 = c_cylinder_leg1 * t1249;
-        let gcylinder_vx_leg1 = t70 * t63;
-        let t1253 = t817 * t748;
-        let t1254 = gcylinder_vx_leg1 * t1253;
-        let t1255 = minus_gcross_vx_leg1 * t1250 - t1254;
-        let minus_gcylinder_vy_leg1 = t718 * t63;
-        let t1257 = minus_gcylinder_vy_leg1 * t1253;
-        let gcross_vy_leg1 = t53 * t742;
-        let t1260 = t1257 - gcross_vy_leg1 * t1250;
+        let t655 = t645 - t566 * t567 - t582 * t583 - t589 * t590 - t609 * t610
+            - t612 * t613;
+        ::overact::guard::platform(t655, 0.03606775827473607, "actuators")?;
+        ::overact::guard::platform(t655, 0.03606775827473607, "actuators")?;
+        let t656 = (t630 - t610 * t522 + t613 * t524) / t655;
+        let t658 = t524 / t543 + t613 * t656;
+        let t663 = t522 / t504 - t505 * t658 - t610 * t656;
+        let t664 = t658 * t663;
+        let t666 = t663 * t663;
+        let t667 = t656 * t656;
+        let t668 = t666 + t667;
+        let t669 = t20 * t668;
+        let t671 = t656 * t658;
+        let t673 = t5 * t664 - t669 + t38 * t671;
+        let t674 = 0.05176380902050415 * t673;
+        let t676 = t24 * t668;
+        let t679 = t10 * t664 - t676 + t42 * t671;
+        let t680 = 0.19318516525781368 * t679;
+        let t681 = t674 + t680;
+        let t682 = 0.19318516525781368 * t673;
+        let t683 = 0.05176380902050415 * t679;
+        let t684 = t682 + t683;
+        let t688 = t658 * t658;
+        let t689 = t688 + t667;
+        let t690 = t5 * t689;
+        let t692 = t656 * t663;
+        let t694 = t20 * t664 - t690 + t38 * t692;
+        let t695 = 0.05176380902050415 * t694;
+        let t697 = t10 * t689;
+        let t700 = t24 * t664 - t697 + t42 * t692;
+        let t701 = 0.19318516525781368 * t700;
+        let t702 = t695 + t701;
+        let t703 = 0.19318516525781368 * t694;
+        let t704 = 0.05176380902050415 * t700;
+        let t705 = t703 + t704;
+        let t711 = t5 * t663 + t20 * t658;
+        let t713 = t666 + t688;
+        let t714 = t38 * t713;
+        let t715 = t656 * t711 - t714;
+        let t716 = 0.05176380902050415 * t715;
+        let t719 = t10 * t663 + t24 * t658;
+        let t721 = t42 * t713;
+        let t722 = t656 * t719 - t721;
+        let t723 = 0.19318516525781368 * t722;
+        let t724 = t716 + t723;
+        let t725 = 0.19318516525781368 * t715;
+        let t726 = 0.05176380902050415 * t722;
+        let t727 = t725 + t726;
+        let t739 = t437 / t421 - t502 * t663 - t422 * t658 - t590 * t656;
+        let t747 = t364 / t350 - t419 * t739 - t482 * t663 + t351 * t658 - t583 * t656;
+        let t757 = t234 / t256 - t348 * t747 - t402 * t739 - t464 * t663 - t257 * t658
+            - t567 * t656;
+        let t760 = t44 * t658 - t26 * t656;
+        let t763 = t29 * t656 - t47 * t658;
+        let t765 = t757 - (t760 + t763);
+        let t767 = 0.20791169081775931 * c_cross_leg1;
+        let t770 = t12 * t656 - t44 * t663;
+        let t773 = t47 * t663 - t15 * t656;
+        let t775 = t747 - (t770 + t773);
+        let minus_s_cross_leg1 = t34 * t53;
+        let t781 = t26 * t663 - t12 * t658;
+        let t784 = t15 * t658 - t29 * t663;
+        let t786 = t739 - (t781 + t784);
+        let t788 = t55 * t765 - t767 * t775 - minus_s_cross_leg1 * t786;
+        let minus_rate_cross_leg1 = t53 * t788;
+        let t790 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t791 = t790 * t790;
+        let minus_s_cylinder_leg1 = t59 / t62;
+        let t793 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
+        let t796 = 0.9781476007338057 * t793 - 0.20791169081775931 * c_cylinder_leg1;
+        let t800 = 0.20791169081775931 * t793 + 0.9781476007338057 * c_cylinder_leg1;
+        let t803 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t805 = t796 * t765 - t800 * t775 + t803 * t786;
+        let rate_cylinder_leg1 = t63 * t805;
+        let t807 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t808 = t791 + t807;
+        let t809 = t62 * t808;
+        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t684 - t681)
+            + grod_vx_leg1 * (t705 - t702) + grod_vz_leg1 * (t727 - t724) + t809;
+        let t811 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
+        let t813 = t683 - t682;
+        let t814 = t674 - t680;
+        let t817 = t704 - t703;
+        let t818 = t695 - t701;
+        let t822 = t726 - t725;
+        let t823 = t716 - t723;
+        let t827 = 0.9781476007338057 * c_cross_leg2;
+        let t830 = t72 * t658 - t81 * t656;
+        let t833 = t73 * t658 - t82 * t656;
+        let t835 = t757 - (t830 + t833);
+        let t837 = 0.20791169081775931 * c_cross_leg2;
+        let t840 = t75 * t656 - t72 * t663;
+        let t843 = t76 * t656 - t73 * t663;
+        let t845 = t747 - (t840 + t843);
+        let minus_s_cross_leg2 = t87 * t101;
+        let t851 = t81 * t663 - t75 * t658;
+        let t854 = t82 * t663 - t76 * t658;
+        let t856 = t739 - (t851 + t854);
+        let t858 = t827 * t835 + t837 * t845 - minus_s_cross_leg2 * t856;
+        let minus_rate_cross_leg2 = t101 * t858;
+        let t860 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t861 = t860 * t860;
+        let s_cylinder_leg2 = t94 / t97;
+        let t864 = minus_s_cross_leg2 * s_cylinder_leg2;
+        let t866 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t864;
+        let t870 = 0.20791169081775931 * t864 + 0.9781476007338057 * c_cylinder_leg2;
+        let t873 = c_cross_leg2 * s_cylinder_leg2;
+        let t875 = t866 * t835 - t870 * t845 - t873 * t856;
+        let rate_cylinder_leg2 = t103 * t875;
+        let t877 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t878 = t861 + t877;
+        let t879 = t97 * t878;
+        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t813 + t814)
+            + grod_vx_leg2 * (t817 + t818) + grod_vz_leg2 * (t822 + t823) - t879;
+        let t881 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
+        let t889 = 0.9510565162951536 * c_cross_leg3;
+        let t890 = t747 + t770;
+        let t892 = 0.30901699437494734 * c_cross_leg3;
+        let t893 = t757 + t760;
+        let minus_s_cross_leg3 = t116 / t129;
+        let t897 = t739 + t781;
+        let t899 = t889 * t890 - t892 * t893 - minus_s_cross_leg3 * t897;
+        let minus_rate_cross_leg3 = t899 / t129;
+        let t901 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t902 = t901 * t901;
+        let s_cylinder_leg3 = t123 / t126;
+        let t904 = minus_s_cross_leg3 * s_cylinder_leg3;
+        let t907 = 0.30901699437494734 * t904 + 0.9510565162951536 * c_cylinder_leg3;
+        let t911 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t904;
+        let t914 = c_cross_leg3 * s_cylinder_leg3;
+        let t916 = t907 * t893 + t911 * t890 - t914 * t897;
+        let rate_cylinder_leg3 = t131 * t916;
+        let t918 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t919 = t902 + t918;
+        let t920 = t126 * t919;
+        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t702
+            + grod_vy_leg3 * t681 + grod_vz_leg3 * t724 + t920;
+        let t922 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
+        let t930 = 0.7431448254773945 * c_cross_leg4;
+        let t931 = t747 + t840;
+        let t933 = 0.6691306063588579 * c_cross_leg4;
+        let t934 = t757 + t830;
+        let minus_s_cross_leg4 = t144 * t158;
+        let t938 = t739 + t851;
+        let t940 = t930 * t931 - t933 * t934 - minus_s_cross_leg4 * t938;
+        let minus_rate_cross_leg4 = t158 * t940;
+        let t942 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t943 = t942 * t942;
+        let t944 = 1.0 / t154;
+        let s_cylinder_leg4 = t151 / t154;
+        let t946 = minus_s_cross_leg4 * s_cylinder_leg4;
+        let t949 = 0.6691306063588579 * t946 + 0.7431448254773945 * c_cylinder_leg4;
+        let t953 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t946;
+        let t956 = c_cross_leg4 * s_cylinder_leg4;
+        let t958 = t949 * t934 + t953 * t931 - t956 * t938;
+        let rate_cylinder_leg4 = t944 * t958;
+        let t960 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t961 = t943 + t960;
+        let t962 = t154 * t961;
+        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t817
+            + grod_vy_leg4 * t813 + grod_vz_leg4 * t822 + t962;
+        let t964 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
+        let s_cross_leg5 = t172 * t187;
+        let t973 = t739 + t784;
+        let t975 = 0.6691306063588579 * c_cross_leg5;
+        let t976 = t757 + t763;
+        let t978 = 0.7431448254773945 * c_cross_leg5;
+        let t979 = t747 + t773;
+        let t982 = s_cross_leg5 * t973 - (t975 * t976 + t978 * t979);
+        let minus_rate_cross_leg5 = t187 * t982;
+        let t984 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t985 = t984 * t984;
+        let s_cylinder_leg5 = t179 / t182;
+        let t988 = s_cross_leg5 * s_cylinder_leg5;
+        let t990 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t988;
+        let t994 = 0.6691306063588579 * t988 + 0.7431448254773945 * c_cylinder_leg5;
+        let t997 = c_cross_leg5 * s_cylinder_leg5;
+        let t999 = t990 * t979 - t994 * t976 - t997 * t973;
+        let rate_cylinder_leg5 = t183 * t999;
+        let t1001 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1002 = t985 + t1001;
+        let t1003 = t182 * t1002;
+        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t684
+            + minus_minus_grod_vx_leg5 * t705 + grod_vz_leg5 * t727 - t1003;
+        let t1005 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
+        let s_cross_leg6 = t201 * t216;
+        let t1014 = t739 + t854;
+        let t1016 = 0.30901699437494734 * c_cross_leg6;
+        let t1017 = t757 + t833;
+        let t1019 = 0.9510565162951536 * c_cross_leg6;
+        let t1020 = t747 + t843;
+        let t1023 = s_cross_leg6 * t1014 - (t1016 * t1017 + t1019 * t1020);
+        let minus_rate_cross_leg6 = t216 * t1023;
+        let t1025 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1026 = t1025 * t1025;
+        let s_cylinder_leg6 = t208 / t211;
+        let t1029 = s_cross_leg6 * s_cylinder_leg6;
+        let t1031 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1029;
+        let t1035 = 0.30901699437494734 * t1029 + 0.9510565162951536 * c_cylinder_leg6;
+        let t1038 = c_cross_leg6 * s_cylinder_leg6;
+        let t1040 = t1031 * t1020 - t1035 * t1017 - t1038 * t1014;
+        let rate_cylinder_leg6 = t212 * t1040;
+        let t1042 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1043 = t1026 + t1042;
+        let t1044 = t211 * t1043;
+        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t818
+            + grod_vy_leg6 * t814 + grod_vz_leg6 * t823 + t1044;
+        let t1046 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
+        let t1048 = grod_vx_leg1 * t811 + grod_vx_leg2 * t881
+            + minus_minus_grod_vx_leg3 * t922 + minus_minus_grod_vx_leg4 * t964
+            + minus_minus_grod_vx_leg5 * t1005 + minus_minus_grod_vx_leg6 * t1046;
+        let t1060 = grod_vy_leg3 * t922 + minus_minus_grod_vy_leg1 * t811
+            + minus_minus_grod_vy_leg2 * t881 + grod_vy_leg4 * t964
+            + grod_vy_leg5 * t1005 + grod_vy_leg6 * t1046;
+        let t1062 = t1060 - t348 * t1048;
+        let t1074 = grod_vz_leg1 * t811 + grod_vz_leg2 * t881 + grod_vz_leg3 * t922
+            + grod_vz_leg4 * t964 + grod_vz_leg5 * t1005 + grod_vz_leg6 * t1046;
+        let t1078 = t1074 - t402 * t1048 - t419 * t1062;
+        let t1090 = grod_wx_leg1 * t811 + grod_wx_leg2 * t881 + grod_wx_leg3 * t922
+            + grod_wx_leg4 * t964 + grod_wx_leg5 * t1005 + grod_wx_leg6 * t1046;
+        let t1096 = t1090 - t464 * t1048 - t482 * t1062 - t502 * t1078;
+        let t1108 = grod_wy_leg1 * t811 + grod_wy_leg2 * t881 - minus_grod_wy_leg3 * t922
+            - minus_grod_wy_leg4 * t964 + grod_wy_leg5 * t1005
+            - minus_grod_wy_leg6 * t1046;
+        let t1116 = t1108 - t257 * t1048 + t351 * t1062 - t422 * t1078 - t505 * t1096;
+        let t1128 = grod_wz_leg3 * t922
+            - (minus_grod_wz_leg1 * t811 + minus_grod_wz_leg2 * t881)
+            + grod_wz_leg4 * t964 - minus_grod_wz_leg5 * t1005 + grod_wz_leg6 * t1046;
+        let t1138 = t1128 - t567 * t1048 - t583 * t1062 - t590 * t1078 - t610 * t1096
+            + t613 * t1116;
+        let t1139 = t1138 / t655;
+        let t1141 = t1116 / t543 + t613 * t1139;
+        let t1145 = t1096 / t504 - t505 * t1141 - t610 * t1139;
+        let t1151 = t1078 / t421 - t502 * t1145 - t422 * t1141 - t590 * t1139;
+        let t1159 = t1062 / t350 - t419 * t1151 - t482 * t1145 + t351 * t1141
+            - t583 * t1139;
+        let t1169 = t1048 / t256 - t348 * t1159 - t402 * t1151 - t464 * t1145
+            - t257 * t1141 - t567 * t1139;
+        let t1170 = t664 - t1139;
+        let t1173 = t692 + t1141;
+        let t1175 = t20 * t1170 - t690 + t38 * t1173;
+        let t1176 = 0.05176380902050415 * t1175;
+        let t1180 = t24 * t1170 - t697 + t42 * t1173;
+        let t1181 = 0.19318516525781368 * t1180;
+        let t1182 = t1176 + t1181;
+        let t1183 = 0.19318516525781368 * t1175;
+        let t1184 = 0.05176380902050415 * t1180;
+        let t1185 = t1183 + t1184;
+        let t1187 = t1169 + t1185 - t1182;
+        let t1189 = t664 + t1139;
+        let t1192 = t671 - t1145;
+        let t1194 = t5 * t1189 - t669 + t38 * t1192;
+        let t1195 = 0.05176380902050415 * t1194;
+        let t1199 = t10 * t1189 - t676 + t42 * t1192;
+        let t1200 = 0.19318516525781368 * t1199;
+        let t1201 = t1195 + t1200;
+        let t1202 = 0.19318516525781368 * t1194;
+        let t1203 = 0.05176380902050415 * t1199;
+        let t1204 = t1202 + t1203;
+        let t1206 = t1159 + t1204 - t1201;
+        let t1209 = t692 - t1141;
+        let t1211 = t671 + t1145;
+        let t1214 = t5 * t1209 + t20 * t1211 - t714;
+        let t1215 = 0.05176380902050415 * t1214;
+        let t1219 = t10 * t1209 + t24 * t1211 - t721;
+        let t1220 = 0.19318516525781368 * t1219;
+        let t1221 = t1215 + t1220;
+        let t1222 = 0.19318516525781368 * t1214;
+        let t1223 = 0.05176380902050415 * t1219;
+        let t1224 = t1222 + t1223;
+        let t1225 = t1224 - t1221;
+        let t1226 = t1151 + t1225;
+        let t1228 = t55 * t1187 - t767 * t1206 - minus_s_cross_leg1 * t1226;
+        let t1229 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t1230 = t1229 * t805;
+        let t1233 = 2.0 * actuator_velocities[0];
+        let minus_rate_dot_cross_leg1 = t53 * (t1228 - t1230 - t1230 - t790 * t1233);
+        let t1237 = rate_cylinder_leg1 * t790;
+        let t1238 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1240 = t1237 + t1237 - t1238;
+        let t1241 = c_cylinder_leg1 * t1240;
+        let t1242 = t53 * t59;
+        let t1243 = t1241 * t1242;
+        let t1244 = minus_rate_dot_cross_leg1 + t1243;
+        let gcylinder_vx_leg1 = t796 * t63;
+        let t1247 = t790 * t1229;
+        let t1248 = gcylinder_vx_leg1 * t1247;
+        let t1249 = minus_gcross_vx_leg1 * t1244 - t1248;
+        let minus_gcylinder_vy_leg1 = t800 * t63;
+        let t1251 = minus_gcylinder_vy_leg1 * t1247;
+        let gcross_vy_leg1 = t53 * t767;
+        let t1254 = t1251 - gcross_vy_leg1 * t1244;
         let gcross_vz_leg1 = t53 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t729 * t63;
-        let t1264 = gcylinder_vz_leg1 * t1253;
-        let t1265 = gcross_vz_leg1 * t1250 + t1264;
+        let gcylinder_vz_leg1 = t803 * t63;
+        let t1258 = gcylinder_vz_leg1 * t1247;
+        let t1259 = gcross_vz_leg1 * t1244 + t1258;
         let gcross_wx_leg1 = t30 * gcross_vz_leg1 - t48 * gcross_vy_leg1;
         let gcylinder_wx_leg1 = t30 * gcylinder_vz_leg1 + t48 * minus_gcylinder_vy_leg1;
-        let t1273 = gcylinder_wx_leg1 * t1253;
-        let t1274 = gcross_wx_leg1 * t1250 + t1273;
+        let t1267 = gcylinder_wx_leg1 * t1247;
+        let t1268 = gcross_wx_leg1 * t1244 + t1267;
         let minus_gcross_wy_leg1 = t48 * minus_gcross_vx_leg1 + t16 * gcross_vz_leg1;
         let gcylinder_wy_leg1 = t48 * gcylinder_vx_leg1 - t16 * gcylinder_vz_leg1;
-        let t1282 = gcylinder_wy_leg1 * t1253;
-        let t1283 = minus_gcross_wy_leg1 * t1250 - t1282;
+        let t1276 = gcylinder_wy_leg1 * t1247;
+        let t1277 = minus_gcross_wy_leg1 * t1244 - t1276;
         let minus_gcylinder_wz_leg1 = t16 * minus_gcylinder_vy_leg1
             + t30 * gcylinder_vx_leg1;
-        let t1287 = minus_gcylinder_wz_leg1 * t1253;
+        let t1281 = minus_gcylinder_wz_leg1 * t1247;
         let gcross_wz_leg1 = t16 * gcross_vy_leg1 + t30 * minus_gcross_vx_leg1;
-        let t1292 = t1287 - gcross_wz_leg1 * t1250;
-        let t1293 = t748 * t748;
-        let t1294 = t818 - t1293;
-        let t1296 = rate_cylinder_leg1 * t817;
-        let t1297 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1299 = t1296 + t1296 - t1297;
-        let t1302 = c_cylinder_leg1 * t1299 - minus_s_cylinder_leg1 * t1249;
-        let t1304 = gcylinder_vx_leg1 * t1294 - minus_gcross_vx_leg1 * t1302;
-        let t1307 = gcross_vy_leg1 * t1302 - minus_gcylinder_vy_leg1 * t1294;
-        let t1310 = gcross_vz_leg1 * t1302 + gcylinder_vz_leg1 * t1294;
-        let t1313 = gcross_wx_leg1 * t1302 + gcylinder_wx_leg1 * t1294;
-        let t1316 = gcylinder_wy_leg1 * t1294 - minus_gcross_wy_leg1 * t1302;
-        let t1319 = gcross_wz_leg1 * t1302 - minus_gcylinder_wz_leg1 * t1294;
-        let t1324 = t70 * t1198 - t718 * t1217 + t729 * t1237;
-        let rate_dot_cylinder_leg1 = t63
-            * (t1324 + t62 * t1253 - rate_cylinder_leg1 * t1243);
-        let t1330 = t1253 + rate_dot_cylinder_leg1;
-        let t1334 = c_cylinder_leg1 * t1330 + minus_s_cylinder_leg1 * (t819 - t818);
-        let t1337 = minus_gcross_vx_leg1 * t1334 + gcylinder_vx_leg1 * t1247;
-        let t1340 = gcross_vy_leg1 * t1334 + minus_gcylinder_vy_leg1 * t1247;
-        let t1343 = gcross_vz_leg1 * t1334 - gcylinder_vz_leg1 * t1247;
-        let t1346 = gcross_wx_leg1 * t1334 - gcylinder_wx_leg1 * t1247;
-        let t1349 = minus_gcross_wy_leg1 * t1334 + gcylinder_wy_leg1 * t1247;
-        let t1352 = gcross_wz_leg1 * t1334 + minus_gcylinder_wz_leg1 * t1247;
-        let t1353 = minus_s_cylinder_leg1 * t1299;
-        let t1355 = t1254 - minus_gcross_vx_leg1 * t1353;
-        let t1357 = gcross_vy_leg1 * t1353 - t1257;
-        let t1359 = gcross_vz_leg1 * t1353 + t1264;
-        let t1361 = gcross_wx_leg1 * t1353 + t1273;
-        let t1363 = t1282 - minus_gcross_wy_leg1 * t1353;
-        let t1365 = gcross_wz_leg1 * t1353 - t1287;
-        let t1368 = t1253 - rate_dot_cylinder_leg1;
-        let t1370 = c_cylinder_leg1 * (t1293 - t819) - minus_s_cylinder_leg1 * t1368;
-        let t1373 = minus_gcross_vx_leg1 * t1370 + gcylinder_vx_leg1 * t1297;
-        let t1376 = gcross_vy_leg1 * t1370 + minus_gcylinder_vy_leg1 * t1297;
-        let t1379 = gcross_vz_leg1 * t1370 - gcylinder_vz_leg1 * t1297;
-        let t1382 = gcross_wx_leg1 * t1370 - gcylinder_wx_leg1 * t1297;
-        let t1385 = minus_gcross_wy_leg1 * t1370 + gcylinder_wy_leg1 * t1297;
-        let t1388 = gcross_wz_leg1 * t1370 + minus_gcylinder_wz_leg1 * t1297;
-        let t1389 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
-        let t1390 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
-        let t1391 = gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
-        let t1392 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
-        let t1393 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
-        let t1394 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
-        let t1395 = 9.81 * t67;
-        let t1397 = 9.81 * grod_vz_leg1;
-        let t1415 = t63 * t1397;
-        let t1418 = 9.81 * minus_s_cross_leg1;
-        let t1419 = c_cylinder_leg1 * t1418;
-        let t1421 = 9.81 * t729;
-        let t1431 = 9.81 * c_cross_leg1;
-        let t1439 = t1239 - t1418;
-        let t1441 = t52 * t1299 - minus_s_cylinder_leg1 * t1439;
-        let t1446 = actuator_accelerations[0] - (t821 - t1397);
-        let t1447 = t62 * (t1293 + t819) + t1446;
-        let t1451 = minus_gcross_vx_leg1 * t1441 + gcylinder_vx_leg1 * t1447
-            + grod_vx_leg1 * t1330;
-        let t1456 = gcross_vy_leg1 * t1441 + minus_gcylinder_vy_leg1 * t1447
-            - minus_minus_grod_vy_leg1 * t1330;
-        let t1461 = gcross_vz_leg1 * t1441 - gcylinder_vz_leg1 * t1447
-            - grod_vz_leg1 * t1330;
-        let t1473 = t1324 + t1421;
-        let t1476 = t746 * minus_rate_cross_leg1 + c_cylinder_leg1 * t1446
-            + minus_s_cylinder_leg1 * t1473;
-        let t1478 = t62 * t1297;
-        let t1482 = minus_gcross_vx_leg1 * t1476 + gcylinder_vx_leg1 * t1478
-            + grod_vx_leg1 * t1247;
-        let t1487 = gcross_vy_leg1 * t1476 + minus_gcylinder_vy_leg1 * t1478
-            - minus_minus_grod_vy_leg1 * t1247;
-        let t1490 = gcross_vz_leg1 * t1476 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t1502 = t52 * t1249 + c_cylinder_leg1 * t1439;
-        let t1505 = t1473 - t62 * t1368;
-        let t1509 = minus_gcross_vx_leg1 * t1502 + gcylinder_vx_leg1 * t1505
-            - grod_vx_leg1 * t820;
-        let t1514 = minus_minus_grod_vy_leg1 * t820 + gcross_vy_leg1 * t1502
-            + minus_gcylinder_vy_leg1 * t1505;
-        let t1519 = gcylinder_vz_leg1 * t1505 - gcross_vz_leg1 * t1502
-            - grod_vz_leg1 * t820;
-        let t1529 = t1162 + 9.81;
-        let t1530 = t1236 + t1529;
-        let gcylinder_vx_leg2 = t878 * t99;
-        let t1553 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t1554 = t872 * t1553;
-        let t1555 = gcylinder_vx_leg2 * t1554;
-        let minus_gcross_vx_leg2 = t255 * t839;
-        let t1557 = rate_cylinder_leg2 * t1553;
-        let t1558 = t1195 - t1194;
-        let t1559 = t1187 - t1192;
-        let t1561 = t1180 - (t1558 + t1559);
-        let t1563 = t1214 - t1213;
-        let t1564 = t1206 - t1211;
-        let t1566 = t1170 - (t1563 + t1564);
-        let t1569 = t1234 - t1233;
-        let t1570 = t1226 - t1231;
-        let t1572 = t1162 - (t1569 + t1570);
-        let t1574 = t839 * t1561 + t849 * t1566 - minus_s_cross_leg2 * t1572;
-        let t1575 = t98 * t1557;
-        let t1578 = actuator_velocities[1] + actuator_velocities[1];
-        let minus_rate_dot_cross_leg2 = t255 * (t1574 + t1575 + t1575 - t872 * t1578);
-        let t1582 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1584 = t1557 + t1557 - t1582;
-        let t1585 = c_cylinder_leg2 * t1584;
-        let t1587 = t1555 - minus_gcross_vx_leg2 * t1585;
-        let minus_gcross_vy_leg2 = t255 * t849;
-        let minus_gcylinder_vy_leg2 = t882 * t99;
-        let t1591 = minus_gcylinder_vy_leg2 * t1554;
-        let t1592 = minus_gcross_vy_leg2 * t1585 + t1591;
-        let gcross_vz_leg2 = t255 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t885 * t99;
-        let t1596 = minus_gcylinder_vz_leg2 * t1554;
-        let t1597 = gcross_vz_leg2 * t1585 - t1596;
-        let minus_gcross_wx_leg2 = t81 * gcross_vz_leg2 + t89 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t81 * minus_gcylinder_vz_leg2
-            - t89 * minus_gcylinder_vy_leg2;
-        let t1605 = gcylinder_wx_leg2 * t1554;
-        let t1606 = t1605 - minus_gcross_wx_leg2 * t1585;
-        let minus_gcylinder_wy_leg2 = t89 * gcylinder_vx_leg2
-            + t75 * minus_gcylinder_vz_leg2;
-        let t1610 = minus_gcylinder_wy_leg2 * t1554;
-        let minus_minus_gcross_wy_leg2 = t89 * minus_gcross_vx_leg2
-            + t75 * gcross_vz_leg2;
-        let t1615 = minus_minus_gcross_wy_leg2 * t1585 - t1610;
-        let gcross_wz_leg2 = t75 * minus_gcross_vy_leg2 - t81 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t75 * minus_gcylinder_vy_leg2
-            + t81 * gcylinder_vx_leg2;
-        let t1623 = minus_minus_gcylinder_wz_leg2 * t1554;
-        let t1624 = gcross_wz_leg2 * t1585 + t1623;
-        let t1625 = t1553 * t1553;
-        let t1626 = t873 - t1625;
-        let t1628 = rate_cylinder_leg2 * t872;
-        let t1629 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1631 = t1628 + t1629 + t1628;
-        let t1634 = c_cylinder_leg2 * t1631 - s_cylinder_leg2 * t1584;
-        let t1636 = gcylinder_vx_leg2 * t1626 - minus_gcross_vx_leg2 * t1634;
-        let t1639 = minus_gcross_vy_leg2 * t1634 + minus_gcylinder_vy_leg2 * t1626;
-        let t1642 = gcross_vz_leg2 * t1634 - minus_gcylinder_vz_leg2 * t1626;
-        let t1645 = gcylinder_wx_leg2 * t1626 - minus_gcross_wx_leg2 * t1634;
-        let t1648 = minus_minus_gcross_wy_leg2 * t1634 - minus_gcylinder_wy_leg2 * t1626;
-        let t1651 = gcross_wz_leg2 * t1634 + minus_minus_gcylinder_wz_leg2 * t1626;
-        let t1656 = t878 * t1561 - t882 * t1566 - t885 * t1572;
-        let rate_dot_cylinder_leg2 = t99
-            * (t1656 - t98 * t1554 - rate_cylinder_leg2 * t1578);
-        let t1662 = rate_dot_cylinder_leg2 - t1554;
-        let t1666 = c_cylinder_leg2 * t1662 - s_cylinder_leg2 * (t889 - t873);
-        let t1669 = minus_gcross_vx_leg2 * t1666 + gcylinder_vx_leg2 * t1582;
-        let t1672 = minus_gcylinder_vy_leg2 * t1582 - minus_gcross_vy_leg2 * t1666;
-        let t1675 = gcross_vz_leg2 * t1666 + minus_gcylinder_vz_leg2 * t1582;
-        let t1678 = minus_gcross_wx_leg2 * t1666 + gcylinder_wx_leg2 * t1582;
-        let t1681 = minus_minus_gcross_wy_leg2 * t1666 + minus_gcylinder_wy_leg2 * t1582;
-        let t1684 = gcross_wz_leg2 * t1666 - minus_minus_gcylinder_wz_leg2 * t1582;
-        let t1685 = s_cylinder_leg2 * t1631;
-        let t1687 = minus_gcross_vx_leg2 * t1685 - t1555;
-        let t1689 = minus_gcross_vy_leg2 * t1685 + t1591;
-        let t1691 = t1596 - gcross_vz_leg2 * t1685;
-        let t1693 = t1605 - minus_gcross_wx_leg2 * t1685;
-        let t1695 = t1610 - minus_minus_gcross_wy_leg2 * t1685;
-        let t1697 = t1623 + gcross_wz_leg2 * t1685;
-        let t1701 = t1554 + rate_dot_cylinder_leg2;
-        let t1703 = c_cylinder_leg2 * (t1625 - t889) - s_cylinder_leg2 * t1701;
-        let t1705 = gcylinder_vx_leg2 * t1629 - minus_gcross_vx_leg2 * t1703;
-        let t1708 = minus_gcross_vy_leg2 * t1703 + minus_gcylinder_vy_leg2 * t1629;
-        let t1711 = gcross_vz_leg2 * t1703 - minus_gcylinder_vz_leg2 * t1629;
-        let t1714 = gcylinder_wx_leg2 * t1629 - minus_gcross_wx_leg2 * t1703;
-        let t1717 = minus_minus_gcross_wy_leg2 * t1703 - minus_gcylinder_wy_leg2 * t1629;
-        let t1720 = gcross_wz_leg2 * t1703 + minus_minus_gcylinder_wz_leg2 * t1629;
-        let t1721 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t1722 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t1723 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t1724 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t1725 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t1726 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t1727 = 9.81 * t876;
-        let t1729 = 9.81 * grod_vz_leg2;
-        let t1747 = t99 * t1729;
-        let t1750 = 9.81 * minus_s_cross_leg2;
-        let t1751 = c_cylinder_leg2 * t1750;
-        let t1753 = 9.81 * t885;
-        let t1763 = 9.81 * c_cross_leg2;
-        let t1771 = t1574 - t1750;
-        let t1773 = t254 * t1631 + s_cylinder_leg2 * t1771;
-        let t1778 = actuator_accelerations[1] - (t891 - t1729);
-        let t1779 = t98 * (t1625 + t889) + t1778;
-        let t1783 = minus_gcross_vx_leg2 * t1773 + gcylinder_vx_leg2 * t1779
-            + grod_vx_leg2 * t1662;
-        let t1788 = minus_gcylinder_vy_leg2 * t1779 - minus_gcross_vy_leg2 * t1773
-            - minus_minus_grod_vy_leg2 * t1662;
-        let t1793 = gcross_vz_leg2 * t1773 + minus_gcylinder_vz_leg2 * t1779
-            - grod_vz_leg2 * t1662;
-        let t1803 = t98 * t1629;
-        let t1807 = t1656 - t1753;
-        let t1810 = t870 * minus_rate_cross_leg2 + c_cylinder_leg2 * t1778
-            - s_cylinder_leg2 * t1807;
-        let t1814 = gcylinder_vx_leg2 * t1803 - minus_gcross_vx_leg2 * t1810
-            - grod_vx_leg2 * t1582;
-        let t1819 = minus_minus_grod_vy_leg2 * t1582 + minus_gcross_vy_leg2 * t1810
-            + minus_gcylinder_vy_leg2 * t1803;
-        let t1822 = gcross_vz_leg2 * t1810 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t1833 = t98 * t1701 + t1807;
-        let t1837 = t254 * t1584 - c_cylinder_leg2 * t1771;
-        let t1841 = gcylinder_vx_leg2 * t1833 - minus_gcross_vx_leg2 * t1837
-            - grod_vx_leg2 * t890;
-        let t1846 = minus_minus_grod_vy_leg2 * t890 + minus_gcross_vy_leg2 * t1837
-            + minus_gcylinder_vy_leg2 * t1833;
-        let t1851 = gcross_vz_leg2 * t1837 - minus_gcylinder_vz_leg2 * t1833
-            - grod_vz_leg2 * t890;
-        let t1861 = 9.81 + t1572;
-        let gcross_vx_leg3 = t247 * t904;
-        let t1884 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1885 = rate_cylinder_leg3 * t1884;
-        let t1886 = t1170 + t1212;
-        let t1888 = t1180 + t1193;
-        let t1891 = t1162 + t1232;
-        let t1893 = t901 * t1886 - t904 * t1888 - minus_s_cross_leg3 * t1891;
-        let t1894 = t119 * t1885;
-        let t1897 = actuator_velocities[2] + actuator_velocities[2];
-        let minus_rate_dot_cross_leg3 = t247 * (t1893 + t1894 + t1894 - t913 * t1897);
-        let t1901 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1903 = t1885 + t1885 - t1901;
-        let t1904 = c_cylinder_leg3 * t1903;
-        let gcylinder_vx_leg3 = t919 * t120;
-        let t1907 = t913 * t1884;
-        let t1908 = gcylinder_vx_leg3 * t1907;
-        let t1909 = gcross_vx_leg3 * t1904 + t1908;
-        let gcylinder_vy_leg3 = t923 * t120;
-        let t1911 = gcylinder_vy_leg3 * t1907;
-        let minus_gcross_vy_leg3 = t247 * t901;
-        let t1914 = t1911 - minus_gcross_vy_leg3 * t1904;
-        let gcross_vz_leg3 = t247 * minus_s_cross_leg3;
-        let minus_gcylinder_vz_leg3 = t926 * t120;
-        let t1918 = minus_gcylinder_vz_leg3 * t1907;
-        let t1919 = gcross_vz_leg3 * t1904 - t1918;
+        let t1286 = t1281 - gcross_wz_leg1 * t1244;
+        let t1287 = t1229 * t1229;
+        let t1288 = t791 - t1287;
+        let t1291 = t1241 - t1244 * t1242;
+        let t1293 = gcylinder_vx_leg1 * t1288 - minus_gcross_vx_leg1 * t1291;
+        let t1296 = gcross_vy_leg1 * t1291 - minus_gcylinder_vy_leg1 * t1288;
+        let t1299 = gcross_vz_leg1 * t1291 + gcylinder_vz_leg1 * t1288;
+        let t1302 = gcross_wx_leg1 * t1291 + gcylinder_wx_leg1 * t1288;
+        let t1305 = gcylinder_wy_leg1 * t1288 - minus_gcross_wy_leg1 * t1291;
+        let t1308 = gcross_wz_leg1 * t1291 - minus_gcylinder_wz_leg1 * t1288;
+        let t1313 = t796 * t1187 - t800 * t1206 + t803 * t1226;
+        let t1315 = rate_cylinder_leg1 * t1233 - t1313;
+        let t1316 = t63 * t1315;
+        let rate_dot_cylinder_leg1 = t1247 - t1316;
+        let t1318 = t1247 + rate_dot_cylinder_leg1;
+        let t1322 = c_cylinder_leg1 * t1318 + minus_s_cylinder_leg1 * (t807 - t791);
+        let t1324 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1326 = minus_gcross_vx_leg1 * t1322 + gcylinder_vx_leg1 * t1324;
+        let t1329 = gcross_vy_leg1 * t1322 + minus_gcylinder_vy_leg1 * t1324;
+        let t1332 = gcross_vz_leg1 * t1322 - gcylinder_vz_leg1 * t1324;
+        let t1335 = gcross_wx_leg1 * t1322 - gcylinder_wx_leg1 * t1324;
+        let t1338 = minus_gcross_wy_leg1 * t1322 + gcylinder_wy_leg1 * t1324;
+        let t1341 = gcross_wz_leg1 * t1322 + minus_gcylinder_wz_leg1 * t1324;
+        let t1343 = t1248 - minus_gcross_vx_leg1 * t1243;
+        let t1345 = gcross_vy_leg1 * t1243 - t1251;
+        let t1347 = gcross_vz_leg1 * t1243 + t1258;
+        let t1349 = gcross_wx_leg1 * t1243 + t1267;
+        let t1351 = t1276 - minus_gcross_wy_leg1 * t1243;
+        let t1353 = gcross_wz_leg1 * t1243 - t1281;
+        let t1357 = c_cylinder_leg1 * (t1287 - t807) - minus_s_cylinder_leg1 * t1316;
+        let t1360 = minus_gcross_vx_leg1 * t1357 + gcylinder_vx_leg1 * t1238;
+        let t1363 = gcross_vy_leg1 * t1357 + minus_gcylinder_vy_leg1 * t1238;
+        let t1366 = gcross_vz_leg1 * t1357 - gcylinder_vz_leg1 * t1238;
+        let t1369 = gcross_wx_leg1 * t1357 - gcylinder_wx_leg1 * t1238;
+        let t1372 = minus_gcross_wy_leg1 * t1357 + gcylinder_wy_leg1 * t1238;
+        let t1375 = gcross_wz_leg1 * t1357 + minus_gcylinder_wz_leg1 * t1238;
+        let t1376 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
+        let t1377 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
+        let t1378 = gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
+        let t1379 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
+        let t1380 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
+        let t1381 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
+        let t1382 = 9.81 * t793;
+        let t1384 = 9.81 * grod_vz_leg1;
+        let t1402 = t63 * t1384;
+        let t1405 = 9.81 * minus_s_cross_leg1;
+        let t1406 = c_cylinder_leg1 * t1405;
+        let t1408 = 9.81 * t803;
+        let t1418 = 9.81 * c_cross_leg1;
+        let t1426 = t1228 - t1405;
+        let t1428 = t52 * t1240 - minus_s_cylinder_leg1 * t1426;
+        let t1433 = actuator_accelerations[0] - (t809 - t1384);
+        let t1434 = t62 * (t1287 + t807) + t1433;
+        let t1438 = minus_gcross_vx_leg1 * t1428 + gcylinder_vx_leg1 * t1434
+            + grod_vx_leg1 * t1318;
+        let t1443 = gcross_vy_leg1 * t1428 + minus_gcylinder_vy_leg1 * t1434
+            - minus_minus_grod_vy_leg1 * t1318;
+        let t1448 = gcross_vz_leg1 * t1428 - gcylinder_vz_leg1 * t1434
+            - grod_vz_leg1 * t1318;
+        let t1460 = t1313 + t1408;
+        let t1463 = t788 * minus_rate_cross_leg1 + c_cylinder_leg1 * t1433
+            + minus_s_cylinder_leg1 * t1460;
+        let t1468 = minus_gcross_vx_leg1 * t1463 + t796 * t1238 + grod_vx_leg1 * t1324;
+        let t1473 = gcross_vy_leg1 * t1463 + t800 * t1238
+            - minus_minus_grod_vy_leg1 * t1324;
+        let t1476 = gcross_vz_leg1 * t1463 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t1488 = t62 * t1244 + c_cylinder_leg1 * t1426;
+        let t1490 = t1460 - t1315;
+        let t1494 = minus_gcross_vx_leg1 * t1488 + gcylinder_vx_leg1 * t1490
+            - grod_vx_leg1 * t808;
+        let t1499 = minus_minus_grod_vy_leg1 * t808 + gcross_vy_leg1 * t1488
+            + minus_gcylinder_vy_leg1 * t1490;
+        let t1504 = gcylinder_vz_leg1 * t1490 - gcross_vz_leg1 * t1488
+            - grod_vz_leg1 * t808;
+        let t1514 = t1151 + 9.81;
+        let t1515 = t1225 + t1514;
+        let gcylinder_vx_leg2 = t866 * t103;
+        let t1538 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t1539 = t860 * t1538;
+        let t1540 = gcylinder_vx_leg2 * t1539;
+        let minus_gcross_vx_leg2 = t101 * t827;
+        let t1542 = t1184 - t1183;
+        let t1543 = t1176 - t1181;
+        let t1545 = t1169 - (t1542 + t1543);
+        let t1547 = t1203 - t1202;
+        let t1548 = t1195 - t1200;
+        let t1550 = t1159 - (t1547 + t1548);
+        let t1553 = t1223 - t1222;
+        let t1554 = t1215 - t1220;
+        let t1555 = t1553 + t1554;
+        let t1556 = t1151 - t1555;
+        let t1558 = t827 * t1545 + t837 * t1550 - minus_s_cross_leg2 * t1556;
+        let t1559 = 2.0 * actuator_velocities[1];
+        let t1561 = t1558 - t860 * t1559;
+        let t1562 = t1561 / t97;
+        let t1563 = t100 * t1562;
+        let t1564 = t1563 / t97;
+        let t1566 = t1540 + minus_gcross_vx_leg2 * t1564;
+        let minus_gcross_vy_leg2 = t101 * t837;
+        let minus_gcylinder_vy_leg2 = t870 * t103;
+        let t1570 = minus_gcylinder_vy_leg2 * t1539;
+        let t1571 = t1570 - minus_gcross_vy_leg2 * t1564;
+        let gcross_vz_leg2 = t101 * minus_s_cross_leg2;
+        let minus_gcylinder_vz_leg2 = t873 * t103;
+        let t1575 = minus_gcylinder_vz_leg2 * t1539;
+        let t1576 = gcross_vz_leg2 * t1564 + t1575;
+        let minus_gcross_wx_leg2 = t83 * gcross_vz_leg2 + t74 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t83 * minus_gcylinder_vz_leg2
+            - t74 * minus_gcylinder_vy_leg2;
+        let t1584 = gcylinder_wx_leg2 * t1539;
+        let t1585 = minus_gcross_wx_leg2 * t1564 + t1584;
+        let minus_gcylinder_wy_leg2 = t74 * gcylinder_vx_leg2
+            + t77 * minus_gcylinder_vz_leg2;
+        let t1589 = minus_gcylinder_wy_leg2 * t1539;
+        let minus_minus_gcross_wy_leg2 = t74 * minus_gcross_vx_leg2
+            + t77 * gcross_vz_leg2;
+        let t1594 = t1589 + minus_minus_gcross_wy_leg2 * t1564;
+        let gcross_wz_leg2 = t77 * minus_gcross_vy_leg2 - t83 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t77 * minus_gcylinder_vy_leg2
+            + t83 * gcylinder_vx_leg2;
+        let t1602 = minus_minus_gcylinder_wz_leg2 * t1539;
+        let t1603 = t1602 - gcross_wz_leg2 * t1564;
+        let t1604 = t1538 * t1538;
+        let t1605 = t861 - t1604;
+        let t1607 = rate_cylinder_leg2 * t860;
+        let t1608 = t1538 * t875;
+        let minus_rate_dot_cross_leg2 = t101 * (t1561 + t1608 + t1608);
+        let t1612 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1614 = t1607 + t1612 + t1607;
+        let t1617 = c_cylinder_leg2 * t1614 + s_cylinder_leg2 * t1562;
+        let t1619 = gcylinder_vx_leg2 * t1605 - minus_gcross_vx_leg2 * t1617;
+        let t1622 = minus_gcross_vy_leg2 * t1617 + minus_gcylinder_vy_leg2 * t1605;
+        let t1625 = gcross_vz_leg2 * t1617 - minus_gcylinder_vz_leg2 * t1605;
+        let t1628 = gcylinder_wx_leg2 * t1605 - minus_gcross_wx_leg2 * t1617;
+        let t1631 = minus_minus_gcross_wy_leg2 * t1617 - minus_gcylinder_wy_leg2 * t1605;
+        let t1634 = gcross_wz_leg2 * t1617 + minus_minus_gcylinder_wz_leg2 * t1605;
+        let t1639 = t866 * t1545 - t870 * t1550 - t873 * t1556;
+        let t1641 = t1639 - rate_cylinder_leg2 * t1559;
+        let t1642 = t103 * t1641;
+        let rate_dot_cylinder_leg2 = t1642 - t1539;
+        let t1644 = rate_dot_cylinder_leg2 - t1539;
+        let t1648 = c_cylinder_leg2 * t1644 - s_cylinder_leg2 * (t877 - t861);
+        let t1650 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1652 = minus_gcross_vx_leg2 * t1648 + gcylinder_vx_leg2 * t1650;
+        let t1655 = minus_gcylinder_vy_leg2 * t1650 - minus_gcross_vy_leg2 * t1648;
+        let t1658 = gcross_vz_leg2 * t1648 + minus_gcylinder_vz_leg2 * t1650;
+        let t1661 = minus_gcross_wx_leg2 * t1648 + gcylinder_wx_leg2 * t1650;
+        let t1664 = minus_minus_gcross_wy_leg2 * t1648 + minus_gcylinder_wy_leg2 * t1650;
+        let t1667 = gcross_wz_leg2 * t1648 - minus_minus_gcylinder_wz_leg2 * t1650;
+        let t1668 = minus_rate_dot_cross_leg2 - t1564;
+        let t1670 = minus_gcross_vx_leg2 * t1668 - t1540;
+        let t1672 = minus_gcross_vy_leg2 * t1668 + t1570;
+        let t1674 = t1575 - gcross_vz_leg2 * t1668;
+        let t1676 = t1584 - minus_gcross_wx_leg2 * t1668;
+        let t1678 = t1589 - minus_minus_gcross_wy_leg2 * t1668;
+        let t1680 = t1602 + gcross_wz_leg2 * t1668;
+        let t1685 = c_cylinder_leg2 * (t1604 - t877) - s_cylinder_leg2 * t1642;
+        let t1687 = gcylinder_vx_leg2 * t1612 - minus_gcross_vx_leg2 * t1685;
+        let t1690 = minus_gcross_vy_leg2 * t1685 + minus_gcylinder_vy_leg2 * t1612;
+        let t1693 = gcross_vz_leg2 * t1685 - minus_gcylinder_vz_leg2 * t1612;
+        let t1696 = gcylinder_wx_leg2 * t1612 - minus_gcross_wx_leg2 * t1685;
+        let t1699 = minus_minus_gcross_wy_leg2 * t1685 - minus_gcylinder_wy_leg2 * t1612;
+        let t1702 = gcross_wz_leg2 * t1685 + minus_minus_gcylinder_wz_leg2 * t1612;
+        let t1703 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t1704 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t1705 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t1706 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t1707 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t1708 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t1709 = 9.81 * t864;
+        let t1711 = 9.81 * grod_vz_leg2;
+        let t1729 = t1711 / t97;
+        let t1732 = 9.81 * minus_s_cross_leg2;
+        let t1733 = c_cylinder_leg2 * t1732;
+        let t1735 = 9.81 * t873;
+        let t1745 = 9.81 * c_cross_leg2;
+        let t1753 = t1558 - t1732;
+        let t1755 = t100 * t1614 + s_cylinder_leg2 * t1753;
+        let t1760 = actuator_accelerations[1] - (t879 - t1711);
+        let t1761 = t97 * (t1604 + t877) + t1760;
+        let t1765 = minus_gcross_vx_leg2 * t1755 + gcylinder_vx_leg2 * t1761
+            + grod_vx_leg2 * t1644;
+        let t1770 = minus_gcylinder_vy_leg2 * t1761 - minus_gcross_vy_leg2 * t1755
+            - minus_minus_grod_vy_leg2 * t1644;
+        let t1775 = gcross_vz_leg2 * t1755 + minus_gcylinder_vz_leg2 * t1761
+            - grod_vz_leg2 * t1644;
+        let t1788 = t1639 - t1735;
+        let t1791 = t858 * minus_rate_cross_leg2 + c_cylinder_leg2 * t1760
+            - s_cylinder_leg2 * t1788;
+        let t1795 = t866 * t1612 - minus_gcross_vx_leg2 * t1791 - grod_vx_leg2 * t1650;
+        let t1800 = minus_minus_grod_vy_leg2 * t1650 + minus_gcross_vy_leg2 * t1791
+            + t870 * t1612;
+        let t1803 = gcross_vz_leg2 * t1791 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t1813 = t1641 + t1788;
+        let t1816 = t1563 + c_cylinder_leg2 * t1753;
+        let t1820 = gcylinder_vx_leg2 * t1813 + minus_gcross_vx_leg2 * t1816
+            - grod_vx_leg2 * t878;
+        let t1825 = minus_minus_grod_vy_leg2 * t878 + minus_gcylinder_vy_leg2 * t1813
+            - minus_gcross_vy_leg2 * t1816;
+        let t1830 = gcross_vz_leg2 * t1816 + minus_gcylinder_vz_leg2 * t1813
+            + grod_vz_leg2 * t878;
+        let t1840 = t1514 - t1555;
+        let gcross_vx_leg3 = t892 / t129;
+        let t1863 = t1159 + t1201;
+        let t1865 = t1169 + t1182;
+        let t1868 = t1151 + t1221;
+        let t1870 = t889 * t1863 - t892 * t1865 - minus_s_cross_leg3 * t1868;
+        let t1871 = 2.0 * actuator_velocities[2];
+        let t1873 = t1870 - t901 * t1871;
+        let t1874 = t1873 / t126;
+        let t1875 = c_cylinder_leg3 * t1874;
+        let gcylinder_vx_leg3 = t907 * t131;
+        let t1878 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1879 = t901 * t1878;
+        let t1880 = gcylinder_vx_leg3 * t1879;
+        let t1881 = t1880 - gcross_vx_leg3 * t1875;
+        let gcylinder_vy_leg3 = t911 * t131;
+        let t1883 = gcylinder_vy_leg3 * t1879;
+        let minus_gcross_vy_leg3 = t889 / t129;
+        let t1886 = t1883 + minus_gcross_vy_leg3 * t1875;
+        let gcross_vz_leg3 = minus_s_cross_leg3 / t129;
+        let minus_gcylinder_vz_leg3 = t914 * t131;
+        let t1890 = minus_gcylinder_vz_leg3 * t1879;
+        let t1891 = gcross_vz_leg3 * t1875 + t1890;
         let gcross_wx_leg3 = t26 * gcross_vz_leg3 + t44 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t26 * minus_gcylinder_vz_leg3
             + t44 * gcylinder_vy_leg3;
-        let t1927 = minus_gcylinder_wx_leg3 * t1907;
-        let t1928 = gcross_wx_leg3 * t1904 - t1927;
+        let t1899 = minus_gcylinder_wx_leg3 * t1879;
+        let t1900 = gcross_wx_leg3 * t1875 + t1899;
         let gcross_wy_leg3 = t44 * gcross_vx_leg3 - t12 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t44 * gcylinder_vx_leg3 + t12 * minus_gcylinder_vz_leg3;
-        let t1936 = gcylinder_wy_leg3 * t1907;
-        let t1937 = gcross_wy_leg3 * t1904 + t1936;
+        let t1908 = gcylinder_wy_leg3 * t1879;
+        let t1909 = t1908 - gcross_wy_leg3 * t1875;
         let gcylinder_wz_leg3 = t12 * gcylinder_vy_leg3 - t26 * gcylinder_vx_leg3;
-        let t1941 = gcylinder_wz_leg3 * t1907;
+        let t1913 = gcylinder_wz_leg3 * t1879;
         let minus_gcross_wz_leg3 = t12 * minus_gcross_vy_leg3 + t26 * gcross_vx_leg3;
-        let t1946 = t1941 - minus_gcross_wz_leg3 * t1904;
-        let t1947 = rate_cylinder_leg3 * t913;
-        let t1948 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1950 = t1947 + t1948 + t1947;
-        let t1953 = c_cylinder_leg3 * t1950 - s_cylinder_leg3 * t1903;
-        let t1955 = t1884 * t1884;
-        let t1956 = t914 - t1955;
-        let t1958 = gcross_vx_leg3 * t1953 + gcylinder_vx_leg3 * t1956;
-        let t1961 = gcylinder_vy_leg3 * t1956 - minus_gcross_vy_leg3 * t1953;
-        let t1964 = gcross_vz_leg3 * t1953 - minus_gcylinder_vz_leg3 * t1956;
-        let t1967 = gcross_wx_leg3 * t1953 - minus_gcylinder_wx_leg3 * t1956;
-        let t1970 = gcross_wy_leg3 * t1953 + gcylinder_wy_leg3 * t1956;
-        let t1973 = gcylinder_wz_leg3 * t1956 - minus_gcross_wz_leg3 * t1953;
-        let t1978 = t919 * t1888 + t923 * t1886 - t926 * t1891;
-        let rate_dot_cylinder_leg3 = t120
-            * (t1978 - t119 * t1907 - rate_cylinder_leg3 * t1897);
-        let t1984 = rate_dot_cylinder_leg3 - t1907;
-        let t1988 = c_cylinder_leg3 * t1984 - s_cylinder_leg3 * (t930 - t914);
-        let t1991 = gcross_vx_leg3 * t1988 - gcylinder_vx_leg3 * t1901;
-        let t1994 = minus_gcross_vy_leg3 * t1988 + gcylinder_vy_leg3 * t1901;
-        let t1997 = gcross_vz_leg3 * t1988 + minus_gcylinder_vz_leg3 * t1901;
-        let t2000 = gcross_wx_leg3 * t1988 + minus_gcylinder_wx_leg3 * t1901;
-        let t2003 = gcross_wy_leg3 * t1988 - gcylinder_wy_leg3 * t1901;
-        let t2006 = minus_gcross_wz_leg3 * t1988 + gcylinder_wz_leg3 * t1901;
-        let t2007 = s_cylinder_leg3 * t1950;
-        let t2009 = gcross_vx_leg3 * t2007 + t1908;
-        let t2011 = minus_gcross_vy_leg3 * t2007 - t1911;
-        let t2013 = t1918 - gcross_vz_leg3 * t2007;
-        let t2015 = t1927 - gcross_wx_leg3 * t2007;
-        let t2017 = gcross_wy_leg3 * t2007 + t1936;
-        let t2019 = minus_gcross_wz_leg3 * t2007 - t1941;
-        let t2022 = t1907 + rate_dot_cylinder_leg3;
-        let t2024 = c_cylinder_leg3 * (t1955 - t930) - s_cylinder_leg3 * t2022;
-        let t2027 = gcross_vx_leg3 * t2024 + gcylinder_vx_leg3 * t1948;
-        let t2030 = gcylinder_vy_leg3 * t1948 - minus_gcross_vy_leg3 * t2024;
-        let t2033 = gcross_vz_leg3 * t2024 - minus_gcylinder_vz_leg3 * t1948;
-        let t2036 = gcross_wx_leg3 * t2024 - minus_gcylinder_wx_leg3 * t1948;
-        let t2039 = gcross_wy_leg3 * t2024 + gcylinder_wy_leg3 * t1948;
-        let t2042 = gcylinder_wz_leg3 * t1948 - minus_gcross_wz_leg3 * t2024;
-        let t2043 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t2044 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t2045 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t2046 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t2047 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t2048 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t2049 = 9.81 * t916;
-        let t2051 = 9.81 * grod_vz_leg3;
-        let t2069 = t120 * t2051;
-        let t2072 = 9.81 * minus_s_cross_leg3;
-        let t2073 = c_cylinder_leg3 * t2072;
-        let t2075 = 9.81 * t926;
-        let t2085 = 9.81 * c_cross_leg3;
-        let t2093 = t1893 - t2072;
-        let t2095 = t246 * t1950 + s_cylinder_leg3 * t2093;
-        let t2100 = actuator_accelerations[2] - (t932 - t2051);
-        let t2101 = t119 * (t1955 + t930) + t2100;
-        let t2105 = gcross_vx_leg3 * t2095 - gcylinder_vx_leg3 * t2101
-            - minus_minus_grod_vx_leg3 * t1984;
-        let t2110 = minus_gcross_vy_leg3 * t2095 + gcylinder_vy_leg3 * t2101
-            + grod_vy_leg3 * t1984;
-        let t2115 = gcross_vz_leg3 * t2095 + minus_gcylinder_vz_leg3 * t2101
-            - grod_vz_leg3 * t1984;
-        let t2127 = t1978 - t2075;
-        let t2130 = t911 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2100
-            - s_cylinder_leg3 * t2127;
-        let t2132 = t119 * t1948;
-        let t2136 = gcross_vx_leg3 * t2130 + gcylinder_vx_leg3 * t2132
-            - minus_minus_grod_vx_leg3 * t1901;
-        let t2141 = gcylinder_vy_leg3 * t2132 - minus_gcross_vy_leg3 * t2130
-            - grod_vy_leg3 * t1901;
-        let t2144 = gcross_vz_leg3 * t2130 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2156 = t246 * t1903 - c_cylinder_leg3 * t2093;
-        let t2159 = t119 * t2022 + t2127;
-        let t2163 = gcross_vx_leg3 * t2156 + gcylinder_vx_leg3 * t2159
-            - minus_minus_grod_vx_leg3 * t931;
-        let t2168 = gcylinder_vy_leg3 * t2159 - minus_gcross_vy_leg3 * t2156
-            - grod_vy_leg3 * t931;
-        let t2173 = gcross_vz_leg3 * t2156 - minus_gcylinder_vz_leg3 * t2159
-            - grod_vz_leg3 * t931;
-        let t2183 = 9.81 + t1891;
-        let gcross_vx_leg4 = t263 * t945;
-        let t2206 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t2207 = rate_cylinder_leg4 * t2206;
-        let t2208 = t1170 + t1563;
-        let t2210 = t1180 + t1558;
-        let t2213 = t1162 + t1569;
-        let t2215 = t942 * t2208 - t945 * t2210 - minus_s_cross_leg4 * t2213;
-        let t2216 = t140 * t2207;
-        let t2219 = actuator_velocities[3] + actuator_velocities[3];
-        let minus_rate_dot_cross_leg4 = t263 * (t2215 + t2216 + t2216 - t954 * t2219);
-        let t2223 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t2225 = t2207 + t2207 - t2223;
-        let t2226 = c_cylinder_leg4 * t2225;
-        let gcylinder_vx_leg4 = t960 * t141;
-        let t2229 = t954 * t2206;
-        let t2230 = gcylinder_vx_leg4 * t2229;
-        let t2231 = gcross_vx_leg4 * t2226 + t2230;
-        let gcylinder_vy_leg4 = t964 * t141;
-        let t2233 = gcylinder_vy_leg4 * t2229;
-        let minus_gcross_vy_leg4 = t263 * t942;
-        let t2236 = t2233 - minus_gcross_vy_leg4 * t2226;
-        let gcross_vz_leg4 = t263 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t967 * t141;
-        let t2240 = minus_gcylinder_vz_leg4 * t2229;
-        let t2241 = gcross_vz_leg4 * t2226 - t2240;
-        let gcross_wx_leg4 = t79 * gcross_vz_leg4 + t87 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t79 * minus_gcylinder_vz_leg4
-            + t87 * gcylinder_vy_leg4;
-        let t2249 = minus_gcylinder_wx_leg4 * t2229;
-        let t2250 = gcross_wx_leg4 * t2226 - t2249;
-        let gcross_wy_leg4 = t87 * gcross_vx_leg4 - t73 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t87 * gcylinder_vx_leg4 + t73 * minus_gcylinder_vz_leg4;
-        let t2258 = gcylinder_wy_leg4 * t2229;
-        let t2259 = gcross_wy_leg4 * t2226 + t2258;
-        let gcylinder_wz_leg4 = t73 * gcylinder_vy_leg4 - t79 * gcylinder_vx_leg4;
-        let t2263 = gcylinder_wz_leg4 * t2229;
-        let minus_gcross_wz_leg4 = t73 * minus_gcross_vy_leg4 + t79 * gcross_vx_leg4;
-        let t2268 = t2263 - minus_gcross_wz_leg4 * t2226;
-        let t2269 = rate_cylinder_leg4 * t954;
-        let t2270 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t2272 = t2269 + t2270 + t2269;
-        let t2275 = c_cylinder_leg4 * t2272 - s_cylinder_leg4 * t2225;
-        let t2277 = t2206 * t2206;
-        let t2278 = t955 - t2277;
-        let t2280 = gcross_vx_leg4 * t2275 + gcylinder_vx_leg4 * t2278;
-        let t2283 = gcylinder_vy_leg4 * t2278 - minus_gcross_vy_leg4 * t2275;
-        let t2286 = gcross_vz_leg4 * t2275 - minus_gcylinder_vz_leg4 * t2278;
-        let t2289 = gcross_wx_leg4 * t2275 - minus_gcylinder_wx_leg4 * t2278;
-        let t2292 = gcross_wy_leg4 * t2275 + gcylinder_wy_leg4 * t2278;
-        let t2295 = gcylinder_wz_leg4 * t2278 - minus_gcross_wz_leg4 * t2275;
-        let t2300 = t960 * t2210 + t964 * t2208 - t967 * t2213;
-        let rate_dot_cylinder_leg4 = t141
-            * (t2300 - t140 * t2229 - rate_cylinder_leg4 * t2219);
-        let t2306 = rate_dot_cylinder_leg4 - t2229;
-        let t2310 = c_cylinder_leg4 * t2306 - s_cylinder_leg4 * (t971 - t955);
-        let t2313 = gcross_vx_leg4 * t2310 - gcylinder_vx_leg4 * t2223;
-        let t2316 = minus_gcross_vy_leg4 * t2310 + gcylinder_vy_leg4 * t2223;
-        let t2319 = gcross_vz_leg4 * t2310 + minus_gcylinder_vz_leg4 * t2223;
-        let t2322 = gcross_wx_leg4 * t2310 + minus_gcylinder_wx_leg4 * t2223;
-        let t2325 = gcross_wy_leg4 * t2310 - gcylinder_wy_leg4 * t2223;
-        let t2328 = minus_gcross_wz_leg4 * t2310 + gcylinder_wz_leg4 * t2223;
-        let t2329 = s_cylinder_leg4 * t2272;
-        let t2331 = gcross_vx_leg4 * t2329 + t2230;
-        let t2333 = minus_gcross_vy_leg4 * t2329 - t2233;
-        let t2335 = t2240 - gcross_vz_leg4 * t2329;
-        let t2337 = t2249 - gcross_wx_leg4 * t2329;
-        let t2339 = gcross_wy_leg4 * t2329 + t2258;
-        let t2341 = minus_gcross_wz_leg4 * t2329 - t2263;
-        let t2344 = t2229 + rate_dot_cylinder_leg4;
-        let t2346 = c_cylinder_leg4 * (t2277 - t971) - s_cylinder_leg4 * t2344;
-        let t2349 = gcross_vx_leg4 * t2346 + gcylinder_vx_leg4 * t2270;
-        let t2352 = gcylinder_vy_leg4 * t2270 - minus_gcross_vy_leg4 * t2346;
-        let t2355 = gcross_vz_leg4 * t2346 - minus_gcylinder_vz_leg4 * t2270;
-        let t2358 = gcross_wx_leg4 * t2346 - minus_gcylinder_wx_leg4 * t2270;
-        let t2361 = gcross_wy_leg4 * t2346 + gcylinder_wy_leg4 * t2270;
-        let t2364 = gcylinder_wz_leg4 * t2270 - minus_gcross_wz_leg4 * t2346;
-        let t2365 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t2366 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t2367 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t2368 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t2369 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t2370 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t2371 = 9.81 * t957;
-        let t2373 = 9.81 * grod_vz_leg4;
-        let t2391 = t141 * t2373;
-        let t2394 = 9.81 * minus_s_cross_leg4;
-        let t2395 = c_cylinder_leg4 * t2394;
-        let t2397 = 9.81 * t967;
-        let t2407 = 9.81 * c_cross_leg4;
-        let t2415 = t2215 - t2394;
-        let t2417 = t262 * t2272 + s_cylinder_leg4 * t2415;
-        let t2422 = actuator_accelerations[3] - (t973 - t2373);
-        let t2423 = t140 * (t2277 + t971) + t2422;
-        let t2427 = gcross_vx_leg4 * t2417 - gcylinder_vx_leg4 * t2423
-            - minus_minus_grod_vx_leg4 * t2306;
-        let t2432 = minus_gcross_vy_leg4 * t2417 + gcylinder_vy_leg4 * t2423
-            + grod_vy_leg4 * t2306;
-        let t2437 = gcross_vz_leg4 * t2417 + minus_gcylinder_vz_leg4 * t2423
-            - grod_vz_leg4 * t2306;
-        let t2449 = t2300 - t2397;
-        let t2452 = t952 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2422
-            - s_cylinder_leg4 * t2449;
-        let t2454 = t140 * t2270;
-        let t2458 = gcross_vx_leg4 * t2452 + gcylinder_vx_leg4 * t2454
-            - minus_minus_grod_vx_leg4 * t2223;
-        let t2463 = gcylinder_vy_leg4 * t2454 - minus_gcross_vy_leg4 * t2452
-            - grod_vy_leg4 * t2223;
-        let t2466 = gcross_vz_leg4 * t2452 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2478 = t262 * t2225 - c_cylinder_leg4 * t2415;
-        let t2481 = t140 * t2344 + t2449;
-        let t2485 = gcross_vx_leg4 * t2478 + gcylinder_vx_leg4 * t2481
-            - minus_minus_grod_vx_leg4 * t972;
-        let t2490 = gcylinder_vy_leg4 * t2481 - minus_gcross_vy_leg4 * t2478
-            - grod_vy_leg4 * t972;
-        let t2495 = gcross_vz_leg4 * t2478 - minus_gcylinder_vz_leg4 * t2481
-            - grod_vz_leg4 * t972;
-        let t2505 = 9.81 + t2213;
-        let gcross_vx_leg5 = t271 * t986;
-        let t2528 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t2529 = rate_cylinder_leg5 * t2528;
-        let t2530 = t1162 - t1235;
-        let t2532 = t1180 - t1196;
-        let t2534 = t1170 - t1215;
-        let t2537 = s_cross_leg5 * t2530 - (t986 * t2532 + t989 * t2534);
-        let t2538 = t161 * t2529;
-        let t2541 = actuator_velocities[4] + actuator_velocities[4];
-        let minus_rate_dot_cross_leg5 = t271 * (t2537 + t2538 + t2538 - t995 * t2541);
-        let t2545 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t2547 = t2529 + t2529 - t2545;
-        let t2548 = c_cylinder_leg5 * t2547;
-        let minus_gcylinder_vx_leg5 = t1005 * t162;
-        let t2551 = t995 * t2528;
-        let t2552 = minus_gcylinder_vx_leg5 * t2551;
-        let t2553 = gcross_vx_leg5 * t2548 - t2552;
-        let gcross_vy_leg5 = t271 * t989;
-        let gcylinder_vy_leg5 = t1001 * t162;
-        let t2557 = gcylinder_vy_leg5 * t2551;
-        let t2558 = gcross_vy_leg5 * t2548 + t2557;
-        let minus_gcross_vz_leg5 = t271 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t1008 * t162;
-        let t2562 = minus_gcylinder_vz_leg5 * t2551;
-        let t2563 = minus_gcross_vz_leg5 * t2548 + t2562;
+        let t1918 = t1913 + minus_gcross_wz_leg3 * t1875;
+        let t1919 = rate_cylinder_leg3 * t901;
+        let t1920 = t1878 * t916;
+        let minus_rate_dot_cross_leg3 = (t1873 + t1920 + t1920) / t129;
+        let t1924 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1926 = t1919 + t1924 + t1919;
+        let t1929 = c_cylinder_leg3 * t1926 + s_cylinder_leg3 * t1874;
+        let t1931 = t1878 * t1878;
+        let t1932 = t902 - t1931;
+        let t1934 = gcross_vx_leg3 * t1929 + gcylinder_vx_leg3 * t1932;
+        let t1937 = gcylinder_vy_leg3 * t1932 - minus_gcross_vy_leg3 * t1929;
+        let t1940 = gcross_vz_leg3 * t1929 - minus_gcylinder_vz_leg3 * t1932;
+        let t1943 = gcross_wx_leg3 * t1929 - minus_gcylinder_wx_leg3 * t1932;
+        let t1946 = gcross_wy_leg3 * t1929 + gcylinder_wy_leg3 * t1932;
+        let t1949 = gcylinder_wz_leg3 * t1932 - minus_gcross_wz_leg3 * t1929;
+        let t1954 = t907 * t1865 + t911 * t1863 - t914 * t1868;
+        let t1956 = t1954 - rate_cylinder_leg3 * t1871;
+        let t1957 = t1956 / t126;
+        let rate_dot_cylinder_leg3 = t1957 - t1879;
+        let t1959 = rate_dot_cylinder_leg3 - t1879;
+        let t1963 = c_cylinder_leg3 * t1959 - s_cylinder_leg3 * (t918 - t902);
+        let t1965 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1967 = gcross_vx_leg3 * t1963 - gcylinder_vx_leg3 * t1965;
+        let t1970 = minus_gcross_vy_leg3 * t1963 + gcylinder_vy_leg3 * t1965;
+        let t1973 = gcross_vz_leg3 * t1963 + minus_gcylinder_vz_leg3 * t1965;
+        let t1976 = gcross_wx_leg3 * t1963 + minus_gcylinder_wx_leg3 * t1965;
+        let t1979 = gcross_wy_leg3 * t1963 - gcylinder_wy_leg3 * t1965;
+        let t1982 = minus_gcross_wz_leg3 * t1963 + gcylinder_wz_leg3 * t1965;
+        let t1983 = s_cylinder_leg3 * t1926;
+        let t1985 = gcross_vx_leg3 * t1983 + t1880;
+        let t1987 = minus_gcross_vy_leg3 * t1983 - t1883;
+        let t1989 = t1890 - gcross_vz_leg3 * t1983;
+        let t1991 = t1899 - gcross_wx_leg3 * t1983;
+        let t1993 = gcross_wy_leg3 * t1983 + t1908;
+        let t1995 = minus_gcross_wz_leg3 * t1983 - t1913;
+        let t1999 = c_cylinder_leg3 * (t1931 - t918) - s_cylinder_leg3 * t1957;
+        let t2001 = gcylinder_vx_leg3 * t1924;
+        let t2002 = gcross_vx_leg3 * t1999 + t2001;
+        let t2003 = gcylinder_vy_leg3 * t1924;
+        let t2005 = t2003 - minus_gcross_vy_leg3 * t1999;
+        let t2008 = gcross_vz_leg3 * t1999 - minus_gcylinder_vz_leg3 * t1924;
+        let t2011 = gcross_wx_leg3 * t1999 - minus_gcylinder_wx_leg3 * t1924;
+        let t2014 = gcross_wy_leg3 * t1999 + gcylinder_wy_leg3 * t1924;
+        let t2017 = gcylinder_wz_leg3 * t1924 - minus_gcross_wz_leg3 * t1999;
+        let t2018 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t2019 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t2020 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t2021 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t2022 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t2023 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t2024 = 9.81 * t904;
+        let t2026 = 9.81 * grod_vz_leg3;
+        let t2044 = t2026 / t126;
+        let t2047 = 9.81 * minus_s_cross_leg3;
+        let t2048 = c_cylinder_leg3 * t2047;
+        let t2050 = 9.81 * t914;
+        let t2060 = 9.81 * c_cross_leg3;
+        let t2068 = t1870 - t2047;
+        let t2070 = t129 * t1926 + s_cylinder_leg3 * t2068;
+        let t2075 = actuator_accelerations[2] - (t920 - t2026);
+        let t2076 = t126 * (t1931 + t918) + t2075;
+        let t2080 = gcross_vx_leg3 * t2070 - gcylinder_vx_leg3 * t2076
+            - minus_minus_grod_vx_leg3 * t1959;
+        let t2085 = minus_gcross_vy_leg3 * t2070 + gcylinder_vy_leg3 * t2076
+            + grod_vy_leg3 * t1959;
+        let t2090 = gcross_vz_leg3 * t2070 + minus_gcylinder_vz_leg3 * t2076
+            - grod_vz_leg3 * t1959;
+        let t2102 = t1954 - t2050;
+        let t2105 = t899 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2075
+            - s_cylinder_leg3 * t2102;
+        let t2110 = gcross_vx_leg3 * t2105 + t126 * t2001
+            - minus_minus_grod_vx_leg3 * t1965;
+        let t2115 = t126 * t2003 - minus_gcross_vy_leg3 * t2105 - grod_vy_leg3 * t1965;
+        let t2118 = gcross_vz_leg3 * t2105 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2129 = c_cylinder_leg3 * (t2068 + t1873);
+        let t2131 = t1956 + t2102;
+        let t2135 = gcylinder_vx_leg3 * t2131 - gcross_vx_leg3 * t2129
+            - minus_minus_grod_vx_leg3 * t919;
+        let t2140 = gcylinder_vy_leg3 * t2131 + minus_gcross_vy_leg3 * t2129
+            - grod_vy_leg3 * t919;
+        let t2145 = gcross_vz_leg3 * t2129 + minus_gcylinder_vz_leg3 * t2131
+            + grod_vz_leg3 * t919;
+        let t2155 = 9.81 + t1868;
+        let gcross_vx_leg4 = t158 * t933;
+        let t2178 = t1159 + t1547;
+        let t2180 = t1169 + t1542;
+        let t2183 = t1151 + t1553;
+        let t2185 = t930 * t2178 - t933 * t2180 - minus_s_cross_leg4 * t2183;
+        let t2186 = actuator_velocities[3] + actuator_velocities[3];
+        let t2188 = t2185 - t942 * t2186;
+        let t2189 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t2190 = t2189 * t958;
+        let minus_rate_dot_cross_leg4 = t158 * (t2188 + t2190 + t2190);
+        let t2194 = rate_cylinder_leg4 * t942;
+        let t2195 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2197 = t2194 + t2195 + t2194;
+        let t2198 = s_cylinder_leg4 * t2197;
+        let t2199 = t2198 - minus_rate_dot_cross_leg4;
+        let gcylinder_vx_leg4 = t949 * t944;
+        let t2202 = t942 * t2189;
+        let t2203 = gcylinder_vx_leg4 * t2202;
+        let t2204 = gcross_vx_leg4 * t2199 + t2203;
+        let gcylinder_vy_leg4 = t953 * t944;
+        let t2206 = gcylinder_vy_leg4 * t2202;
+        let minus_gcross_vy_leg4 = t158 * t930;
+        let t2209 = t2206 - minus_gcross_vy_leg4 * t2199;
+        let gcross_vz_leg4 = t158 * minus_s_cross_leg4;
+        let minus_gcylinder_vz_leg4 = t956 * t944;
+        let t2213 = minus_gcylinder_vz_leg4 * t2202;
+        let t2214 = gcross_vz_leg4 * t2199 - t2213;
+        let gcross_wx_leg4 = t81 * gcross_vz_leg4 + t72 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t81 * minus_gcylinder_vz_leg4
+            + t72 * gcylinder_vy_leg4;
+        let t2222 = minus_gcylinder_wx_leg4 * t2202;
+        let t2223 = gcross_wx_leg4 * t2199 - t2222;
+        let gcross_wy_leg4 = t72 * gcross_vx_leg4 - t75 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t72 * gcylinder_vx_leg4 + t75 * minus_gcylinder_vz_leg4;
+        let t2231 = gcylinder_wy_leg4 * t2202;
+        let t2232 = gcross_wy_leg4 * t2199 + t2231;
+        let gcylinder_wz_leg4 = t75 * gcylinder_vy_leg4 - t81 * gcylinder_vx_leg4;
+        let t2236 = gcylinder_wz_leg4 * t2202;
+        let minus_gcross_wz_leg4 = t75 * minus_gcross_vy_leg4 + t81 * gcross_vx_leg4;
+        let t2241 = t2236 - minus_gcross_wz_leg4 * t2199;
+        let t2245 = c_cylinder_leg4 * t2197 + s_cylinder_leg4 * (t2188 / t154);
+        let t2247 = t2189 * t2189;
+        let t2248 = t943 - t2247;
+        let t2250 = gcross_vx_leg4 * t2245 + gcylinder_vx_leg4 * t2248;
+        let t2253 = gcylinder_vy_leg4 * t2248 - minus_gcross_vy_leg4 * t2245;
+        let t2256 = gcross_vz_leg4 * t2245 - minus_gcylinder_vz_leg4 * t2248;
+        let t2259 = gcross_wx_leg4 * t2245 - minus_gcylinder_wx_leg4 * t2248;
+        let t2262 = gcross_wy_leg4 * t2245 + gcylinder_wy_leg4 * t2248;
+        let t2265 = gcylinder_wz_leg4 * t2248 - minus_gcross_wz_leg4 * t2245;
+        let t2270 = t949 * t2180 + t953 * t2178 - t956 * t2183;
+        let t2272 = t2270 - rate_cylinder_leg4 * t2186;
+        let t2273 = t2272 / t154;
+        let rate_dot_cylinder_leg4 = t2273 - t2202;
+        let t2275 = rate_dot_cylinder_leg4 - t2202;
+        let t2279 = c_cylinder_leg4 * t2275 - s_cylinder_leg4 * (t960 - t943);
+        let t2281 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2283 = gcross_vx_leg4 * t2279 - gcylinder_vx_leg4 * t2281;
+        let t2286 = minus_gcross_vy_leg4 * t2279 + gcylinder_vy_leg4 * t2281;
+        let t2289 = gcross_vz_leg4 * t2279 + minus_gcylinder_vz_leg4 * t2281;
+        let t2292 = gcross_wx_leg4 * t2279 + minus_gcylinder_wx_leg4 * t2281;
+        let t2295 = gcross_wy_leg4 * t2279 - gcylinder_wy_leg4 * t2281;
+        let t2298 = minus_gcross_wz_leg4 * t2279 + gcylinder_wz_leg4 * t2281;
+        let t2300 = gcross_vx_leg4 * t2198 + t2203;
+        let t2302 = minus_gcross_vy_leg4 * t2198 - t2206;
+        let t2304 = t2213 - gcross_vz_leg4 * t2198;
+        let t2306 = t2222 - gcross_wx_leg4 * t2198;
+        let t2308 = gcross_wy_leg4 * t2198 + t2231;
+        let t2310 = minus_gcross_wz_leg4 * t2198 - t2236;
+        let t2314 = c_cylinder_leg4 * (t2247 - t960) - s_cylinder_leg4 * t2273;
+        let t2317 = gcross_vx_leg4 * t2314 + gcylinder_vx_leg4 * t2195;
+        let t2318 = gcylinder_vy_leg4 * t2195;
+        let t2320 = t2318 - minus_gcross_vy_leg4 * t2314;
+        let t2323 = gcross_vz_leg4 * t2314 - minus_gcylinder_vz_leg4 * t2195;
+        let t2326 = gcross_wx_leg4 * t2314 - minus_gcylinder_wx_leg4 * t2195;
+        let t2329 = gcross_wy_leg4 * t2314 + gcylinder_wy_leg4 * t2195;
+        let t2332 = gcylinder_wz_leg4 * t2195 - minus_gcross_wz_leg4 * t2314;
+        let t2333 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t2334 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t2335 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t2336 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t2337 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t2338 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t2339 = 9.81 * t946;
+        let t2341 = 9.81 * grod_vz_leg4;
+        let t2359 = t944 * t2341;
+        let t2362 = 9.81 * minus_s_cross_leg4;
+        let t2363 = c_cylinder_leg4 * t2362;
+        let t2365 = 9.81 * t956;
+        let t2375 = 9.81 * c_cross_leg4;
+        let t2383 = t2185 - t2362;
+        let t2385 = t157 * t2197 + s_cylinder_leg4 * t2383;
+        let t2390 = actuator_accelerations[3] - (t962 - t2341);
+        let t2391 = t154 * (t2247 + t960) + t2390;
+        let t2395 = gcross_vx_leg4 * t2385 - gcylinder_vx_leg4 * t2391
+            - minus_minus_grod_vx_leg4 * t2275;
+        let t2400 = minus_gcross_vy_leg4 * t2385 + gcylinder_vy_leg4 * t2391
+            + grod_vy_leg4 * t2275;
+        let t2405 = gcross_vz_leg4 * t2385 + minus_gcylinder_vz_leg4 * t2391
+            - grod_vz_leg4 * t2275;
+        let t2417 = t2270 - t2365;
+        let t2420 = t940 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2390
+            - s_cylinder_leg4 * t2417;
+        let t2425 = gcross_vx_leg4 * t2420 + t949 * t2195
+            - minus_minus_grod_vx_leg4 * t2281;
+        let t2430 = t154 * t2318 - minus_gcross_vy_leg4 * t2420 - grod_vy_leg4 * t2281;
+        let t2433 = gcross_vz_leg4 * t2420 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2444 = c_cylinder_leg4 * (t2383 + t2188);
+        let t2446 = t2272 + t2417;
+        let t2450 = gcylinder_vx_leg4 * t2446 - gcross_vx_leg4 * t2444
+            - minus_minus_grod_vx_leg4 * t961;
+        let t2455 = gcylinder_vy_leg4 * t2446 + minus_gcross_vy_leg4 * t2444
+            - grod_vy_leg4 * t961;
+        let t2460 = gcross_vz_leg4 * t2444 + minus_gcylinder_vz_leg4 * t2446
+            + grod_vz_leg4 * t961;
+        let t2470 = 9.81 + t2183;
+        let gcross_vx_leg5 = t187 * t975;
+        let t2493 = t1151 - t1224;
+        let t2495 = t1169 - t1185;
+        let t2497 = t1159 - t1204;
+        let t2500 = s_cross_leg5 * t2493 - (t975 * t2495 + t978 * t2497);
+        let t2501 = 2.0 * actuator_velocities[4];
+        let t2503 = t2500 - t984 * t2501;
+        let t2504 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_rate_dot_cross_leg5 = t187 * (t2503 + 2.0 * (t2504 * t999));
+        let t2509 = rate_cylinder_leg5 * t984;
+        let t2510 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2512 = t2509 + t2510 + t2509;
+        let t2513 = s_cylinder_leg5 * t2512;
+        let t2514 = t2513 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t994 * t183;
+        let t2517 = t984 * t2504;
+        let t2518 = minus_gcylinder_vx_leg5 * t2517;
+        let t2519 = gcross_vx_leg5 * t2514 - t2518;
+        let gcross_vy_leg5 = t187 * t978;
+        let gcylinder_vy_leg5 = t990 * t183;
+        let t2523 = gcylinder_vy_leg5 * t2517;
+        let t2524 = gcross_vy_leg5 * t2514 + t2523;
+        let minus_gcross_vz_leg5 = t187 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t997 * t183;
+        let t2528 = minus_gcylinder_vz_leg5 * t2517;
+        let t2529 = minus_gcross_vz_leg5 * t2514 + t2528;
         let gcross_wx_leg5 = t29 * minus_gcross_vz_leg5 + t47 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t29 * minus_gcylinder_vz_leg5 + t47 * gcylinder_vy_leg5;
-        let t2571 = gcylinder_wx_leg5 * t2551;
-        let t2572 = gcross_wx_leg5 * t2548 + t2571;
+        let t2537 = gcylinder_wx_leg5 * t2517;
+        let t2538 = gcross_wx_leg5 * t2514 + t2537;
         let gcylinder_wy_leg5 = t47 * minus_gcylinder_vx_leg5
             - t15 * minus_gcylinder_vz_leg5;
-        let t2576 = gcylinder_wy_leg5 * t2551;
+        let t2542 = gcylinder_wy_leg5 * t2517;
         let minus_gcross_wy_leg5 = t47 * gcross_vx_leg5 + t15 * minus_gcross_vz_leg5;
-        let t2581 = t2576 - minus_gcross_wy_leg5 * t2548;
+        let t2547 = t2542 - minus_gcross_wy_leg5 * t2514;
         let gcross_wz_leg5 = t29 * gcross_vx_leg5 - t15 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t15 * gcylinder_vy_leg5
             + t29 * minus_gcylinder_vx_leg5;
-        let t2589 = minus_gcylinder_wz_leg5 * t2551;
-        let t2590 = gcross_wz_leg5 * t2548 - t2589;
-        let t2591 = rate_cylinder_leg5 * t995;
-        let t2592 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t2594 = t2591 + t2592 + t2591;
-        let t2597 = c_cylinder_leg5 * t2594 - s_cylinder_leg5 * t2547;
-        let t2599 = t2528 * t2528;
-        let t2600 = t996 - t2599;
-        let t2602 = gcross_vx_leg5 * t2597 - minus_gcylinder_vx_leg5 * t2600;
-        let t2605 = gcross_vy_leg5 * t2597 + gcylinder_vy_leg5 * t2600;
-        let t2608 = minus_gcross_vz_leg5 * t2597 + minus_gcylinder_vz_leg5 * t2600;
-        let t2611 = gcross_wx_leg5 * t2597 + gcylinder_wx_leg5 * t2600;
-        let t2614 = gcylinder_wy_leg5 * t2600 - minus_gcross_wy_leg5 * t2597;
-        let t2617 = gcross_wz_leg5 * t2597 - minus_gcylinder_wz_leg5 * t2600;
-        let t2622 = t1001 * t2534 - t1005 * t2532 - t1008 * t2530;
-        let rate_dot_cylinder_leg5 = t162
-            * (t2622 - t161 * t2551 - rate_cylinder_leg5 * t2541);
-        let t2628 = rate_dot_cylinder_leg5 - t2551;
-        let t2632 = c_cylinder_leg5 * t2628 - s_cylinder_leg5 * (t1012 - t996);
-        let t2635 = gcross_vx_leg5 * t2632 + minus_gcylinder_vx_leg5 * t2545;
-        let t2638 = gcross_vy_leg5 * t2632 - gcylinder_vy_leg5 * t2545;
-        let t2641 = minus_gcylinder_vz_leg5 * t2545 - minus_gcross_vz_leg5 * t2632;
-        let t2644 = gcross_wx_leg5 * t2632 - gcylinder_wx_leg5 * t2545;
-        let t2647 = minus_gcross_wy_leg5 * t2632 + gcylinder_wy_leg5 * t2545;
-        let t2650 = gcross_wz_leg5 * t2632 + minus_gcylinder_wz_leg5 * t2545;
-        let t2651 = s_cylinder_leg5 * t2594;
-        let t2653 = t2552 - gcross_vx_leg5 * t2651;
-        let t2655 = gcross_vy_leg5 * t2651 + t2557;
-        let t2657 = minus_gcross_vz_leg5 * t2651 + t2562;
-        let t2659 = gcross_wx_leg5 * t2651 + t2571;
-        let t2661 = minus_gcross_wy_leg5 * t2651 - t2576;
-        let t2663 = t2589 - gcross_wz_leg5 * t2651;
-        let t2666 = t2551 + rate_dot_cylinder_leg5;
-        let t2668 = c_cylinder_leg5 * (t2599 - t1012) - s_cylinder_leg5 * t2666;
-        let t2671 = gcross_vx_leg5 * t2668 - minus_gcylinder_vx_leg5 * t2592;
-        let t2674 = gcross_vy_leg5 * t2668 + gcylinder_vy_leg5 * t2592;
-        let t2677 = minus_gcross_vz_leg5 * t2668 + minus_gcylinder_vz_leg5 * t2592;
-        let t2680 = gcross_wx_leg5 * t2668 + gcylinder_wx_leg5 * t2592;
-        let t2683 = gcylinder_wy_leg5 * t2592 - minus_gcross_wy_leg5 * t2668;
-        let t2686 = gcross_wz_leg5 * t2668 - minus_gcylinder_wz_leg5 * t2592;
-        let t2687 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t2688 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t2689 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t2690 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t2691 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t2692 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t2693 = 9.81 * t999;
-        let t2695 = 9.81 * grod_vz_leg5;
-        let t2713 = t162 * t2695;
-        let t2716 = 9.81 * s_cross_leg5;
-        let t2717 = c_cylinder_leg5 * t2716;
-        let t2719 = 9.81 * t1008;
-        let t2729 = 9.81 * c_cross_leg5;
-        let t2737 = t2537 + t2716;
-        let t2739 = t270 * t2594 + s_cylinder_leg5 * t2737;
-        let t2744 = actuator_accelerations[4] - (t1014 - t2695);
-        let t2745 = t161 * (t2599 + t1012) + t2744;
-        let t2749 = gcross_vx_leg5 * t2739 + minus_gcylinder_vx_leg5 * t2745
-            - minus_minus_grod_vx_leg5 * t2628;
-        let t2754 = gcross_vy_leg5 * t2739 - gcylinder_vy_leg5 * t2745
-            - grod_vy_leg5 * t2628;
-        let t2759 = minus_gcylinder_vz_leg5 * t2745 - minus_gcross_vz_leg5 * t2739
-            - grod_vz_leg5 * t2628;
-        let t2771 = t2622 - t2719;
-        let t2774 = t993 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2744
-            - s_cylinder_leg5 * t2771;
-        let t2776 = t161 * t2592;
-        let t2780 = gcross_vx_leg5 * t2774 - minus_gcylinder_vx_leg5 * t2776
-            - minus_minus_grod_vx_leg5 * t2545;
-        let t2785 = gcross_vy_leg5 * t2774 + gcylinder_vy_leg5 * t2776
-            - grod_vy_leg5 * t2545;
-        let t2788 = minus_gcross_vz_leg5 * t2774
+        let t2555 = minus_gcylinder_wz_leg5 * t2517;
+        let t2556 = gcross_wz_leg5 * t2514 - t2555;
+        let t2560 = c_cylinder_leg5 * t2512 + s_cylinder_leg5 * (t183 * t2503);
+        let t2562 = t2504 * t2504;
+        let t2563 = t985 - t2562;
+        let t2565 = gcross_vx_leg5 * t2560 - minus_gcylinder_vx_leg5 * t2563;
+        let t2568 = gcross_vy_leg5 * t2560 + gcylinder_vy_leg5 * t2563;
+        let t2571 = minus_gcross_vz_leg5 * t2560 + minus_gcylinder_vz_leg5 * t2563;
+        let t2574 = gcross_wx_leg5 * t2560 + gcylinder_wx_leg5 * t2563;
+        let t2577 = gcylinder_wy_leg5 * t2563 - minus_gcross_wy_leg5 * t2560;
+        let t2580 = gcross_wz_leg5 * t2560 - minus_gcylinder_wz_leg5 * t2563;
+        let t2585 = t990 * t2497 - t994 * t2495 - t997 * t2493;
+        let t2587 = t2585 - rate_cylinder_leg5 * t2501;
+        let t2588 = t183 * t2587;
+        let rate_dot_cylinder_leg5 = t2588 - t2517;
+        let t2590 = rate_dot_cylinder_leg5 - t2517;
+        let t2594 = c_cylinder_leg5 * t2590 - s_cylinder_leg5 * (t1001 - t985);
+        let t2596 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2598 = gcross_vx_leg5 * t2594 + minus_gcylinder_vx_leg5 * t2596;
+        let t2601 = gcross_vy_leg5 * t2594 - gcylinder_vy_leg5 * t2596;
+        let t2604 = minus_gcylinder_vz_leg5 * t2596 - minus_gcross_vz_leg5 * t2594;
+        let t2607 = gcross_wx_leg5 * t2594 - gcylinder_wx_leg5 * t2596;
+        let t2610 = minus_gcross_wy_leg5 * t2594 + gcylinder_wy_leg5 * t2596;
+        let t2613 = gcross_wz_leg5 * t2594 + minus_gcylinder_wz_leg5 * t2596;
+        let t2615 = t2518 - gcross_vx_leg5 * t2513;
+        let t2617 = gcross_vy_leg5 * t2513 + t2523;
+        let t2619 = minus_gcross_vz_leg5 * t2513 + t2528;
+        let t2621 = gcross_wx_leg5 * t2513 + t2537;
+        let t2623 = minus_gcross_wy_leg5 * t2513 - t2542;
+        let t2625 = t2555 - gcross_wz_leg5 * t2513;
+        let t2629 = c_cylinder_leg5 * (t2562 - t1001) - s_cylinder_leg5 * t2588;
+        let t2631 = minus_gcylinder_vx_leg5 * t2510;
+        let t2632 = gcross_vx_leg5 * t2629 - t2631;
+        let t2634 = gcylinder_vy_leg5 * t2510;
+        let t2635 = gcross_vy_leg5 * t2629 + t2634;
+        let t2638 = minus_gcross_vz_leg5 * t2629 + minus_gcylinder_vz_leg5 * t2510;
+        let t2641 = gcross_wx_leg5 * t2629 + gcylinder_wx_leg5 * t2510;
+        let t2644 = gcylinder_wy_leg5 * t2510 - minus_gcross_wy_leg5 * t2629;
+        let t2647 = gcross_wz_leg5 * t2629 - minus_gcylinder_wz_leg5 * t2510;
+        let t2648 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t2649 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t2650 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t2651 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t2652 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t2653 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t2654 = 9.81 * t988;
+        let t2656 = 9.81 * grod_vz_leg5;
+        let t2674 = t2656 / t182;
+        let t2677 = 9.81 * s_cross_leg5;
+        let t2678 = c_cylinder_leg5 * t2677;
+        let t2680 = 9.81 * t997;
+        let t2690 = 9.81 * c_cross_leg5;
+        let t2698 = t2500 + t2677;
+        let t2700 = t186 * t2512 + s_cylinder_leg5 * t2698;
+        let t2705 = actuator_accelerations[4] - (t1003 - t2656);
+        let t2706 = t182 * (t2562 + t1001) + t2705;
+        let t2710 = gcross_vx_leg5 * t2700 + minus_gcylinder_vx_leg5 * t2706
+            - minus_minus_grod_vx_leg5 * t2590;
+        let t2715 = gcross_vy_leg5 * t2700 - gcylinder_vy_leg5 * t2706
+            - grod_vy_leg5 * t2590;
+        let t2720 = minus_gcylinder_vz_leg5 * t2706 - minus_gcross_vz_leg5 * t2700
+            - grod_vz_leg5 * t2590;
+        let t2732 = t2585 - t2680;
+        let t2735 = t982 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2705
+            - s_cylinder_leg5 * t2732;
+        let t2740 = gcross_vx_leg5 * t2735 - t182 * t2631
+            - minus_minus_grod_vx_leg5 * t2596;
+        let t2745 = gcross_vy_leg5 * t2735 + t182 * t2634 - grod_vy_leg5 * t2596;
+        let t2748 = minus_gcross_vz_leg5 * t2735
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2800 = t270 * t2547 - c_cylinder_leg5 * t2737;
-        let t2803 = t161 * t2666 + t2771;
-        let t2807 = gcross_vx_leg5 * t2800 - minus_gcylinder_vx_leg5 * t2803
-            - minus_minus_grod_vx_leg5 * t1013;
-        let t2812 = gcross_vy_leg5 * t2800 + gcylinder_vy_leg5 * t2803
-            - grod_vy_leg5 * t1013;
-        let t2817 = minus_gcross_vz_leg5 * t2800 + minus_gcylinder_vz_leg5 * t2803
-            + grod_vz_leg5 * t1013;
-        let t2827 = 9.81 + t2530;
-        let gcross_vx_leg6 = t279 * t1027;
-        let t2850 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2851 = rate_cylinder_leg6 * t2850;
-        let t2852 = t1162 + t1570;
-        let t2854 = t1180 + t1559;
-        let t2856 = t1170 + t1564;
-        let t2859 = s_cross_leg6 * t2852 - (t1027 * t2854 + t1030 * t2856);
-        let t2860 = t182 * t2851;
-        let t2863 = actuator_velocities[5] + actuator_velocities[5];
-        let minus_rate_dot_cross_leg6 = t279 * (t2859 + t2860 + t2860 - t1036 * t2863);
-        let t2867 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2869 = t2851 + t2851 - t2867;
-        let t2870 = c_cylinder_leg6 * t2869;
-        let minus_gcylinder_vx_leg6 = t1046 * t183;
-        let t2873 = t1036 * t2850;
-        let t2874 = minus_gcylinder_vx_leg6 * t2873;
-        let t2875 = gcross_vx_leg6 * t2870 - t2874;
-        let gcross_vy_leg6 = t279 * t1030;
-        let gcylinder_vy_leg6 = t1042 * t183;
-        let t2879 = gcylinder_vy_leg6 * t2873;
-        let t2880 = gcross_vy_leg6 * t2870 + t2879;
-        let minus_gcross_vz_leg6 = t279 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t1049 * t183;
-        let t2884 = minus_gcylinder_vz_leg6 * t2873;
-        let t2885 = minus_gcross_vz_leg6 * t2870 + t2884;
-        let minus_gcross_wx_leg6 = t80 * minus_gcross_vz_leg6 + t88 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t80 * minus_gcylinder_vz_leg6
-            + t88 * gcylinder_vy_leg6;
-        let t2893 = minus_gcylinder_wx_leg6 * t2873;
-        let t2894 = minus_gcross_wx_leg6 * t2870 + t2893;
-        let gcross_wy_leg6 = t88 * gcross_vx_leg6 + t74 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t74 * minus_gcylinder_vz_leg6
-            - t88 * minus_gcylinder_vx_leg6;
-        let t2902 = gcylinder_wy_leg6 * t2873;
-        let t2903 = gcross_wy_leg6 * t2870 + t2902;
-        let gcross_wz_leg6 = t74 * gcross_vy_leg6 - t80 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t74 * gcylinder_vy_leg6 + t80 * minus_gcylinder_vx_leg6;
-        let t2911 = gcylinder_wz_leg6 * t2873;
-        let t2912 = gcross_wz_leg6 * t2870 + t2911;
-        let t2913 = rate_cylinder_leg6 * t1036;
-        let t2914 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2916 = t2913 + t2914 + t2913;
-        let t2919 = c_cylinder_leg6 * t2916 - s_cylinder_leg6 * t2869;
-        let t2921 = t2850 * t2850;
-        let t2922 = t1037 - t2921;
-        let t2924 = gcross_vx_leg6 * t2919 - minus_gcylinder_vx_leg6 * t2922;
-        let t2927 = gcross_vy_leg6 * t2919 + gcylinder_vy_leg6 * t2922;
-        let t2930 = minus_gcross_vz_leg6 * t2919 + minus_gcylinder_vz_leg6 * t2922;
-        let t2933 = minus_gcross_wx_leg6 * t2919 + minus_gcylinder_wx_leg6 * t2922;
-        let t2936 = gcross_wy_leg6 * t2919 + gcylinder_wy_leg6 * t2922;
-        let t2939 = gcross_wz_leg6 * t2919 + gcylinder_wz_leg6 * t2922;
-        let t2944 = t1042 * t2856 - t1046 * t2854 - t1049 * t2852;
-        let rate_dot_cylinder_leg6 = t183
-            * (t2944 - t182 * t2873 - rate_cylinder_leg6 * t2863);
-        let t2950 = rate_dot_cylinder_leg6 - t2873;
-        let t2954 = c_cylinder_leg6 * t2950 - s_cylinder_leg6 * (t1053 - t1037);
-        let t2957 = gcross_vx_leg6 * t2954 + minus_gcylinder_vx_leg6 * t2867;
-        let t2960 = gcross_vy_leg6 * t2954 - gcylinder_vy_leg6 * t2867;
-        let t2963 = minus_gcylinder_vz_leg6 * t2867 - minus_gcross_vz_leg6 * t2954;
-        let t2966 = minus_gcylinder_wx_leg6 * t2867 - minus_gcross_wx_leg6 * t2954;
-        let t2969 = gcross_wy_leg6 * t2954 - gcylinder_wy_leg6 * t2867;
-        let t2972 = gcross_wz_leg6 * t2954 - gcylinder_wz_leg6 * t2867;
-        let t2973 = s_cylinder_leg6 * t2916;
-        let t2975 = t2874 - gcross_vx_leg6 * t2973;
-        let t2977 = gcross_vy_leg6 * t2973 + t2879;
-        let t2979 = minus_gcross_vz_leg6 * t2973 + t2884;
-        let t2981 = minus_gcross_wx_leg6 * t2973 + t2893;
-        let t2983 = gcross_wy_leg6 * t2973 + t2902;
-        let t2985 = gcross_wz_leg6 * t2973 + t2911;
-        let t2988 = t2873 + rate_dot_cylinder_leg6;
-        let t2990 = c_cylinder_leg6 * (t2921 - t1053) - s_cylinder_leg6 * t2988;
-        let t2993 = gcross_vx_leg6 * t2990 - minus_gcylinder_vx_leg6 * t2914;
-        let t2996 = gcross_vy_leg6 * t2990 + gcylinder_vy_leg6 * t2914;
-        let t2999 = minus_gcross_vz_leg6 * t2990 + minus_gcylinder_vz_leg6 * t2914;
-        let t3002 = minus_gcross_wx_leg6 * t2990 + minus_gcylinder_wx_leg6 * t2914;
-        let t3005 = gcross_wy_leg6 * t2990 + gcylinder_wy_leg6 * t2914;
-        let t3008 = gcross_wz_leg6 * t2990 + gcylinder_wz_leg6 * t2914;
-        let t3009 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
-        let t3010 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
-        let t3011 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
-        let t3012 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
-        let t3013 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
-        let t3014 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
-        let t3015 = 9.81 * t1040;
-        let t3017 = 9.81 * grod_vz_leg6;
-        let t3035 = t183 * t3017;
-        let t3038 = 9.81 * s_cross_leg6;
-        let t3039 = c_cylinder_leg6 * t3038;
-        let t3041 = 9.81 * t1049;
-        let t3051 = 9.81 * c_cross_leg6;
-        let t3059 = t2859 + t3038;
-        let t3061 = t278 * t2916 + s_cylinder_leg6 * t3059;
-        let t3066 = actuator_accelerations[5] - (t1055 - t3017);
-        let t3067 = t182 * (t2921 + t1053) + t3066;
-        let t3071 = gcross_vx_leg6 * t3061 + minus_gcylinder_vx_leg6 * t3067
-            - minus_minus_grod_vx_leg6 * t2950;
-        let t3076 = gcross_vy_leg6 * t3061 - gcylinder_vy_leg6 * t3067
-            - grod_vy_leg6 * t2950;
-        let t3081 = minus_gcylinder_vz_leg6 * t3067 - minus_gcross_vz_leg6 * t3061
-            - grod_vz_leg6 * t2950;
-        let t3093 = t2944 - t3041;
-        let t3096 = t1034 * minus_rate_cross_leg6 + c_cylinder_leg6 * t3066
-            - s_cylinder_leg6 * t3093;
-        let t3098 = t182 * t2914;
-        let t3102 = gcross_vx_leg6 * t3096 - minus_gcylinder_vx_leg6 * t3098
-            - minus_minus_grod_vx_leg6 * t2867;
-        let t3107 = gcross_vy_leg6 * t3096 + gcylinder_vy_leg6 * t3098
-            - grod_vy_leg6 * t2867;
-        let t3110 = minus_gcross_vz_leg6 * t3096
+        let t2759 = c_cylinder_leg5 * (t2698 + t2503);
+        let t2761 = t2587 + t2732;
+        let t2765 = gcross_vx_leg5 * t2759 + minus_gcylinder_vx_leg5 * t2761
+            + minus_minus_grod_vx_leg5 * t1002;
+        let t2770 = gcylinder_vy_leg5 * t2761 - gcross_vy_leg5 * t2759
+            - grod_vy_leg5 * t1002;
+        let t2775 = minus_gcylinder_vz_leg5 * t2761 - minus_gcross_vz_leg5 * t2759
+            + grod_vz_leg5 * t1002;
+        let t2785 = 9.81 + t2493;
+        let gcross_vx_leg6 = t216 * t1016;
+        let t2808 = t1151 + t1554;
+        let t2810 = t1169 + t1543;
+        let t2812 = t1159 + t1548;
+        let t2815 = s_cross_leg6 * t2808 - (t1016 * t2810 + t1019 * t2812);
+        let t2816 = 2.0 * actuator_velocities[5];
+        let t2818 = t2815 - t1025 * t2816;
+        let t2819 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2820 = t2819 * t1040;
+        let minus_rate_dot_cross_leg6 = t216 * (t2818 + t2820 + t2820);
+        let t2824 = rate_cylinder_leg6 * t1025;
+        let t2825 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2827 = t2824 + t2825 + t2824;
+        let t2828 = s_cylinder_leg6 * t2827;
+        let t2829 = t2828 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t1035 * t212;
+        let t2832 = t1025 * t2819;
+        let t2833 = minus_gcylinder_vx_leg6 * t2832;
+        let t2834 = gcross_vx_leg6 * t2829 - t2833;
+        let gcross_vy_leg6 = t216 * t1019;
+        let gcylinder_vy_leg6 = t1031 * t212;
+        let t2838 = gcylinder_vy_leg6 * t2832;
+        let t2839 = gcross_vy_leg6 * t2829 + t2838;
+        let minus_gcross_vz_leg6 = t216 * s_cross_leg6;
+        let minus_gcylinder_vz_leg6 = t1038 * t212;
+        let t2843 = minus_gcylinder_vz_leg6 * t2832;
+        let t2844 = minus_gcross_vz_leg6 * t2829 + t2843;
+        let minus_gcross_wx_leg6 = t82 * minus_gcross_vz_leg6 + t73 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t82 * minus_gcylinder_vz_leg6
+            + t73 * gcylinder_vy_leg6;
+        let t2852 = minus_gcylinder_wx_leg6 * t2832;
+        let t2853 = minus_gcross_wx_leg6 * t2829 + t2852;
+        let gcross_wy_leg6 = t73 * gcross_vx_leg6 + t76 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t76 * minus_gcylinder_vz_leg6
+            - t73 * minus_gcylinder_vx_leg6;
+        let t2861 = gcylinder_wy_leg6 * t2832;
+        let t2862 = gcross_wy_leg6 * t2829 + t2861;
+        let gcross_wz_leg6 = t76 * gcross_vy_leg6 - t82 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t76 * gcylinder_vy_leg6 + t82 * minus_gcylinder_vx_leg6;
+        let t2870 = gcylinder_wz_leg6 * t2832;
+        let t2871 = gcross_wz_leg6 * t2829 + t2870;
+        let t2873 = s_cylinder_leg6 / t211;
+        let t2875 = c_cylinder_leg6 * t2827 + t2818 * t2873;
+        let t2877 = t2819 * t2819;
+        let t2878 = t1026 - t2877;
+        let t2880 = gcross_vx_leg6 * t2875 - minus_gcylinder_vx_leg6 * t2878;
+        let t2883 = gcross_vy_leg6 * t2875 + gcylinder_vy_leg6 * t2878;
+        let t2886 = minus_gcross_vz_leg6 * t2875 + minus_gcylinder_vz_leg6 * t2878;
+        let t2889 = minus_gcross_wx_leg6 * t2875 + minus_gcylinder_wx_leg6 * t2878;
+        let t2892 = gcross_wy_leg6 * t2875 + gcylinder_wy_leg6 * t2878;
+        let t2895 = gcross_wz_leg6 * t2875 + gcylinder_wz_leg6 * t2878;
+        let t2900 = t1031 * t2812 - t1035 * t2810 - t1038 * t2808;
+        let t2902 = t2900 - rate_cylinder_leg6 * t2816;
+        let rate_dot_cylinder_leg6 = t2902 / t211 - t2832;
+        let t2905 = rate_dot_cylinder_leg6 - t2832;
+        let t2909 = c_cylinder_leg6 * t2905 - s_cylinder_leg6 * (t1042 - t1026);
+        let t2911 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2913 = gcross_vx_leg6 * t2909 + minus_gcylinder_vx_leg6 * t2911;
+        let t2916 = gcross_vy_leg6 * t2909 - gcylinder_vy_leg6 * t2911;
+        let t2919 = minus_gcylinder_vz_leg6 * t2911 - minus_gcross_vz_leg6 * t2909;
+        let t2922 = minus_gcylinder_wx_leg6 * t2911 - minus_gcross_wx_leg6 * t2909;
+        let t2925 = gcross_wy_leg6 * t2909 - gcylinder_wy_leg6 * t2911;
+        let t2928 = gcross_wz_leg6 * t2909 - gcylinder_wz_leg6 * t2911;
+        let t2930 = t2833 - gcross_vx_leg6 * t2828;
+        let t2932 = gcross_vy_leg6 * t2828 + t2838;
+        let t2934 = minus_gcross_vz_leg6 * t2828 + t2843;
+        let t2936 = minus_gcross_wx_leg6 * t2828 + t2852;
+        let t2938 = gcross_wy_leg6 * t2828 + t2861;
+        let t2940 = gcross_wz_leg6 * t2828 + t2870;
+        let t2944 = c_cylinder_leg6 * (t2877 - t1042) - t2902 * t2873;
+        let t2947 = gcross_vx_leg6 * t2944 - minus_gcylinder_vx_leg6 * t2825;
+        let t2950 = gcross_vy_leg6 * t2944 + gcylinder_vy_leg6 * t2825;
+        let t2953 = minus_gcross_vz_leg6 * t2944 + minus_gcylinder_vz_leg6 * t2825;
+        let t2956 = minus_gcross_wx_leg6 * t2944 + minus_gcylinder_wx_leg6 * t2825;
+        let t2959 = gcross_wy_leg6 * t2944 + gcylinder_wy_leg6 * t2825;
+        let t2962 = gcross_wz_leg6 * t2944 + gcylinder_wz_leg6 * t2825;
+        let t2963 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
+        let t2964 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
+        let t2965 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
+        let t2966 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
+        let t2967 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
+        let t2968 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
+        let t2969 = 9.81 * t1029;
+        let t2971 = 9.81 * grod_vz_leg6;
+        let t2989 = t212 * t2971;
+        let t2992 = 9.81 * s_cross_leg6;
+        let t2993 = c_cylinder_leg6 * t2992;
+        let t2995 = 9.81 * t1038;
+        let t3005 = 9.81 * c_cross_leg6;
+        let t3013 = t2815 + t2992;
+        let t3015 = t215 * t2827 + s_cylinder_leg6 * t3013;
+        let t3020 = actuator_accelerations[5] - (t1044 - t2971);
+        let t3021 = t211 * (t2877 + t1042) + t3020;
+        let t3025 = gcross_vx_leg6 * t3015 + minus_gcylinder_vx_leg6 * t3021
+            - minus_minus_grod_vx_leg6 * t2905;
+        let t3030 = gcross_vy_leg6 * t3015 - gcylinder_vy_leg6 * t3021
+            - grod_vy_leg6 * t2905;
+        let t3035 = minus_gcylinder_vz_leg6 * t3021 - minus_gcross_vz_leg6 * t3015
+            - grod_vz_leg6 * t2905;
+        let t3047 = t2900 - t2995;
+        let t3050 = t1023 * minus_rate_cross_leg6 + c_cylinder_leg6 * t3020
+            - s_cylinder_leg6 * t3047;
+        let t3055 = gcross_vx_leg6 * t3050 - t1035 * t2825
+            - minus_minus_grod_vx_leg6 * t2911;
+        let t3060 = gcross_vy_leg6 * t3050 + t1031 * t2825 - grod_vy_leg6 * t2911;
+        let t3063 = minus_gcross_vz_leg6 * t3050
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t3122 = t278 * t2869 - c_cylinder_leg6 * t3059;
-        let t3125 = t182 * t2988 + t3093;
-        let t3129 = gcross_vx_leg6 * t3122 - minus_gcylinder_vx_leg6 * t3125
-            - minus_minus_grod_vx_leg6 * t1054;
-        let t3134 = gcross_vy_leg6 * t3122 + gcylinder_vy_leg6 * t3125
-            - grod_vy_leg6 * t1054;
-        let t3139 = minus_gcross_vz_leg6 * t3122 + minus_gcylinder_vz_leg6 * t3125
-            + grod_vz_leg6 * t1054;
-        let t3149 = 9.81 + t2852;
-        let t3175 = t5 * t1156 + t20 * t1152 + t38 * t1150;
-        let t3178 = t797 + t38 * t676;
-        let t3179 = t36 + t37;
-        let t3181 = t40 - t41;
-        let t3184 = t23 - t1;
-        let t3186 = t3179 * t682 + t3181 * t678 + t3184 * t676;
-        let t3187 = t3178 * t3186;
-        let t3188 = t10 * t3187;
-        let t3191 = t805 + t42 * t676;
-        let t3192 = t3178 * t3191;
-        let t3193 = t3179 * t3192;
-        let t3196 = t24 * t3187;
-        let t3198 = t3181 * t3192;
-        let t3201 = t42 * t3187;
-        let t3203 = t3184 * t3192;
-        let t3209 = t10 * t1156 + t24 * t1152 + t42 * t1150;
-        let t3210 = t3209 - t3187;
-        let t3212 = t3191 * t3186;
-        let t3213 = t3175 + t3212;
-        let t3216 = t3178 * t3178;
-        let t3217 = t3191 * t3191;
-        let t3218 = t3216 - t3217;
-        let t3235 = t3179 * t1156 + t3181 * t1152 + t3184 * t1150;
-        let t3236 = t3235 + t3192;
-        let t3238 = t3186 * t3186;
-        let t3239 = t3238 - t3216;
-        let t3242 = t3175 - t3212;
-        let t3256 = t5 * t3212;
-        let t3260 = t20 * t3212;
-        let t3264 = t38 * t3212;
-        let t3267 = t3217 - t3238;
-        let t3269 = t3235 - t3192;
-        let t3272 = t3209 + t3187;
+        let t3074 = c_cylinder_leg6 * (t3013 + t2818);
+        let t3076 = t2902 + t3047;
+        let t3080 = gcross_vx_leg6 * t3074 + minus_gcylinder_vx_leg6 * t3076
+            + minus_minus_grod_vx_leg6 * t1043;
+        let t3085 = gcylinder_vy_leg6 * t3076 - gcross_vy_leg6 * t3074
+            - grod_vy_leg6 * t1043;
+        let t3090 = minus_gcylinder_vz_leg6 * t3076 - minus_gcross_vz_leg6 * t3074
+            + grod_vz_leg6 * t1043;
+        let t3100 = t1554 + t1514;
+        let t3126 = t5 * t1145 + t20 * t1141 + t38 * t1139;
+        let t3129 = t711 + t38 * t656;
+        let t3130 = t36 + t37;
+        let t3132 = t40 - t41;
+        let t3135 = t23 - t1;
+        let t3137 = t3130 * t663 + t3132 * t658 + t3135 * t656;
+        let t3138 = t3129 * t3137;
+        let t3139 = t10 * t3138;
+        let t3142 = t719 + t42 * t656;
+        let t3143 = t3129 * t3142;
+        let t3144 = t3130 * t3143;
+        let t3147 = t24 * t3138;
+        let t3149 = t3132 * t3143;
+        let t3152 = t42 * t3138;
+        let t3154 = t3135 * t3143;
+        let t3160 = t10 * t1145 + t24 * t1141 + t42 * t1139;
+        let t3161 = t3160 - t3138;
+        let t3163 = t3142 * t3137;
+        let t3164 = t3126 + t3163;
+        let t3167 = t3129 * t3129;
+        let t3168 = t3142 * t3142;
+        let t3169 = t3167 - t3168;
+        let t3186 = t3130 * t1145 + t3132 * t1141 + t3135 * t1139;
+        let t3187 = t3186 + t3143;
+        let t3189 = t3137 * t3137;
+        let t3190 = t3189 - t3167;
+        let t3193 = t3126 - t3163;
+        let t3207 = t5 * t3163;
+        let t3211 = t20 * t3163;
+        let t3215 = t38 * t3163;
+        let t3218 = t3168 - t3189;
+        let t3220 = t3186 - t3143;
+        let t3223 = t3160 + t3138;
         Ok([
             [
-                t1255, t1304, -t1337, t1355, -t1373, t1389,
-                -(minus_gcross_vx_leg1 * t1395 + gcylinder_vx_leg1 * t1397), grod_vx_leg1 * t1415,
-                -(minus_gcross_vx_leg1 * t1431), t1255, -t1337, -t1304, t1389, t1373, t1355, -t1451,
-                -t1482, t1509, t1198, grod_vx_leg1 * actuator_accelerations[0], t72,
-                ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]), grod_vx_leg1, t1587,
-                t1636, -t1669, t1687, t1705, t1721,
-                minus_gcross_vx_leg2 * t1727 - gcylinder_vx_leg2 * t1729, grod_vx_leg2 * t1747,
-                -(minus_gcross_vx_leg2 * t1763), t1587, -t1669, -t1636, t1721, -t1705, t1687,
-                -t1783, t1814, t1841, t1561, grod_vx_leg2 * actuator_accelerations[1], t101,
-                ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]), grod_vx_leg2, t1909,
-                t1958, t1991, -t2009, t2027, t2043,
-                -(gcross_vx_leg3 * t2049 + gcylinder_vx_leg3 * t2051),
-                minus_minus_grod_vx_leg3 * t2069, gcross_vx_leg3 * t2085, t1909, t1991, -t1958,
-                t2043, -t2027, -t2009, t2105, t2136, t2163, t1888,
-                minus_minus_grod_vx_leg3 * actuator_accelerations[2], t122,
+                t1249, t1293, -t1326, t1343, -t1360, t1376,
+                -(minus_gcross_vx_leg1 * t1382 + gcylinder_vx_leg1 * t1384), grod_vx_leg1 * t1402,
+                -(minus_gcross_vx_leg1 * t1418), t1249, -t1326, -t1293, t1376, t1360, t1343, -t1438,
+                -t1468, t1494, t1187, grod_vx_leg1 * actuator_accelerations[0], t224,
+                ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]), grod_vx_leg1, t1566,
+                t1619, -t1652, t1670, t1687, t1703,
+                minus_gcross_vx_leg2 * t1709 - gcylinder_vx_leg2 * t1711, grod_vx_leg2 * t1729,
+                -(minus_gcross_vx_leg2 * t1745), t1566, -t1652, -t1619, t1703, -t1687, t1670,
+                -t1765, t1795, t1820, t1545, grod_vx_leg2 * actuator_accelerations[1], t225,
+                ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]), grod_vx_leg2, t1881,
+                t1934, t1967, -t1985, t2002, t2018,
+                -(gcross_vx_leg3 * t2024 + gcylinder_vx_leg3 * t2026),
+                minus_minus_grod_vx_leg3 * t2044, gcross_vx_leg3 * t2060, t1881, t1967, -t1934,
+                t2018, -t2002, -t1985, t2080, t2110, t2135, t1865,
+                minus_minus_grod_vx_leg3 * actuator_accelerations[2], t227,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg3,
                     actuator_velocities[2],
                 ),
                 minus_minus_grod_vx_leg3,
-                t2231,
-                t2280,
-                t2313,
-                -t2331,
-                t2349,
-                t2365,
-                -(gcross_vx_leg4 * t2371 + gcylinder_vx_leg4 * t2373),
-                minus_minus_grod_vx_leg4 * t2391,
-                gcross_vx_leg4 * t2407,
-                t2231,
-                t2313,
-                -t2280,
-                t2365,
-                -t2349,
-                -t2331,
-                t2427,
-                t2458,
-                t2485,
-                t2210,
+                t2204,
+                t2250,
+                t2283,
+                -t2300,
+                t2317,
+                t2333,
+                -(gcross_vx_leg4 * t2339 + gcylinder_vx_leg4 * t2341),
+                minus_minus_grod_vx_leg4 * t2359,
+                gcross_vx_leg4 * t2375,
+                t2204,
+                t2283,
+                -t2250,
+                t2333,
+                -t2317,
+                -t2300,
+                t2395,
+                t2425,
+                t2450,
+                t2180,
                 minus_minus_grod_vx_leg4 * actuator_accelerations[3],
-                t143,
+                t229,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg4,
                     actuator_velocities[3],
                 ),
                 minus_minus_grod_vx_leg4,
-                t2553,
-                t2602,
-                t2635,
-                t2653,
-                t2671,
-                -t2687,
-                gcross_vx_leg5 * t2693 + minus_gcylinder_vx_leg5 * t2695,
-                minus_minus_grod_vx_leg5 * t2713,
-                gcross_vx_leg5 * t2729,
-                t2553,
-                t2635,
-                -t2602,
-                -t2687,
-                -t2671,
-                t2653,
-                t2749,
-                t2780,
-                t2807,
-                t2532,
+                t2519,
+                t2565,
+                t2598,
+                t2615,
+                t2632,
+                -t2648,
+                gcross_vx_leg5 * t2654 + minus_gcylinder_vx_leg5 * t2656,
+                minus_minus_grod_vx_leg5 * t2674,
+                gcross_vx_leg5 * t2690,
+                t2519,
+                t2598,
+                -t2565,
+                -t2648,
+                -t2632,
+                t2615,
+                t2710,
+                t2740,
+                -t2765,
+                t2495,
                 minus_minus_grod_vx_leg5 * actuator_accelerations[4],
-                t164,
+                t231,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg5,
                     actuator_velocities[4],
                 ),
                 minus_minus_grod_vx_leg5,
-                t2875,
-                t2924,
-                t2957,
-                t2975,
-                t2993,
-                -t3009,
-                gcross_vx_leg6 * t3015 + minus_gcylinder_vx_leg6 * t3017,
-                minus_minus_grod_vx_leg6 * t3035,
-                gcross_vx_leg6 * t3051,
-                t2875,
-                t2957,
-                -t2924,
-                -t3009,
-                -t2993,
-                t2975,
-                t3071,
-                t3102,
-                t3129,
-                t2854,
+                t2834,
+                t2880,
+                t2913,
+                t2930,
+                t2947,
+                -t2963,
+                gcross_vx_leg6 * t2969 + minus_gcylinder_vx_leg6 * t2971,
+                minus_minus_grod_vx_leg6 * t2989,
+                gcross_vx_leg6 * t3005,
+                t2834,
+                t2913,
+                -t2880,
+                -t2963,
+                -t2947,
+                t2930,
+                t3025,
+                t3055,
+                -t3080,
+                t2810,
                 minus_minus_grod_vx_leg6 * actuator_accelerations[5],
-                t185,
+                t233,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg6,
                     actuator_velocities[5],
@@ -7787,138 +7772,138 @@ impl Hexapod {
                 0.0,
                 0.0,
                 0.0,
-                t1186,
-                t1191,
-                t3181 * t1181 - t3179 * t775 + t3184 * t1184,
+                t1175,
                 t1180,
+                t3132 * t1170 - t3130 * t689 + t3135 * t1173,
+                t1169,
             ],
             [
-                t1260, t1307, t1340, t1357, t1376, -t1390,
-                gcross_vy_leg1 * t1395 + minus_gcylinder_vy_leg1 * t1397,
-                minus_minus_grod_vy_leg1 * t1415, gcross_vy_leg1 * t1431, t1260, t1340, -t1307,
-                -t1390, -t1376, t1357, t1456, t1487, -t1514, t1217,
-                minus_minus_grod_vy_leg1 * actuator_accelerations[0], t233,
+                t1254, t1296, t1329, t1345, t1363, -t1377,
+                gcross_vy_leg1 * t1382 + minus_gcylinder_vy_leg1 * t1384,
+                minus_minus_grod_vy_leg1 * t1402, gcross_vy_leg1 * t1418, t1254, t1329, -t1296,
+                -t1377, -t1363, t1345, t1443, t1473, -t1499, t1206,
+                minus_minus_grod_vy_leg1 * actuator_accelerations[0], t353,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg1,
                     actuator_velocities[0],
                 ),
                 minus_minus_grod_vy_leg1,
-                -t1592,
-                -t1639,
+                -t1571,
+                -t1622,
+                t1655,
                 t1672,
-                t1689,
-                -t1708,
-                -t1722,
-                minus_gcross_vy_leg2 * t1727 + minus_gcylinder_vy_leg2 * t1729,
-                minus_minus_grod_vy_leg2 * t1747,
-                -(minus_gcross_vy_leg2 * t1763),
-                -t1592,
+                -t1690,
+                -t1704,
+                minus_gcross_vy_leg2 * t1709 + minus_gcylinder_vy_leg2 * t1711,
+                minus_minus_grod_vy_leg2 * t1729,
+                -(minus_gcross_vy_leg2 * t1745),
+                -t1571,
+                t1655,
+                t1622,
+                -t1704,
+                t1690,
                 t1672,
-                t1639,
-                -t1722,
-                t1708,
-                t1689,
-                t1788,
-                -t1819,
-                -t1846,
-                t1566,
+                t1770,
+                -t1800,
+                -t1825,
+                t1550,
                 minus_minus_grod_vy_leg2 * actuator_accelerations[1],
-                t234,
+                t354,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg2,
                     actuator_velocities[1],
                 ),
                 minus_minus_grod_vy_leg2,
-                t1914,
-                t1961,
-                -t1994,
-                t2011,
-                t2030,
-                t2044,
-                minus_gcross_vy_leg3 * t2049 - gcylinder_vy_leg3 * t2051,
-                grod_vy_leg3 * t2069,
-                -(minus_gcross_vy_leg3 * t2085),
-                t1914,
-                -t1994,
-                -t1961,
-                t2044,
-                -t2030,
-                t2011,
-                -t2110,
-                t2141,
-                t2168,
                 t1886,
+                t1937,
+                -t1970,
+                t1987,
+                t2005,
+                t2019,
+                minus_gcross_vy_leg3 * t2024 - gcylinder_vy_leg3 * t2026,
+                grod_vy_leg3 * t2044,
+                -(minus_gcross_vy_leg3 * t2060),
+                t1886,
+                -t1970,
+                -t1937,
+                t2019,
+                -t2005,
+                t1987,
+                -t2085,
+                t2115,
+                t2140,
+                t1863,
                 grod_vy_leg3 * actuator_accelerations[2],
-                t232,
+                t352,
                 ::overact::math::signed(grod_vy_leg3, actuator_velocities[2]),
                 grod_vy_leg3,
-                t2236,
-                t2283,
-                -t2316,
-                t2333,
-                t2352,
-                t2366,
-                minus_gcross_vy_leg4 * t2371 - gcylinder_vy_leg4 * t2373,
-                grod_vy_leg4 * t2391,
-                -(minus_gcross_vy_leg4 * t2407),
-                t2236,
-                -t2316,
-                -t2283,
-                t2366,
-                -t2352,
-                t2333,
-                -t2432,
-                t2463,
-                t2490,
-                t2208,
+                t2209,
+                t2253,
+                -t2286,
+                t2302,
+                t2320,
+                t2334,
+                minus_gcross_vy_leg4 * t2339 - gcylinder_vy_leg4 * t2341,
+                grod_vy_leg4 * t2359,
+                -(minus_gcross_vy_leg4 * t2375),
+                t2209,
+                -t2286,
+                -t2253,
+                t2334,
+                -t2320,
+                t2302,
+                -t2400,
+                t2430,
+                t2455,
+                t2178,
                 grod_vy_leg4 * actuator_accelerations[3],
-                t237,
+                t357,
                 ::overact::math::signed(grod_vy_leg4, actuator_velocities[3]),
                 grod_vy_leg4,
-                t2558,
-                t2605,
-                t2638,
-                -t2655,
-                t2674,
-                t2688,
-                gcross_vy_leg5 * t2693 - gcylinder_vy_leg5 * t2695,
-                grod_vy_leg5 * t2713,
-                gcross_vy_leg5 * t2729,
-                t2558,
-                t2638,
-                -t2605,
-                t2688,
-                -t2674,
-                -t2655,
-                t2754,
-                t2785,
-                t2812,
-                t2534,
+                t2524,
+                t2568,
+                t2601,
+                -t2617,
+                t2635,
+                t2649,
+                gcross_vy_leg5 * t2654 - gcylinder_vy_leg5 * t2656,
+                grod_vy_leg5 * t2674,
+                gcross_vy_leg5 * t2690,
+                t2524,
+                t2601,
+                -t2568,
+                t2649,
+                -t2635,
+                -t2617,
+                t2715,
+                t2745,
+                t2770,
+                t2497,
                 grod_vy_leg5 * actuator_accelerations[4],
-                t239,
+                t359,
                 ::overact::math::signed(grod_vy_leg5, actuator_velocities[4]),
                 grod_vy_leg5,
-                t2880,
-                t2927,
-                t2960,
-                -t2977,
-                t2996,
-                t3010,
-                gcross_vy_leg6 * t3015 - gcylinder_vy_leg6 * t3017,
-                grod_vy_leg6 * t3035,
-                gcross_vy_leg6 * t3051,
-                t2880,
-                t2960,
-                -t2927,
-                t3010,
-                -t2996,
-                -t2977,
-                t3076,
-                t3107,
-                t3134,
-                t2856,
+                t2839,
+                t2883,
+                t2916,
+                -t2932,
+                t2950,
+                t2964,
+                gcross_vy_leg6 * t2969 - gcylinder_vy_leg6 * t2971,
+                grod_vy_leg6 * t2989,
+                gcross_vy_leg6 * t3005,
+                t2839,
+                t2916,
+                -t2883,
+                t2964,
+                -t2950,
+                -t2932,
+                t3030,
+                t3060,
+                t3085,
+                t2812,
                 grod_vy_leg6 * actuator_accelerations[5],
-                t241,
+                t361,
                 ::overact::math::signed(grod_vy_leg6, actuator_velocities[5]),
                 grod_vy_leg6,
                 0.0,
@@ -7927,198 +7912,197 @@ impl Hexapod {
                 0.0,
                 0.0,
                 0.0,
-                t1205,
-                t1210,
-                t3179 * t1200 - t3181 * t754 + t3184 * t1203,
-                t1170,
+                t1194,
+                t1199,
+                t3130 * t1189 - t3132 * t668 + t3135 * t1192,
+                t1159,
             ],
             [
-                -t1265, t1310, t1343, t1359, t1379, t1391,
-                gcross_vz_leg1 * t1395 - gcylinder_vz_leg1 * t1397,
-                -(gcross_vz_leg1 * t1419 + gcylinder_vz_leg1 * t1421), gcross_vz_leg1 * t1431,
-                -t1265, t1343, -t1310, t1391, -t1379, t1359, t1461, t1490, t1519, t1530,
-                grod_vz_leg1 * actuator_accelerations[0], t315,
-                ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]), grod_vz_leg1, t1597,
-                t1642, t1675, t1691, t1711, -t1723,
-                minus_gcylinder_vz_leg2 * t1729 - gcross_vz_leg2 * t1727,
-                -(gcross_vz_leg2 * t1751 + minus_gcylinder_vz_leg2 * t1753), gcross_vz_leg2 * t1763,
-                t1597, t1675, -t1642, -t1723, -t1711, t1691, t1793, t1822, t1851, t1861,
-                grod_vz_leg2 * actuator_accelerations[1], t316,
-                ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]), grod_vz_leg2, t1919,
-                t1964, t1997, t2013, t2033, -t2045,
-                minus_gcylinder_vz_leg3 * t2051 - gcross_vz_leg3 * t2049,
-                -(gcross_vz_leg3 * t2073 + minus_gcylinder_vz_leg3 * t2075), gcross_vz_leg3 * t2085,
-                t1919, t1997, -t1964, -t2045, -t2033, t2013, t2115, t2144, t2173, t2183,
-                grod_vz_leg3 * actuator_accelerations[2], t318,
-                ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]), grod_vz_leg3, t2241,
-                t2286, t2319, t2335, t2355, -t2367,
-                minus_gcylinder_vz_leg4 * t2373 - gcross_vz_leg4 * t2371,
-                -(gcross_vz_leg4 * t2395 + minus_gcylinder_vz_leg4 * t2397), gcross_vz_leg4 * t2407,
-                t2241, t2319, -t2286, -t2367, -t2355, t2335, t2437, t2466, t2495, t2505,
-                grod_vz_leg4 * actuator_accelerations[3], t320,
-                ::overact::math::signed(grod_vz_leg4, actuator_velocities[3]), grod_vz_leg4, -t2563,
-                -t2608, t2641, t2657, -t2677, -t2689,
-                minus_gcylinder_vz_leg5 * t2695 - minus_gcross_vz_leg5 * t2693,
-                -(minus_gcross_vz_leg5 * t2717 + minus_gcylinder_vz_leg5 * t2719),
-                -(minus_gcross_vz_leg5 * t2729), -t2563, t2641, t2608, -t2689, t2677, t2657, t2759,
-                -t2788, -t2817, t2827, grod_vz_leg5 * actuator_accelerations[4], t322,
-                ::overact::math::signed(grod_vz_leg5, actuator_velocities[4]), grod_vz_leg5, -t2885,
-                -t2930, t2963, t2979, -t2999, -t3011,
-                minus_gcylinder_vz_leg6 * t3017 - minus_gcross_vz_leg6 * t3015,
-                -(minus_gcross_vz_leg6 * t3039 + minus_gcylinder_vz_leg6 * t3041),
-                -(minus_gcross_vz_leg6 * t3051), -t2885, t2963, t2930, -t3011, t2999, t2979, t3081,
-                -t3110, -t3139, t3149, grod_vz_leg6 * actuator_accelerations[5], t324,
+                -t1259, t1299, t1332, t1347, t1366, t1378,
+                gcross_vz_leg1 * t1382 - gcylinder_vz_leg1 * t1384,
+                -(gcross_vz_leg1 * t1406 + gcylinder_vz_leg1 * t1408), gcross_vz_leg1 * t1418,
+                -t1259, t1332, -t1299, t1378, -t1366, t1347, t1448, t1476, t1504, t1515,
+                grod_vz_leg1 * actuator_accelerations[0], t423,
+                ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]), grod_vz_leg1, -t1576,
+                t1625, t1658, t1674, t1693, -t1705,
+                minus_gcylinder_vz_leg2 * t1711 - gcross_vz_leg2 * t1709,
+                -(gcross_vz_leg2 * t1733 + minus_gcylinder_vz_leg2 * t1735), gcross_vz_leg2 * t1745,
+                -t1576, t1658, -t1625, -t1705, -t1693, t1674, t1775, t1803, -t1830, t1840,
+                grod_vz_leg2 * actuator_accelerations[1], t424,
+                ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]), grod_vz_leg2, -t1891,
+                t1940, t1973, t1989, t2008, -t2020,
+                minus_gcylinder_vz_leg3 * t2026 - gcross_vz_leg3 * t2024,
+                -(gcross_vz_leg3 * t2048 + minus_gcylinder_vz_leg3 * t2050), gcross_vz_leg3 * t2060,
+                -t1891, t1973, -t1940, -t2020, -t2008, t1989, t2090, t2118, -t2145, t2155,
+                grod_vz_leg3 * actuator_accelerations[2], t426,
+                ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]), grod_vz_leg3, t2214,
+                t2256, t2289, t2304, t2323, -t2335,
+                minus_gcylinder_vz_leg4 * t2341 - gcross_vz_leg4 * t2339,
+                -(gcross_vz_leg4 * t2363 + minus_gcylinder_vz_leg4 * t2365), gcross_vz_leg4 * t2375,
+                t2214, t2289, -t2256, -t2335, -t2323, t2304, t2405, t2433, -t2460, t2470,
+                grod_vz_leg4 * actuator_accelerations[3], t428,
+                ::overact::math::signed(grod_vz_leg4, actuator_velocities[3]), grod_vz_leg4, -t2529,
+                -t2571, t2604, t2619, -t2638, -t2650,
+                minus_gcylinder_vz_leg5 * t2656 - minus_gcross_vz_leg5 * t2654,
+                -(minus_gcross_vz_leg5 * t2678 + minus_gcylinder_vz_leg5 * t2680),
+                -(minus_gcross_vz_leg5 * t2690), -t2529, t2604, t2571, -t2650, t2638, t2619, t2720,
+                -t2748, -t2775, t2785, grod_vz_leg5 * actuator_accelerations[4], t430,
+                ::overact::math::signed(grod_vz_leg5, actuator_velocities[4]), grod_vz_leg5, -t2844,
+                -t2886, t2919, t2934, -t2953, -t2965,
+                minus_gcylinder_vz_leg6 * t2971 - minus_gcross_vz_leg6 * t2969,
+                -(minus_gcross_vz_leg6 * t2993 + minus_gcylinder_vz_leg6 * t2995),
+                -(minus_gcross_vz_leg6 * t3005), -t2844, t2919, t2886, -t2965, t2953, t2934, t3035,
+                -t3063, -t3090, t3100, grod_vz_leg6 * actuator_accelerations[5], t432,
                 ::overact::math::signed(grod_vz_leg6, actuator_velocities[5]), grod_vz_leg6, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t1225, t1230, t3179 * t1220 + t3181 * t1222 - t3184 * t799,
-                t1529,
+                0.0, 0.0, 0.0, 0.0, 0.0, t1214, t1219, t3130 * t1209 + t3132 * t1211 - t3135 * t713,
+                t1514,
             ],
             [
-                -t1274, t1313, t1346, t1361, t1382, t1392,
-                gcross_wx_leg1 * t1395 - gcylinder_wx_leg1 * t1397,
-                -(gcross_wx_leg1 * t1419 + gcylinder_wx_leg1 * t1421), gcross_wx_leg1 * t1431,
-                -t1274, t1346, -t1313, t1392, -t1382, t1361, t30 * t1461 - t48 * t1456,
-                t30 * t1490 - t48 * t1487, t30 * t1519 + t48 * t1514, t30 * t1530 - t48 * t1217,
-                grod_wx_leg1 * actuator_accelerations[0], t409,
-                ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]), grod_wx_leg1, t1606,
-                t1645, -t1678, -t1693, t1714, t1724,
-                -(gcylinder_wx_leg2 * t1729 - minus_gcross_wx_leg2 * t1727),
-                gcylinder_wx_leg2 * t1753 + minus_gcross_wx_leg2 * t1751,
-                -(minus_gcross_wx_leg2 * t1763), t1606, -t1678, -t1645, t1724, -t1714, -t1693,
-                t89 * t1788 - t81 * t1793, -(t81 * t1822 + t89 * t1819),
-                -(t81 * t1851 + t89 * t1846), t89 * t1566 - t81 * t1861,
-                grod_wx_leg2 * actuator_accelerations[1], t410,
-                ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]), grod_wx_leg2, t1928,
-                t1967, t2000, t2015, t2036, -t2046,
-                minus_gcylinder_wx_leg3 * t2051 - gcross_wx_leg3 * t2049,
-                -(gcross_wx_leg3 * t2073 + minus_gcylinder_wx_leg3 * t2075), gcross_wx_leg3 * t2085,
-                t1928, t2000, -t1967, -t2046, -t2036, t2015, t26 * t2115 + t44 * t2110,
-                t26 * t2144 - t44 * t2141, t26 * t2173 - t44 * t2168, t26 * t2183 - t44 * t1886,
-                grod_wx_leg3 * actuator_accelerations[2], t412,
-                ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]), grod_wx_leg3, t2250,
-                t2289, t2322, t2337, t2358, -t2368,
-                minus_gcylinder_wx_leg4 * t2373 - gcross_wx_leg4 * t2371,
-                -(gcross_wx_leg4 * t2395 + minus_gcylinder_wx_leg4 * t2397), gcross_wx_leg4 * t2407,
-                t2250, t2322, -t2289, -t2368, -t2358, t2337, t79 * t2437 + t87 * t2432,
-                t79 * t2466 - t87 * t2463, t79 * t2495 - t87 * t2490, t79 * t2505 - t87 * t2208,
-                grod_wx_leg4 * actuator_accelerations[3], t414,
-                ::overact::math::signed(grod_wx_leg4, actuator_velocities[3]), grod_wx_leg4, t2572,
-                t2611, t2644, -t2659, t2680, t2690,
-                gcross_wx_leg5 * t2693 - gcylinder_wx_leg5 * t2695,
-                gcross_wx_leg5 * t2717 + gcylinder_wx_leg5 * t2719, gcross_wx_leg5 * t2729, t2572,
-                t2644, -t2611, t2690, -t2680, -t2659, t47 * t2754 - t29 * t2759,
-                t29 * t2788 + t47 * t2785, t29 * t2817 + t47 * t2812, t47 * t2534 - t29 * t2827,
-                grod_wx_leg5 * actuator_accelerations[4], t416,
-                ::overact::math::signed(grod_wx_leg5, actuator_velocities[4]), grod_wx_leg5, -t2894,
-                -t2933, t2966, t2981, -t3002, -t3012,
-                minus_gcylinder_wx_leg6 * t3017 - minus_gcross_wx_leg6 * t3015,
-                -(minus_gcross_wx_leg6 * t3039 + minus_gcylinder_wx_leg6 * t3041),
-                -(minus_gcross_wx_leg6 * t3051), -t2894, t2966, t2933, -t3012, t3002, t2981,
-                t80 * t3081 - t88 * t3076, -(t80 * t3110 + t88 * t3107),
-                -(t80 * t3139 + t88 * t3134), t80 * t3149 - t88 * t2856,
-                grod_wx_leg6 * actuator_accelerations[5], t418,
+                -t1268, t1302, t1335, t1349, t1369, t1379,
+                gcross_wx_leg1 * t1382 - gcylinder_wx_leg1 * t1384,
+                -(gcross_wx_leg1 * t1406 + gcylinder_wx_leg1 * t1408), gcross_wx_leg1 * t1418,
+                -t1268, t1335, -t1302, t1379, -t1369, t1349, t30 * t1448 - t48 * t1443,
+                t30 * t1476 - t48 * t1473, t30 * t1504 + t48 * t1499, t30 * t1515 - t48 * t1206,
+                grod_wx_leg1 * actuator_accelerations[0], t506,
+                ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]), grod_wx_leg1, t1585,
+                t1628, -t1661, -t1676, t1696, t1706,
+                -(gcylinder_wx_leg2 * t1711 - minus_gcross_wx_leg2 * t1709),
+                gcylinder_wx_leg2 * t1735 + minus_gcross_wx_leg2 * t1733,
+                -(minus_gcross_wx_leg2 * t1745), t1585, -t1661, -t1628, t1706, -t1696, -t1676,
+                t74 * t1770 - t83 * t1775, -(t83 * t1803 + t74 * t1800), t83 * t1830 - t74 * t1825,
+                t74 * t1550 - t83 * t1840, grod_wx_leg2 * actuator_accelerations[1], t507,
+                ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]), grod_wx_leg2, -t1900,
+                t1943, t1976, t1991, t2011, -t2021,
+                minus_gcylinder_wx_leg3 * t2026 - gcross_wx_leg3 * t2024,
+                -(gcross_wx_leg3 * t2048 + minus_gcylinder_wx_leg3 * t2050), gcross_wx_leg3 * t2060,
+                -t1900, t1976, -t1943, -t2021, -t2011, t1991, t26 * t2090 + t44 * t2085,
+                t26 * t2118 - t44 * t2115, -(t26 * t2145 + t44 * t2140), t26 * t2155 - t44 * t1863,
+                grod_wx_leg3 * actuator_accelerations[2], t509,
+                ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]), grod_wx_leg3, t2223,
+                t2259, t2292, t2306, t2326, -t2336,
+                minus_gcylinder_wx_leg4 * t2341 - gcross_wx_leg4 * t2339,
+                -(gcross_wx_leg4 * t2363 + minus_gcylinder_wx_leg4 * t2365), gcross_wx_leg4 * t2375,
+                t2223, t2292, -t2259, -t2336, -t2326, t2306, t81 * t2405 + t72 * t2400,
+                t81 * t2433 - t72 * t2430, -(t81 * t2460 + t72 * t2455), t81 * t2470 - t72 * t2178,
+                grod_wx_leg4 * actuator_accelerations[3], t511,
+                ::overact::math::signed(grod_wx_leg4, actuator_velocities[3]), grod_wx_leg4, t2538,
+                t2574, t2607, -t2621, t2641, t2651,
+                gcross_wx_leg5 * t2654 - gcylinder_wx_leg5 * t2656,
+                gcross_wx_leg5 * t2678 + gcylinder_wx_leg5 * t2680, gcross_wx_leg5 * t2690, t2538,
+                t2607, -t2574, t2651, -t2641, -t2621, t47 * t2715 - t29 * t2720,
+                t29 * t2748 + t47 * t2745, t29 * t2775 + t47 * t2770, t47 * t2497 - t29 * t2785,
+                grod_wx_leg5 * actuator_accelerations[4], t513,
+                ::overact::math::signed(grod_wx_leg5, actuator_velocities[4]), grod_wx_leg5, -t2853,
+                -t2889, t2922, t2936, -t2956, -t2966,
+                minus_gcylinder_wx_leg6 * t2971 - minus_gcross_wx_leg6 * t2969,
+                -(minus_gcross_wx_leg6 * t2993 + minus_gcylinder_wx_leg6 * t2995),
+                -(minus_gcross_wx_leg6 * t3005), -t2853, t2922, t2889, -t2966, t2956, t2936,
+                t82 * t3035 - t73 * t3030, -(t82 * t3063 + t73 * t3060),
+                -(t82 * t3090 + t73 * t3085), t82 * t3100 - t73 * t2812,
+                grod_wx_leg6 * actuator_accelerations[5], t515,
                 ::overact::math::signed(grod_wx_leg6, actuator_velocities[5]), grod_wx_leg6,
-                t5 * t3175 + t3188 - t3193, t5 * t3210 + t10 * t3213 + t3179 * t3218,
-                t5 * t3236 + t10 * t3239 + t3179 * t3242, t10 * t3209 - t3256 + t3193,
-                t5 * t3267 + t10 * t3269 + t3179 * t3272, t3256 - t3188 + t3179 * t3235,
-                t20 * t1529 - t38 * t1170, t24 * t1529 - t42 * t1170, t3181 * t1529 - t3184 * t1170,
+                t5 * t3126 + t3139 - t3144, t5 * t3161 + t10 * t3164 + t3130 * t3169,
+                t5 * t3187 + t10 * t3190 + t3130 * t3193, t10 * t3160 - t3207 + t3144,
+                t5 * t3218 + t10 * t3220 + t3130 * t3223, t3207 - t3139 + t3130 * t3186,
+                t20 * t1514 - t38 * t1159, t24 * t1514 - t42 * t1159, t3132 * t1514 - t3135 * t1159,
                 0.0,
             ],
             [
-                t1283, t1316, -t1349, t1363, -t1385, t1393,
-                -(minus_gcross_wy_leg1 * t1395 + gcylinder_wy_leg1 * t1397),
-                minus_gcross_wy_leg1 * t1419 - gcylinder_wy_leg1 * t1421,
-                -(minus_gcross_wy_leg1 * t1431), t1283, -t1349, -t1316, t1393, t1385, t1363,
-                -(t48 * t1451 + t16 * t1461), -(t48 * t1482 + t16 * t1490),
-                t48 * t1509 - t16 * t1519, t48 * t1198 - t16 * t1530,
-                grod_wy_leg1 * actuator_accelerations[0], t544,
-                ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]), grod_wy_leg1, t1615,
-                t1648, t1681, t1695, t1717, -t1725,
-                minus_gcylinder_wy_leg2 * t1729 - minus_minus_gcross_wy_leg2 * t1727,
-                -(minus_minus_gcross_wy_leg2 * t1751 + minus_gcylinder_wy_leg2 * t1753),
-                minus_minus_gcross_wy_leg2 * t1763, t1615, t1681, -t1648, -t1725, -t1717, t1695,
-                t89 * t1783 + t75 * t1793, t75 * t1822 - t89 * t1814, t75 * t1851 - t89 * t1841,
-                t75 * t1861 - t89 * t1561, grod_wy_leg2 * actuator_accelerations[1], t545,
-                ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]), grod_wy_leg2, t1937,
-                t1970, t2003, -t2017, t2039, t2047,
-                -(gcross_wy_leg3 * t2049 + gcylinder_wy_leg3 * t2051),
-                gcylinder_wy_leg3 * t2075 - gcross_wy_leg3 * t2073, gcross_wy_leg3 * t2085, t1937,
-                t2003, -t1970, t2047, -t2039, -t2017, t44 * t2105 - t12 * t2115,
-                t44 * t2136 - t12 * t2144, t44 * t2163 - t12 * t2173, t44 * t1888 - t12 * t2183,
-                -(minus_grod_wy_leg3 * actuator_accelerations[2]), -t547,
+                t1277, t1305, -t1338, t1351, -t1372, t1380,
+                -(minus_gcross_wy_leg1 * t1382 + gcylinder_wy_leg1 * t1384),
+                minus_gcross_wy_leg1 * t1406 - gcylinder_wy_leg1 * t1408,
+                -(minus_gcross_wy_leg1 * t1418), t1277, -t1338, -t1305, t1380, t1372, t1351,
+                -(t48 * t1438 + t16 * t1448), -(t48 * t1468 + t16 * t1476),
+                t48 * t1494 - t16 * t1504, t48 * t1187 - t16 * t1515,
+                grod_wy_leg1 * actuator_accelerations[0], t71,
+                ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]), grod_wy_leg1, -t1594,
+                t1631, t1664, t1678, t1699, -t1707,
+                minus_gcylinder_wy_leg2 * t1711 - minus_minus_gcross_wy_leg2 * t1709,
+                -(minus_minus_gcross_wy_leg2 * t1733 + minus_gcylinder_wy_leg2 * t1735),
+                minus_minus_gcross_wy_leg2 * t1745, -t1594, t1664, -t1631, -t1707, -t1699, t1678,
+                t74 * t1765 + t77 * t1775, t77 * t1803 - t74 * t1795, -(t74 * t1820 + t77 * t1830),
+                t77 * t1840 - t74 * t1545, grod_wy_leg2 * actuator_accelerations[1], t108,
+                ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]), grod_wy_leg2, t1909,
+                t1946, t1979, -t1993, t2014, t2022,
+                -(gcross_wy_leg3 * t2024 + gcylinder_wy_leg3 * t2026),
+                gcylinder_wy_leg3 * t2050 - gcross_wy_leg3 * t2048, gcross_wy_leg3 * t2060, t1909,
+                t1979, -t1946, t2022, -t2014, -t1993, t44 * t2080 - t12 * t2090,
+                t44 * t2110 - t12 * t2118, t44 * t2135 + t12 * t2145, t44 * t1865 - t12 * t2155,
+                -(minus_grod_wy_leg3 * actuator_accelerations[2]), -t136,
                 -::overact::math::signed(minus_grod_wy_leg3, actuator_velocities[2]),
-                -minus_grod_wy_leg3, t2259, t2292, t2325, -t2339, t2361, t2369,
-                -(gcross_wy_leg4 * t2371 + gcylinder_wy_leg4 * t2373),
-                gcylinder_wy_leg4 * t2397 - gcross_wy_leg4 * t2395, gcross_wy_leg4 * t2407, t2259,
-                t2325, -t2292, t2369, -t2361, -t2339, t87 * t2427 - t73 * t2437,
-                t87 * t2458 - t73 * t2466, t87 * t2485 - t73 * t2495, t87 * t2210 - t73 * t2505,
-                -(minus_grod_wy_leg4 * actuator_accelerations[3]), -t549,
+                -minus_grod_wy_leg3, t2232, t2262, t2295, -t2308, t2329, t2337,
+                -(gcross_wy_leg4 * t2339 + gcylinder_wy_leg4 * t2341),
+                gcylinder_wy_leg4 * t2365 - gcross_wy_leg4 * t2363, gcross_wy_leg4 * t2375, t2232,
+                t2295, -t2262, t2337, -t2329, -t2308, t72 * t2395 - t75 * t2405,
+                t72 * t2425 - t75 * t2433, t72 * t2450 + t75 * t2460, t72 * t2180 - t75 * t2470,
+                -(minus_grod_wy_leg4 * actuator_accelerations[3]), -t164,
                 -::overact::math::signed(minus_grod_wy_leg4, actuator_velocities[3]),
-                -minus_grod_wy_leg4, t2581, t2614, -t2647, t2661, t2683, t2691,
-                -(minus_gcross_wy_leg5 * t2693 + gcylinder_wy_leg5 * t2695),
-                gcylinder_wy_leg5 * t2719 - minus_gcross_wy_leg5 * t2717,
-                -(minus_gcross_wy_leg5 * t2729), t2581, -t2647, -t2614, t2691, -t2683, t2661,
-                t15 * t2759 - t47 * t2749, -(t47 * t2780 + t15 * t2788),
-                -(t47 * t2807 + t15 * t2817), t15 * t2827 - t47 * t2532,
-                grod_wy_leg5 * actuator_accelerations[4], t551,
-                ::overact::math::signed(grod_wy_leg5, actuator_velocities[4]), grod_wy_leg5, t2903,
-                t2936, t2969, -t2983, t3005, t3013,
-                gcross_wy_leg6 * t3015 - gcylinder_wy_leg6 * t3017,
-                gcross_wy_leg6 * t3039 + gcylinder_wy_leg6 * t3041, gcross_wy_leg6 * t3051, t2903,
-                t2969, -t2936, t3013, -t3005, -t2983, t88 * t3071 - t74 * t3081,
-                t88 * t3102 + t74 * t3110, t88 * t3129 + t74 * t3139, t88 * t2854 - t74 * t3149,
-                -(minus_grod_wy_leg6 * actuator_accelerations[5]), -t553,
+                -minus_grod_wy_leg4, t2547, t2577, -t2610, t2623, t2644, t2652,
+                -(minus_gcross_wy_leg5 * t2654 + gcylinder_wy_leg5 * t2656),
+                gcylinder_wy_leg5 * t2680 - minus_gcross_wy_leg5 * t2678,
+                -(minus_gcross_wy_leg5 * t2690), t2547, -t2610, -t2577, t2652, -t2644, t2623,
+                t15 * t2720 - t47 * t2710, -(t47 * t2740 + t15 * t2748),
+                -(t15 * t2775 - t47 * t2765), t15 * t2785 - t47 * t2495,
+                grod_wy_leg5 * actuator_accelerations[4], t193,
+                ::overact::math::signed(grod_wy_leg5, actuator_velocities[4]), grod_wy_leg5, t2862,
+                t2892, t2925, -t2938, t2959, t2967,
+                gcross_wy_leg6 * t2969 - gcylinder_wy_leg6 * t2971,
+                gcross_wy_leg6 * t2993 + gcylinder_wy_leg6 * t2995, gcross_wy_leg6 * t3005, t2862,
+                t2925, -t2892, t2967, -t2959, -t2938, t73 * t3025 - t76 * t3035,
+                t73 * t3055 + t76 * t3063, t76 * t3090 - t73 * t3080, t73 * t2810 - t76 * t3100,
+                -(minus_grod_wy_leg6 * actuator_accelerations[5]), -t222,
                 -::overact::math::signed(minus_grod_wy_leg6, actuator_velocities[5]),
-                -minus_grod_wy_leg6, t20 * t3175 + t3196 - t3198,
-                t20 * t3210 + t24 * t3213 + t3181 * t3218,
-                t20 * t3236 + t24 * t3239 + t3181 * t3242, t24 * t3209 - t3260 + t3198,
-                t20 * t3267 + t24 * t3269 + t3181 * t3272, t3260 - t3196 + t3181 * t3235,
-                t38 * t1180 - t5 * t1529, t42 * t1180 - t10 * t1529, t3184 * t1180 - t3179 * t1529,
+                -minus_grod_wy_leg6, t20 * t3126 + t3147 - t3149,
+                t20 * t3161 + t24 * t3164 + t3132 * t3169,
+                t20 * t3187 + t24 * t3190 + t3132 * t3193, t24 * t3160 - t3211 + t3149,
+                t20 * t3218 + t24 * t3220 + t3132 * t3223, t3211 - t3147 + t3132 * t3186,
+                t38 * t1169 - t5 * t1514, t42 * t1169 - t10 * t1514, t3135 * t1169 - t3130 * t1514,
                 0.0,
             ],
             [
-                t1292, t1319, t1352, t1365, t1388, -t1394,
-                gcross_wz_leg1 * t1395 + minus_gcylinder_wz_leg1 * t1397,
-                -(minus_grod_wz_leg1 * t1415), gcross_wz_leg1 * t1431, t1292, t1352, -t1319, -t1394,
-                -t1388, t1365, t16 * t1456 + t30 * t1451, t16 * t1487 + t30 * t1482,
-                -(t16 * t1514 + t30 * t1509), t16 * t1217 - t30 * t1198,
-                -(minus_grod_wz_leg1 * actuator_accelerations[0]), -t656,
+                t1286, t1308, t1341, t1353, t1375, -t1381,
+                gcross_wz_leg1 * t1382 + minus_gcylinder_wz_leg1 * t1384,
+                -(minus_grod_wz_leg1 * t1402), gcross_wz_leg1 * t1418, t1286, t1341, -t1308, -t1381,
+                -t1375, t1353, t16 * t1443 + t30 * t1438, t16 * t1473 + t30 * t1468,
+                -(t16 * t1499 + t30 * t1494), t16 * t1206 - t30 * t1187,
+                -(minus_grod_wz_leg1 * actuator_accelerations[0]), -t615,
                 -::overact::math::signed(minus_grod_wz_leg1, actuator_velocities[0]),
-                -minus_grod_wz_leg1, t1624, t1651, t1684, -t1697, t1720, t1726,
-                -(minus_minus_gcylinder_wz_leg2 * t1729 + gcross_wz_leg2 * t1727),
-                -(minus_grod_wz_leg2 * t1747), gcross_wz_leg2 * t1763, t1624, t1684, -t1651, t1726,
-                -t1720, -t1697, -(t75 * t1788 + t81 * t1783), t75 * t1819 + t81 * t1814,
-                t75 * t1846 + t81 * t1841, t81 * t1561 - t75 * t1566,
-                -(minus_grod_wz_leg2 * actuator_accelerations[1]), -t657,
+                -minus_grod_wz_leg1, t1603, t1634, t1667, -t1680, t1702, t1708,
+                -(minus_minus_gcylinder_wz_leg2 * t1711 + gcross_wz_leg2 * t1709),
+                -(minus_grod_wz_leg2 * t1729), gcross_wz_leg2 * t1745, t1603, t1667, -t1634, t1708,
+                -t1702, -t1680, -(t77 * t1770 + t83 * t1765), t77 * t1800 + t83 * t1795,
+                t77 * t1825 + t83 * t1820, t83 * t1545 - t77 * t1550,
+                -(minus_grod_wz_leg2 * actuator_accelerations[1]), -t616,
                 -::overact::math::signed(minus_grod_wz_leg2, actuator_velocities[1]),
-                -minus_grod_wz_leg2, t1946, t1973, -t2006, t2019, t2042, t2048,
-                minus_gcross_wz_leg3 * t2049 - gcylinder_wz_leg3 * t2051, grod_wz_leg3 * t2069,
-                -(minus_gcross_wz_leg3 * t2085), t1946, -t2006, -t1973, t2048, -t2042, t2019,
-                -(t12 * t2110 + t26 * t2105), t12 * t2141 - t26 * t2136, t12 * t2168 - t26 * t2163,
-                t12 * t1886 - t26 * t1888, grod_wz_leg3 * actuator_accelerations[2], t655,
-                ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]), grod_wz_leg3, t2268,
-                t2295, -t2328, t2341, t2364, t2370,
-                minus_gcross_wz_leg4 * t2371 - gcylinder_wz_leg4 * t2373, grod_wz_leg4 * t2391,
-                -(minus_gcross_wz_leg4 * t2407), t2268, -t2328, -t2295, t2370, -t2364, t2341,
-                -(t73 * t2432 + t79 * t2427), t73 * t2463 - t79 * t2458, t73 * t2490 - t79 * t2485,
-                t73 * t2208 - t79 * t2210, grod_wz_leg4 * actuator_accelerations[3], t660,
-                ::overact::math::signed(grod_wz_leg4, actuator_velocities[3]), grod_wz_leg4, t2590,
-                t2617, t2650, t2663, t2686, -t2692,
-                gcross_wz_leg5 * t2693 + minus_gcylinder_wz_leg5 * t2695,
-                -(minus_grod_wz_leg5 * t2713), gcross_wz_leg5 * t2729, t2590, t2650, -t2617, -t2692,
-                -t2686, t2663, t29 * t2749 - t15 * t2754, t29 * t2780 - t15 * t2785,
-                t29 * t2807 - t15 * t2812, t29 * t2532 - t15 * t2534,
-                -(minus_grod_wz_leg5 * actuator_accelerations[4]), -t662,
+                -minus_grod_wz_leg2, t1918, t1949, -t1982, t1995, t2017, t2023,
+                minus_gcross_wz_leg3 * t2024 - gcylinder_wz_leg3 * t2026, grod_wz_leg3 * t2044,
+                -(minus_gcross_wz_leg3 * t2060), t1918, -t1982, -t1949, t2023, -t2017, t1995,
+                -(t12 * t2085 + t26 * t2080), t12 * t2115 - t26 * t2110, t12 * t2140 - t26 * t2135,
+                t12 * t1863 - t26 * t1865, grod_wz_leg3 * actuator_accelerations[2], t614,
+                ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]), grod_wz_leg3, t2241,
+                t2265, -t2298, t2310, t2332, t2338,
+                minus_gcross_wz_leg4 * t2339 - gcylinder_wz_leg4 * t2341, grod_wz_leg4 * t2359,
+                -(minus_gcross_wz_leg4 * t2375), t2241, -t2298, -t2265, t2338, -t2332, t2310,
+                -(t75 * t2400 + t81 * t2395), t75 * t2430 - t81 * t2425, t75 * t2455 - t81 * t2450,
+                t75 * t2178 - t81 * t2180, grod_wz_leg4 * actuator_accelerations[3], t619,
+                ::overact::math::signed(grod_wz_leg4, actuator_velocities[3]), grod_wz_leg4, t2556,
+                t2580, t2613, t2625, t2647, -t2653,
+                gcross_wz_leg5 * t2654 + minus_gcylinder_wz_leg5 * t2656,
+                -(minus_grod_wz_leg5 * t2674), gcross_wz_leg5 * t2690, t2556, t2613, -t2580, -t2653,
+                -t2647, t2625, t29 * t2710 - t15 * t2715, t29 * t2740 - t15 * t2745,
+                -(t29 * t2765 + t15 * t2770), t29 * t2495 - t15 * t2497,
+                -(minus_grod_wz_leg5 * actuator_accelerations[4]), -t621,
                 -::overact::math::signed(minus_grod_wz_leg5, actuator_velocities[4]),
-                -minus_grod_wz_leg5, t2912, t2939, t2972, -t2985, t3008, t3014,
-                gcross_wz_leg6 * t3015 - gcylinder_wz_leg6 * t3017, grod_wz_leg6 * t3035,
-                gcross_wz_leg6 * t3051, t2912, t2972, -t2939, t3014, -t3008, -t2985,
-                t74 * t3076 - t80 * t3071, t74 * t3107 - t80 * t3102, t74 * t3134 - t80 * t3129,
-                t74 * t2856 - t80 * t2854, grod_wz_leg6 * actuator_accelerations[5], t664,
+                -minus_grod_wz_leg5, t2871, t2895, t2928, -t2940, t2962, t2968,
+                gcross_wz_leg6 * t2969 - gcylinder_wz_leg6 * t2971, grod_wz_leg6 * t2989,
+                gcross_wz_leg6 * t3005, t2871, t2928, -t2895, t2968, -t2962, -t2940,
+                t76 * t3030 - t82 * t3025, t76 * t3060 - t82 * t3055, t76 * t3085 + t82 * t3080,
+                t76 * t2812 - t82 * t2810, grod_wz_leg6 * actuator_accelerations[5], t623,
                 ::overact::math::signed(grod_wz_leg6, actuator_velocities[5]), grod_wz_leg6,
-                t38 * t3175 + t3201 - t3203, t38 * t3210 + t42 * t3213 + t3184 * t3218,
-                t38 * t3236 + t42 * t3239 + t3184 * t3242, t42 * t3209 - t3264 + t3203,
-                t38 * t3267 + t42 * t3269 + t3184 * t3272, t3264 - t3201 + t3184 * t3235,
-                t5 * t1170 - t20 * t1180, t10 * t1170 - t24 * t1180, t3179 * t1170 - t3181 * t1180,
+                t38 * t3126 + t3152 - t3154, t38 * t3161 + t42 * t3164 + t3135 * t3169,
+                t38 * t3187 + t42 * t3190 + t3135 * t3193, t42 * t3160 - t3215 + t3154,
+                t38 * t3218 + t42 * t3220 + t3135 * t3223, t3215 - t3152 + t3135 * t3186,
+                t5 * t1159 - t20 * t1169, t10 * t1159 - t24 * t1169, t3130 * t1159 - t3132 * t1169,
                 0.0,
             ],
         ])
@@ -13290,7 +13274,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 2631 operations (945 additions, 1668 multiplications, 18 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2072 intermediates.
+    /// 2595 operations (927 additions, 1619 multiplications, 49 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2036 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -13404,843 +13388,843 @@ impl Hexapod {
         let c_cross_leg1 = t266 * t270;
         let t272 = 0.9781476007338057 * c_cross_leg1;
         let minus_gcross_vx_leg1 = t270 * t272;
-        let t276 = 0.20791169081775931 * t245 + 0.9781476007338057 * t255;
-        let t278 = t268 + t276 * t276;
-        ::overact::guard::reach(t278, "leg1")?;
-        let t279 = ::overact::math::sqrt(t278);
-        ::overact::guard::leg(t279, 0.5619721604570214, "leg1")?;
-        let t280 = 1.0 / t279;
-        let c_cylinder_leg1 = t269 * t280;
+        let t274 = 0.05176380902050415 * t160;
+        let t275 = 0.19318516525781368 * t193;
+        let t276 = t274 + t275;
+        let t277 = 0.19318516525781368 * t160;
+        let t278 = 0.05176380902050415 * t193;
+        let t279 = t277 + t278;
+        let t281 = acceleration[0] + t279 - t276;
+        let t283 = 0.20791169081775931 * c_cross_leg1;
+        let t284 = 0.05176380902050415 * t170;
+        let t285 = 0.19318516525781368 * t198;
+        let t286 = t284 + t285;
+        let t287 = 0.19318516525781368 * t170;
+        let t288 = 0.05176380902050415 * t198;
+        let t289 = t287 + t288;
+        let t291 = acceleration[1] + t289 - t286;
         let minus_s_cross_leg1 = t257 * t270;
-        let t283 = 0.9781476007338057 * minus_s_cross_leg1;
-        let minus_s_cylinder_leg1 = t276 / t279;
-        let t287 = t283 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
-        let t290 = t261 * twist[4] - t249 * twist[5];
-        let t293 = t252 * twist[5] - t264 * twist[4];
-        let t295 = twist[0] - (t290 + t293);
-        let t297 = 0.20791169081775931 * minus_s_cross_leg1;
-        let t300 = t297 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
-        let t303 = t239 * twist[5] - t261 * twist[3];
-        let t306 = t264 * twist[3] - t242 * twist[5];
-        let t308 = twist[1] - (t303 + t306);
-        let t311 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t314 = t249 * twist[3] - t239 * twist[4];
-        let t317 = t242 * twist[4] - t252 * twist[3];
-        let t319 = twist[2] - (t314 + t317);
-        let rate_cylinder_leg1 = t280 * (t287 * t295 - t300 * t308 + t311 * t319);
-        let t324 = 0.20791169081775931 * c_cross_leg1;
-        let t328 = t272 * t295 - t324 * t308 - minus_s_cross_leg1 * t319;
-        let minus_rate_cross_leg1 = t270 * t328;
-        let t330 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t331 = rate_cylinder_leg1 * t330;
-        let t332 = 0.05176380902050415 * t160;
-        let t333 = 0.19318516525781368 * t193;
-        let t334 = t332 + t333;
-        let t335 = 0.19318516525781368 * t160;
-        let t336 = 0.05176380902050415 * t193;
-        let t337 = t335 + t336;
-        let t339 = acceleration[0] + t337 - t334;
-        let t341 = 0.05176380902050415 * t170;
-        let t342 = 0.19318516525781368 * t198;
-        let t343 = t341 + t342;
-        let t344 = 0.19318516525781368 * t170;
-        let t345 = 0.05176380902050415 * t198;
-        let t346 = t344 + t345;
-        let t348 = acceleration[1] + t346 - t343;
-        let t351 = 0.05176380902050415 * t178;
-        let t352 = 0.19318516525781368 * t203;
-        let t353 = t351 + t352;
-        let t354 = 0.19318516525781368 * t178;
-        let t355 = 0.05176380902050415 * t203;
-        let t356 = t354 + t355;
-        let t358 = acceleration[2] + t356 - t353;
-        let t360 = t272 * t339 - t324 * t348 - minus_s_cross_leg1 * t358;
-        let t361 = t279 * t331;
-        let t364 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let minus_minus_grod_vy_leg1 = t255 * t280;
-        let grod_vx_leg1 = t245 * t280;
+        let t295 = 0.05176380902050415 * t178;
+        let t296 = 0.19318516525781368 * t203;
+        let t297 = t295 + t296;
+        let t298 = 0.19318516525781368 * t178;
+        let t299 = 0.05176380902050415 * t203;
+        let t300 = t298 + t299;
+        let t302 = acceleration[2] + t300 - t297;
+        let t304 = t272 * t281 - t283 * t291 - minus_s_cross_leg1 * t302;
+        let t305 = 0.9781476007338057 * minus_s_cross_leg1;
+        let t308 = 0.20791169081775931 * t245 + 0.9781476007338057 * t255;
+        let t310 = t268 + t308 * t308;
+        ::overact::guard::reach(t310, "leg1")?;
+        let t311 = ::overact::math::sqrt(t310);
+        ::overact::guard::leg(t311, 0.5619721604570214, "leg1")?;
+        let minus_s_cylinder_leg1 = t308 / t311;
+        let c_cylinder_leg1 = t269 / t311;
+        let t316 = t305 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
+        let t319 = t261 * twist[4] - t249 * twist[5];
+        let t322 = t252 * twist[5] - t264 * twist[4];
+        let t324 = twist[0] - (t319 + t322);
+        let t326 = 0.20791169081775931 * minus_s_cross_leg1;
+        let t329 = t326 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
+        let t332 = t239 * twist[5] - t261 * twist[3];
+        let t335 = t264 * twist[3] - t242 * twist[5];
+        let t337 = twist[1] - (t332 + t335);
+        let t340 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t343 = t249 * twist[3] - t239 * twist[4];
+        let t346 = t242 * twist[4] - t252 * twist[3];
+        let t348 = twist[2] - (t343 + t346);
+        let t350 = t316 * t324 - t329 * t337 + t340 * t348;
+        let t355 = t272 * t324 - t283 * t337 - minus_s_cross_leg1 * t348;
+        let minus_rate_cross_leg1 = t270 * t355;
+        let t357 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t358 = t350 * t357;
+        let t361 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let minus_minus_grod_vy_leg1 = t255 / t311;
+        let grod_vx_leg1 = t245 / t311;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t308
-            + grod_vx_leg1 * t295 + grod_vz_leg1 * t319;
-        let t373 = minus_minus_rate_rod_leg1 + minus_minus_rate_rod_leg1;
-        let minus_rate_dot_cross_leg1 = t270 * (t360 - t361 - t361 - t364 * t373);
-        let t377 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t379 = t331 + t377 + t331;
-        let t380 = c_cylinder_leg1 * t379;
-        let gcylinder_vx_leg1 = t287 * t280;
-        let t383 = t364 * t330;
-        let t384 = gcylinder_vx_leg1 * t383;
-        let minus_gcylinder_vy_leg1 = t300 * t280;
-        let t387 = minus_gcylinder_vy_leg1 * t383;
-        let gcross_vy_leg1 = t270 * t324;
+        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t337
+            + grod_vx_leg1 * t324 + grod_vz_leg1 * t348;
+        let t370 = 2.0 * minus_minus_rate_rod_leg1;
+        let minus_rate_dot_cross_leg1 = t270 * (t304 - t358 - t358 - t361 * t370);
+        let t374 = 1.0 / t311;
+        let rate_cylinder_leg1 = t374 * t350;
+        let t376 = rate_cylinder_leg1 * t361;
+        let t377 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t379 = t376 + t376 - t377;
+        let t380 = minus_s_cylinder_leg1 * t379;
+        let t381 = minus_rate_dot_cross_leg1 + t380;
+        let gcylinder_vx_leg1 = t316 * t374;
+        let t384 = t361 * t357;
+        let t385 = gcylinder_vx_leg1 * t384;
+        let minus_gcylinder_vy_leg1 = t329 * t374;
+        let t388 = minus_gcylinder_vy_leg1 * t384;
+        let gcross_vy_leg1 = t270 * t283;
         let gcross_vz_leg1 = t270 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t311 * t280;
-        let t394 = gcylinder_vz_leg1 * t383;
+        let gcylinder_vz_leg1 = t340 * t374;
+        let t395 = gcylinder_vz_leg1 * t384;
         let gcross_wx_leg1 = t253 * gcross_vz_leg1 - t265 * gcross_vy_leg1;
         let gcylinder_wx_leg1 = t253 * gcylinder_vz_leg1
             + t265 * minus_gcylinder_vy_leg1;
-        let t403 = gcylinder_wx_leg1 * t383;
+        let t404 = gcylinder_wx_leg1 * t384;
         let minus_gcross_wy_leg1 = t265 * minus_gcross_vx_leg1 + t243 * gcross_vz_leg1;
         let gcylinder_wy_leg1 = t265 * gcylinder_vx_leg1 - t243 * gcylinder_vz_leg1;
-        let t412 = gcylinder_wy_leg1 * t383;
+        let t413 = gcylinder_wy_leg1 * t384;
         let minus_gcylinder_wz_leg1 = t243 * minus_gcylinder_vy_leg1
             + t253 * gcylinder_vx_leg1;
-        let t417 = minus_gcylinder_wz_leg1 * t383;
+        let t418 = minus_gcylinder_wz_leg1 * t384;
         let gcross_wz_leg1 = t243 * gcross_vy_leg1 + t253 * minus_gcross_vx_leg1;
-        let t423 = t241 - t240;
-        let t424 = t237 - t238;
-        let t425 = t423 + t424;
-        let t427 = pose[0] - t425 - 0.3912590402935223;
-        let t429 = t251 - t250;
-        let t430 = t247 - t248;
-        let t431 = t429 + t430;
-        let t433 = pose[1] - t431 - 0.08316467632710373;
-        let t435 = 0.9781476007338057 * t427 + 0.20791169081775931 * t433;
-        let t437 = t263 - t262;
-        let t438 = t259 - t260;
-        let t439 = t437 + t438;
-        let t440 = pose[2] - t439;
-        let t442 = t435 * t435 + t440 * t440;
-        let t443 = ::overact::math::sqrt(t442);
-        ::overact::guard::leg(t443, 0.5513142860385972, "leg2")?;
-        let t446 = 0.20791169081775931 * t427 - 0.9781476007338057 * t433;
-        let t448 = t442 + t446 * t446;
-        ::overact::guard::reach(t448, "leg2")?;
-        let t449 = ::overact::math::sqrt(t448);
-        ::overact::guard::leg(t449, 0.5619721604570214, "leg2")?;
-        let t450 = 1.0 / t449;
-        let c_cylinder_leg2 = t443 * t450;
-        let t453 = 1.0 / t443;
-        let minus_s_cross_leg2 = t435 * t453;
-        let t455 = 0.9781476007338057 * minus_s_cross_leg2;
-        let s_cylinder_leg2 = t446 / t449;
-        let t458 = 0.20791169081775931 * c_cylinder_leg2 - t455 * s_cylinder_leg2;
-        let gcylinder_vx_leg2 = t458 * t450;
-        let c_cross_leg2 = t440 * t453;
-        let t461 = 0.9781476007338057 * c_cross_leg2;
-        let t464 = t437 * twist[4] - t429 * twist[5];
-        let t467 = t438 * twist[4] - t430 * twist[5];
-        let t469 = twist[0] - (t464 + t467);
-        let t471 = 0.20791169081775931 * c_cross_leg2;
-        let t474 = t423 * twist[5] - t437 * twist[3];
-        let t477 = t424 * twist[5] - t438 * twist[3];
-        let t479 = twist[1] - (t474 + t477);
-        let t484 = t429 * twist[3] - t423 * twist[4];
-        let t487 = t430 * twist[3] - t424 * twist[4];
-        let t489 = twist[2] - (t484 + t487);
-        let t491 = t461 * t469 + t471 * t479 - minus_s_cross_leg2 * t489;
-        let minus_rate_cross_leg2 = t453 * t491;
-        let t493 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t494 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t495 = t493 * t494;
-        let t496 = gcylinder_vx_leg2 * t495;
-        let minus_gcross_vx_leg2 = t453 * t461;
-        let t499 = 0.20791169081775931 * minus_s_cross_leg2;
-        let t502 = t499 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
-        let t505 = c_cross_leg2 * s_cylinder_leg2;
-        let rate_cylinder_leg2 = t450 * (t458 * t469 - t502 * t479 - t505 * t489);
-        let t509 = rate_cylinder_leg2 * t494;
-        let t510 = t336 - t335;
-        let t511 = t332 - t333;
-        let t513 = acceleration[0] - (t510 + t511);
-        let t515 = t345 - t344;
-        let t516 = t341 - t342;
-        let t518 = acceleration[1] - (t515 + t516);
-        let t521 = t355 - t354;
-        let t522 = t351 - t352;
-        let t524 = acceleration[2] - (t521 + t522);
-        let t526 = t461 * t513 + t471 * t518 - minus_s_cross_leg2 * t524;
-        let t527 = t449 * t509;
-        let minus_minus_grod_vy_leg2 = t433 * t450;
-        let grod_vx_leg2 = t427 * t450;
+        let t424 = t241 - t240;
+        let t425 = t237 - t238;
+        let t426 = t424 + t425;
+        let t428 = pose[0] - t426 - 0.3912590402935223;
+        let t430 = t251 - t250;
+        let t431 = t247 - t248;
+        let t432 = t430 + t431;
+        let t434 = pose[1] - t432 - 0.08316467632710373;
+        let t436 = 0.9781476007338057 * t428 + 0.20791169081775931 * t434;
+        let t438 = t263 - t262;
+        let t439 = t259 - t260;
+        let t440 = t438 + t439;
+        let t441 = pose[2] - t440;
+        let t443 = t436 * t436 + t441 * t441;
+        let t444 = ::overact::math::sqrt(t443);
+        ::overact::guard::leg(t444, 0.5513142860385972, "leg2")?;
+        let t447 = 0.20791169081775931 * t428 - 0.9781476007338057 * t434;
+        let t449 = t443 + t447 * t447;
+        ::overact::guard::reach(t449, "leg2")?;
+        let t450 = ::overact::math::sqrt(t449);
+        ::overact::guard::leg(t450, 0.5619721604570214, "leg2")?;
+        let t451 = 1.0 / t450;
+        let c_cylinder_leg2 = t444 * t451;
+        let t454 = 1.0 / t444;
+        let minus_s_cross_leg2 = t436 * t454;
+        let t456 = 0.9781476007338057 * minus_s_cross_leg2;
+        let s_cylinder_leg2 = t447 / t450;
+        let t459 = 0.20791169081775931 * c_cylinder_leg2 - t456 * s_cylinder_leg2;
+        let gcylinder_vx_leg2 = t459 * t451;
+        let c_cross_leg2 = t441 * t454;
+        let t462 = 0.9781476007338057 * c_cross_leg2;
+        let t465 = t438 * twist[4] - t430 * twist[5];
+        let t468 = t439 * twist[4] - t431 * twist[5];
+        let t470 = twist[0] - (t465 + t468);
+        let t472 = 0.20791169081775931 * c_cross_leg2;
+        let t475 = t424 * twist[5] - t438 * twist[3];
+        let t478 = t425 * twist[5] - t439 * twist[3];
+        let t480 = twist[1] - (t475 + t478);
+        let t485 = t430 * twist[3] - t424 * twist[4];
+        let t488 = t431 * twist[3] - t425 * twist[4];
+        let t490 = twist[2] - (t485 + t488);
+        let t492 = t462 * t470 + t472 * t480 - minus_s_cross_leg2 * t490;
+        let minus_rate_cross_leg2 = t454 * t492;
+        let t494 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t495 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t496 = t494 * t495;
+        let t497 = gcylinder_vx_leg2 * t496;
+        let minus_gcross_vx_leg2 = t454 * t462;
+        let t499 = t278 - t277;
+        let t500 = t274 - t275;
+        let t502 = acceleration[0] - (t499 + t500);
+        let t504 = t288 - t287;
+        let t505 = t284 - t285;
+        let t507 = acceleration[1] - (t504 + t505);
+        let t510 = t299 - t298;
+        let t511 = t295 - t296;
+        let t513 = acceleration[2] - (t510 + t511);
+        let t515 = t462 * t502 + t472 * t507 - minus_s_cross_leg2 * t513;
+        let minus_minus_grod_vy_leg2 = t434 / t450;
+        let grod_vx_leg2 = t428 * t451;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t479
-            + grod_vx_leg2 * t469 + grod_vz_leg2 * t489;
-        let t538 = minus_minus_rate_rod_leg2 + minus_minus_rate_rod_leg2;
-        let minus_rate_dot_cross_leg2 = t453 * (t526 + t527 + t527 - t493 * t538);
-        let t542 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t544 = t509 + t509 - t542;
-        let t545 = c_cylinder_leg2 * t544;
-        let minus_gcross_vy_leg2 = t453 * t471;
-        let minus_gcylinder_vy_leg2 = t502 * t450;
-        let t551 = minus_gcylinder_vy_leg2 * t495;
-        let gcross_vz_leg2 = t453 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t505 * t450;
-        let t556 = minus_gcylinder_vz_leg2 * t495;
-        let minus_gcross_wx_leg2 = t431 * gcross_vz_leg2 + t439 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t431 * minus_gcylinder_vz_leg2
-            - t439 * minus_gcylinder_vy_leg2;
-        let t565 = gcylinder_wx_leg2 * t495;
-        let minus_gcylinder_wy_leg2 = t439 * gcylinder_vx_leg2
-            + t425 * minus_gcylinder_vz_leg2;
-        let t570 = minus_gcylinder_wy_leg2 * t495;
-        let minus_minus_gcross_wy_leg2 = t439 * minus_gcross_vx_leg2
-            + t425 * gcross_vz_leg2;
-        let gcross_wz_leg2 = t425 * minus_gcross_vy_leg2 - t431 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t425 * minus_gcylinder_vy_leg2
-            + t431 * gcylinder_vx_leg2;
-        let t583 = minus_minus_gcylinder_wz_leg2 * t495;
-        let t586 = pose[1] + t249 - 0.3804226065180615;
-        let t589 = pose[0] + t239 + 0.12360679774997894;
-        let t591 = 0.9510565162951536 * t586 - 0.30901699437494734 * t589;
-        let t593 = pose[2] + t261;
-        let t595 = t591 * t591 + t593 * t593;
-        let t596 = ::overact::math::sqrt(t595);
-        ::overact::guard::leg(t596, 0.5513142860385972, "leg3")?;
-        let t597 = 1.0 / t596;
-        let c_cross_leg3 = t593 * t597;
-        let t599 = 0.30901699437494734 * c_cross_leg3;
-        let gcross_vx_leg3 = t597 * t599;
-        let t603 = 0.9510565162951536 * t589 + 0.30901699437494734 * t586;
-        let t605 = t595 + t603 * t603;
-        ::overact::guard::reach(t605, "leg3")?;
-        let t606 = ::overact::math::sqrt(t605);
-        ::overact::guard::leg(t606, 0.5619721604570214, "leg3")?;
-        let t607 = 1.0 / t606;
-        let c_cylinder_leg3 = t596 * t607;
-        let minus_s_cross_leg3 = t591 * t597;
-        let t610 = 0.30901699437494734 * minus_s_cross_leg3;
-        let s_cylinder_leg3 = t603 / t606;
-        let t614 = t610 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
-        let t615 = twist[0] + t290;
-        let t618 = 0.9510565162951536 * minus_s_cross_leg3;
-        let t620 = 0.30901699437494734 * c_cylinder_leg3 - t618 * s_cylinder_leg3;
-        let t621 = twist[1] + t303;
-        let t624 = c_cross_leg3 * s_cylinder_leg3;
-        let t625 = twist[2] + t314;
-        let rate_cylinder_leg3 = t607 * (t614 * t615 + t620 * t621 - t624 * t625);
-        let t629 = 0.9510565162951536 * c_cross_leg3;
-        let t634 = t629 * t621 - t599 * t615 - minus_s_cross_leg3 * t625;
-        let minus_rate_cross_leg3 = t597 * t634;
-        let t636 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t637 = rate_cylinder_leg3 * t636;
-        let t638 = acceleration[1] + t343;
-        let t640 = acceleration[0] + t334;
-        let t643 = acceleration[2] + t353;
-        let t645 = t629 * t638 - t599 * t640 - minus_s_cross_leg3 * t643;
-        let t646 = t606 * t637;
-        let t649 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_minus_grod_vx_leg3 = t589 * t607;
-        let grod_vy_leg3 = t586 * t607;
+        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t480
+            + grod_vx_leg2 * t470 + grod_vz_leg2 * t490;
+        let t524 = minus_minus_rate_rod_leg2 + minus_minus_rate_rod_leg2;
+        let t526 = t515 - t494 * t524;
+        let t528 = 0.20791169081775931 * minus_s_cross_leg2;
+        let t531 = t528 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
+        let t534 = c_cross_leg2 * s_cylinder_leg2;
+        let t536 = t459 * t470 - t531 * t480 - t534 * t490;
+        let t537 = t495 * t536;
+        let minus_rate_dot_cross_leg2 = t454 * (t526 + t537 + t537);
+        let rate_cylinder_leg2 = t451 * t536;
+        let t542 = rate_cylinder_leg2 * t494;
+        let t543 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t545 = t542 + t543 + t542;
+        let t546 = s_cylinder_leg2 * t545;
+        let t547 = t546 - minus_rate_dot_cross_leg2;
+        let minus_gcross_vy_leg2 = t454 * t472;
+        let minus_gcylinder_vy_leg2 = t531 * t451;
+        let t553 = minus_gcylinder_vy_leg2 * t496;
+        let gcross_vz_leg2 = t454 * minus_s_cross_leg2;
+        let minus_gcylinder_vz_leg2 = t534 * t451;
+        let t558 = minus_gcylinder_vz_leg2 * t496;
+        let minus_gcross_wx_leg2 = t432 * gcross_vz_leg2 + t440 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t432 * minus_gcylinder_vz_leg2
+            - t440 * minus_gcylinder_vy_leg2;
+        let t567 = gcylinder_wx_leg2 * t496;
+        let minus_gcylinder_wy_leg2 = t440 * gcylinder_vx_leg2
+            + t426 * minus_gcylinder_vz_leg2;
+        let t572 = minus_gcylinder_wy_leg2 * t496;
+        let minus_minus_gcross_wy_leg2 = t440 * minus_gcross_vx_leg2
+            + t426 * gcross_vz_leg2;
+        let gcross_wz_leg2 = t426 * minus_gcross_vy_leg2 - t432 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t426 * minus_gcylinder_vy_leg2
+            + t432 * gcylinder_vx_leg2;
+        let t585 = minus_minus_gcylinder_wz_leg2 * t496;
+        let t587 = pose[2] + t261;
+        let t589 = pose[1] + t249 - 0.3804226065180615;
+        let t592 = pose[0] + t239 + 0.12360679774997894;
+        let t594 = 0.9510565162951536 * t589 - 0.30901699437494734 * t592;
+        let t597 = t594 * t594 + t587 * t587;
+        let t598 = ::overact::math::sqrt(t597);
+        ::overact::guard::leg(t598, 0.5513142860385972, "leg3")?;
+        let c_cross_leg3 = t587 / t598;
+        let t600 = 0.30901699437494734 * c_cross_leg3;
+        let gcross_vx_leg3 = t600 / t598;
+        let t604 = 0.9510565162951536 * t592 + 0.30901699437494734 * t589;
+        let t606 = t597 + t604 * t604;
+        ::overact::guard::reach(t606, "leg3")?;
+        let t607 = ::overact::math::sqrt(t606);
+        ::overact::guard::leg(t607, 0.5619721604570214, "leg3")?;
+        let c_cylinder_leg3 = t598 / t607;
+        let t609 = 1.0 / t607;
+        let t610 = 0.9510565162951536 * c_cross_leg3;
+        let t611 = acceleration[1] + t286;
+        let t613 = acceleration[0] + t276;
+        let minus_s_cross_leg3 = t594 / t598;
+        let t617 = acceleration[2] + t297;
+        let t619 = t610 * t611 - t600 * t613 - minus_s_cross_leg3 * t617;
+        let t620 = twist[1] + t332;
+        let t622 = twist[0] + t319;
+        let t625 = twist[2] + t343;
+        let t627 = t610 * t620 - t600 * t622 - minus_s_cross_leg3 * t625;
+        let minus_rate_cross_leg3 = t627 / t598;
+        let t629 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_minus_grod_vx_leg3 = t592 * t609;
+        let grod_vy_leg3 = t589 / t607;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t615
-            + grod_vy_leg3 * t621 + grod_vz_leg3 * t625;
-        let t658 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = t597 * (t645 + t646 + t646 - t649 * t658);
-        let t662 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t664 = t637 + t637 - t662;
-        let t665 = c_cylinder_leg3 * t664;
-        let gcylinder_vx_leg3 = t614 * t607;
-        let t668 = t649 * t636;
-        let t669 = gcylinder_vx_leg3 * t668;
-        let gcylinder_vy_leg3 = t620 * t607;
-        let t672 = gcylinder_vy_leg3 * t668;
-        let minus_gcross_vy_leg3 = t597 * t629;
-        let gcross_vz_leg3 = t597 * minus_s_cross_leg3;
-        let minus_gcylinder_vz_leg3 = t624 * t607;
-        let t679 = minus_gcylinder_vz_leg3 * t668;
+        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t622
+            + grod_vy_leg3 * t620 + grod_vz_leg3 * t625;
+        let t638 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
+        let t640 = t619 - t629 * t638;
+        let t641 = t609 * t640;
+        let t642 = c_cylinder_leg3 * t641;
+        let t644 = 0.30901699437494734 * minus_s_cross_leg3;
+        let s_cylinder_leg3 = t604 / t607;
+        let t648 = t644 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
+        let gcylinder_vx_leg3 = t648 * t609;
+        let t650 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t651 = t629 * t650;
+        let t652 = gcylinder_vx_leg3 * t651;
+        let t655 = 0.9510565162951536 * minus_s_cross_leg3;
+        let t657 = 0.30901699437494734 * c_cylinder_leg3 - t655 * s_cylinder_leg3;
+        let gcylinder_vy_leg3 = t657 * t609;
+        let t659 = gcylinder_vy_leg3 * t651;
+        let minus_gcross_vy_leg3 = t610 / t598;
+        let gcross_vz_leg3 = minus_s_cross_leg3 / t598;
+        let t665 = c_cross_leg3 * s_cylinder_leg3;
+        let minus_gcylinder_vz_leg3 = t665 * t609;
+        let t667 = minus_gcylinder_vz_leg3 * t651;
         let gcross_wx_leg3 = t249 * gcross_vz_leg3 + t261 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t249 * minus_gcylinder_vz_leg3
             + t261 * gcylinder_vy_leg3;
-        let t688 = minus_gcylinder_wx_leg3 * t668;
+        let t676 = minus_gcylinder_wx_leg3 * t651;
         let gcross_wy_leg3 = t261 * gcross_vx_leg3 - t239 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t261 * gcylinder_vx_leg3
             + t239 * minus_gcylinder_vz_leg3;
-        let t697 = gcylinder_wy_leg3 * t668;
+        let t685 = gcylinder_wy_leg3 * t651;
         let gcylinder_wz_leg3 = t239 * gcylinder_vy_leg3 - t249 * gcylinder_vx_leg3;
-        let t702 = gcylinder_wz_leg3 * t668;
+        let t690 = gcylinder_wz_leg3 * t651;
         let minus_gcross_wz_leg3 = t239 * minus_gcross_vy_leg3 + t249 * gcross_vx_leg3;
-        let t709 = pose[1] + t429 - 0.2972579301909578;
-        let t712 = pose[0] + t423 + 0.2676522425435432;
-        let t714 = 0.7431448254773945 * t709 - 0.6691306063588579 * t712;
-        let t716 = pose[2] + t437;
-        let t718 = t714 * t714 + t716 * t716;
-        let t719 = ::overact::math::sqrt(t718);
-        ::overact::guard::leg(t719, 0.5513142860385972, "leg4")?;
-        let t720 = 1.0 / t719;
-        let c_cross_leg4 = t716 * t720;
-        let t722 = 0.6691306063588579 * c_cross_leg4;
-        let gcross_vx_leg4 = t720 * t722;
-        let t726 = 0.7431448254773945 * t712 + 0.6691306063588579 * t709;
-        let t728 = t718 + t726 * t726;
-        ::overact::guard::reach(t728, "leg4")?;
-        let t729 = ::overact::math::sqrt(t728);
-        ::overact::guard::leg(t729, 0.5619721604570214, "leg4")?;
-        let t730 = 1.0 / t729;
-        let c_cylinder_leg4 = t719 * t730;
-        let minus_s_cross_leg4 = t714 * t720;
-        let t733 = 0.6691306063588579 * minus_s_cross_leg4;
-        let s_cylinder_leg4 = t726 / t729;
-        let t737 = t733 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
-        let t738 = twist[0] + t464;
-        let t741 = 0.7431448254773945 * minus_s_cross_leg4;
-        let t743 = 0.6691306063588579 * c_cylinder_leg4 - t741 * s_cylinder_leg4;
-        let t744 = twist[1] + t474;
-        let t747 = c_cross_leg4 * s_cylinder_leg4;
-        let t748 = twist[2] + t484;
-        let rate_cylinder_leg4 = t730 * (t737 * t738 + t743 * t744 - t747 * t748);
-        let t752 = 0.7431448254773945 * c_cross_leg4;
-        let t757 = t752 * t744 - t722 * t738 - minus_s_cross_leg4 * t748;
-        let minus_rate_cross_leg4 = t720 * t757;
-        let t759 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t760 = rate_cylinder_leg4 * t759;
-        let t761 = acceleration[1] + t515;
-        let t763 = acceleration[0] + t510;
-        let t766 = acceleration[2] + t521;
-        let t768 = t752 * t761 - t722 * t763 - minus_s_cross_leg4 * t766;
-        let t769 = t729 * t760;
-        let t772 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_minus_grod_vx_leg4 = t712 * t730;
-        let grod_vy_leg4 = t709 * t730;
+        let t697 = pose[1] + t430 - 0.2972579301909578;
+        let t700 = pose[0] + t424 + 0.2676522425435432;
+        let t702 = 0.7431448254773945 * t697 - 0.6691306063588579 * t700;
+        let t704 = pose[2] + t438;
+        let t706 = t702 * t702 + t704 * t704;
+        let t707 = ::overact::math::sqrt(t706);
+        ::overact::guard::leg(t707, 0.5513142860385972, "leg4")?;
+        let t708 = 1.0 / t707;
+        let c_cross_leg4 = t704 * t708;
+        let t710 = 0.6691306063588579 * c_cross_leg4;
+        let gcross_vx_leg4 = t708 * t710;
+        let t714 = 0.7431448254773945 * t700 + 0.6691306063588579 * t697;
+        let t716 = t706 + t714 * t714;
+        ::overact::guard::reach(t716, "leg4")?;
+        let t717 = ::overact::math::sqrt(t716);
+        ::overact::guard::leg(t717, 0.5619721604570214, "leg4")?;
+        let t718 = 1.0 / t717;
+        let c_cylinder_leg4 = t707 * t718;
+        let t720 = 0.7431448254773945 * c_cross_leg4;
+        let t721 = acceleration[1] + t504;
+        let t723 = acceleration[0] + t499;
+        let minus_s_cross_leg4 = t702 * t708;
+        let t727 = acceleration[2] + t510;
+        let t729 = t720 * t721 - t710 * t723 - minus_s_cross_leg4 * t727;
+        let t730 = twist[1] + t475;
+        let t732 = twist[0] + t465;
+        let t735 = twist[2] + t485;
+        let t737 = t720 * t730 - t710 * t732 - minus_s_cross_leg4 * t735;
+        let minus_rate_cross_leg4 = t708 * t737;
+        let t739 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_minus_grod_vx_leg4 = t700 * t718;
+        let grod_vy_leg4 = t697 / t717;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t738
-            + grod_vy_leg4 * t744 + grod_vz_leg4 * t748;
-        let t781 = minus_minus_rate_rod_leg4 + minus_minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = t720 * (t768 + t769 + t769 - t772 * t781);
-        let t785 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t787 = t760 + t760 - t785;
-        let t788 = c_cylinder_leg4 * t787;
-        let gcylinder_vx_leg4 = t737 * t730;
-        let t791 = t772 * t759;
-        let t792 = gcylinder_vx_leg4 * t791;
-        let gcylinder_vy_leg4 = t743 * t730;
-        let t795 = gcylinder_vy_leg4 * t791;
-        let minus_gcross_vy_leg4 = t720 * t752;
-        let gcross_vz_leg4 = t720 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t747 * t730;
-        let t802 = minus_gcylinder_vz_leg4 * t791;
-        let gcross_wx_leg4 = t429 * gcross_vz_leg4 + t437 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t429 * minus_gcylinder_vz_leg4
-            + t437 * gcylinder_vy_leg4;
-        let t811 = minus_gcylinder_wx_leg4 * t791;
-        let gcross_wy_leg4 = t437 * gcross_vx_leg4 - t423 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t437 * gcylinder_vx_leg4
-            + t423 * minus_gcylinder_vz_leg4;
-        let t820 = gcylinder_wy_leg4 * t791;
-        let gcylinder_wz_leg4 = t423 * gcylinder_vy_leg4 - t429 * gcylinder_vx_leg4;
-        let t825 = gcylinder_wz_leg4 * t791;
-        let minus_gcross_wz_leg4 = t423 * minus_gcross_vy_leg4 + t429 * gcross_vx_leg4;
-        let t832 = pose[0] - t242 + 0.2676522425435432;
-        let t835 = pose[1] - t252 + 0.2972579301909578;
-        let t837 = 0.6691306063588579 * t832 + 0.7431448254773945 * t835;
-        let t839 = pose[2] - t264;
-        let t841 = t837 * t837 + t839 * t839;
-        let t842 = ::overact::math::sqrt(t841);
-        ::overact::guard::leg(t842, 0.5513142860385972, "leg5")?;
-        let t843 = 1.0 / t842;
-        let c_cross_leg5 = t839 * t843;
-        let t845 = 0.6691306063588579 * c_cross_leg5;
-        let gcross_vx_leg5 = t843 * t845;
-        let t849 = 0.6691306063588579 * t835 - 0.7431448254773945 * t832;
-        let t851 = t841 + t849 * t849;
-        ::overact::guard::reach(t851, "leg5")?;
-        let t852 = ::overact::math::sqrt(t851);
-        ::overact::guard::leg(t852, 0.5619721604570214, "leg5")?;
-        let t853 = 1.0 / t852;
-        let c_cylinder_leg5 = t842 * t853;
-        let s_cross_leg5 = t837 * t843;
-        let t857 = 0.7431448254773945 * s_cross_leg5;
-        let s_cylinder_leg5 = t849 / t852;
-        let t860 = 0.6691306063588579 * c_cylinder_leg5 - t857 * s_cylinder_leg5;
-        let t861 = twist[1] + t306;
-        let t863 = 0.6691306063588579 * s_cross_leg5;
-        let t866 = t863 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
-        let t867 = twist[0] + t293;
-        let t870 = c_cross_leg5 * s_cylinder_leg5;
-        let t871 = twist[2] + t317;
-        let rate_cylinder_leg5 = t853 * (t860 * t861 - t866 * t867 - t870 * t871);
-        let t877 = 0.7431448254773945 * c_cross_leg5;
-        let t880 = s_cross_leg5 * t871 - (t845 * t867 + t877 * t861);
-        let minus_rate_cross_leg5 = t843 * t880;
-        let t882 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t883 = rate_cylinder_leg5 * t882;
-        let t884 = acceleration[2] - t356;
-        let t886 = acceleration[0] - t337;
-        let t888 = acceleration[1] - t346;
-        let t891 = s_cross_leg5 * t884 - (t845 * t886 + t877 * t888);
-        let t892 = t852 * t883;
-        let t895 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_minus_grod_vx_leg5 = t832 * t853;
-        let grod_vy_leg5 = t835 * t853;
+        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t732
+            + grod_vy_leg4 * t730 + grod_vz_leg4 * t735;
+        let t748 = minus_minus_rate_rod_leg4 + minus_minus_rate_rod_leg4;
+        let t750 = t729 - t739 * t748;
+        let t751 = t718 * t750;
+        let t752 = c_cylinder_leg4 * t751;
+        let t754 = 0.6691306063588579 * minus_s_cross_leg4;
+        let s_cylinder_leg4 = t714 / t717;
+        let t758 = t754 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
+        let gcylinder_vx_leg4 = t758 * t718;
+        let t760 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t761 = t739 * t760;
+        let t762 = gcylinder_vx_leg4 * t761;
+        let t765 = 0.7431448254773945 * minus_s_cross_leg4;
+        let t767 = 0.6691306063588579 * c_cylinder_leg4 - t765 * s_cylinder_leg4;
+        let gcylinder_vy_leg4 = t767 * t718;
+        let t769 = gcylinder_vy_leg4 * t761;
+        let minus_gcross_vy_leg4 = t708 * t720;
+        let gcross_vz_leg4 = t708 * minus_s_cross_leg4;
+        let t775 = c_cross_leg4 * s_cylinder_leg4;
+        let minus_gcylinder_vz_leg4 = t775 * t718;
+        let t777 = minus_gcylinder_vz_leg4 * t761;
+        let gcross_wx_leg4 = t430 * gcross_vz_leg4 + t438 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t430 * minus_gcylinder_vz_leg4
+            + t438 * gcylinder_vy_leg4;
+        let t786 = minus_gcylinder_wx_leg4 * t761;
+        let gcross_wy_leg4 = t438 * gcross_vx_leg4 - t424 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t438 * gcylinder_vx_leg4
+            + t424 * minus_gcylinder_vz_leg4;
+        let t795 = gcylinder_wy_leg4 * t761;
+        let gcylinder_wz_leg4 = t424 * gcylinder_vy_leg4 - t430 * gcylinder_vx_leg4;
+        let t800 = gcylinder_wz_leg4 * t761;
+        let minus_gcross_wz_leg4 = t424 * minus_gcross_vy_leg4 + t430 * gcross_vx_leg4;
+        let t807 = pose[0] - t242 + 0.2676522425435432;
+        let t810 = pose[1] - t252 + 0.2972579301909578;
+        let t812 = 0.6691306063588579 * t807 + 0.7431448254773945 * t810;
+        let t814 = pose[2] - t264;
+        let t816 = t812 * t812 + t814 * t814;
+        let t817 = ::overact::math::sqrt(t816);
+        ::overact::guard::leg(t817, 0.5513142860385972, "leg5")?;
+        let t818 = 1.0 / t817;
+        let c_cross_leg5 = t814 * t818;
+        let t820 = 0.6691306063588579 * c_cross_leg5;
+        let gcross_vx_leg5 = t818 * t820;
+        let s_cross_leg5 = t812 * t818;
+        let t823 = acceleration[2] - t300;
+        let t825 = acceleration[0] - t279;
+        let t827 = 0.7431448254773945 * c_cross_leg5;
+        let t828 = acceleration[1] - t289;
+        let t831 = s_cross_leg5 * t823 - (t820 * t825 + t827 * t828);
+        let t834 = 0.6691306063588579 * t810 - 0.7431448254773945 * t807;
+        let t836 = t816 + t834 * t834;
+        ::overact::guard::reach(t836, "leg5")?;
+        let t837 = ::overact::math::sqrt(t836);
+        ::overact::guard::leg(t837, 0.5619721604570214, "leg5")?;
+        let c_cylinder_leg5 = t817 / t837;
+        let t840 = 0.7431448254773945 * s_cross_leg5;
+        let s_cylinder_leg5 = t834 / t837;
+        let t843 = 0.6691306063588579 * c_cylinder_leg5 - t840 * s_cylinder_leg5;
+        let t844 = twist[1] + t335;
+        let t846 = 0.6691306063588579 * s_cross_leg5;
+        let t849 = t846 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
+        let t850 = twist[0] + t322;
+        let t853 = c_cross_leg5 * s_cylinder_leg5;
+        let t854 = twist[2] + t346;
+        let t856 = t843 * t844 - t849 * t850 - t853 * t854;
+        let t861 = s_cross_leg5 * t854 - (t820 * t850 + t827 * t844);
+        let minus_rate_cross_leg5 = t818 * t861;
+        let t863 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t864 = t856 * t863;
+        let t867 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t868 = 1.0 / t837;
+        let minus_minus_grod_vx_leg5 = t807 * t868;
+        let grod_vy_leg5 = t810 * t868;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t867
-            + grod_vy_leg5 * t861 + grod_vz_leg5 * t871;
-        let t904 = minus_minus_rate_rod_leg5 + minus_minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t843 * (t891 + t892 + t892 - t895 * t904);
-        let t908 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t910 = t883 + t883 - t908;
-        let t911 = c_cylinder_leg5 * t910;
-        let minus_gcylinder_vx_leg5 = t866 * t853;
-        let t914 = t895 * t882;
-        let t915 = minus_gcylinder_vx_leg5 * t914;
-        let gcross_vy_leg5 = t843 * t877;
-        let gcylinder_vy_leg5 = t860 * t853;
-        let t920 = gcylinder_vy_leg5 * t914;
-        let minus_gcross_vz_leg5 = t843 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t870 * t853;
-        let t925 = minus_gcylinder_vz_leg5 * t914;
+        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t850
+            + grod_vy_leg5 * t844 + grod_vz_leg5 * t854;
+        let t877 = 2.0 * minus_minus_rate_rod_leg5;
+        let minus_rate_dot_cross_leg5 = t818 * (t831 + t864 + t864 - t867 * t877);
+        let rate_cylinder_leg5 = t868 * t856;
+        let t882 = rate_cylinder_leg5 * t867;
+        let t883 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t885 = t882 + t883 + t882;
+        let t886 = c_cylinder_leg5 * t885;
+        let t887 = t818 * t834;
+        let t888 = t886 * t887;
+        let t889 = t888 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t849 * t868;
+        let t892 = t867 * t863;
+        let t893 = minus_gcylinder_vx_leg5 * t892;
+        let gcross_vy_leg5 = t818 * t827;
+        let gcylinder_vy_leg5 = t843 * t868;
+        let t898 = gcylinder_vy_leg5 * t892;
+        let minus_gcross_vz_leg5 = t818 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t853 * t868;
+        let t903 = minus_gcylinder_vz_leg5 * t892;
         let gcross_wx_leg5 = t252 * minus_gcross_vz_leg5 + t264 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t252 * minus_gcylinder_vz_leg5
             + t264 * gcylinder_vy_leg5;
-        let t934 = gcylinder_wx_leg5 * t914;
+        let t912 = gcylinder_wx_leg5 * t892;
         let gcylinder_wy_leg5 = t264 * minus_gcylinder_vx_leg5
             - t242 * minus_gcylinder_vz_leg5;
-        let t939 = gcylinder_wy_leg5 * t914;
+        let t917 = gcylinder_wy_leg5 * t892;
         let minus_gcross_wy_leg5 = t264 * gcross_vx_leg5 + t242 * minus_gcross_vz_leg5;
         let gcross_wz_leg5 = t252 * gcross_vx_leg5 - t242 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t242 * gcylinder_vy_leg5
             + t252 * minus_gcylinder_vx_leg5;
-        let t952 = minus_gcylinder_wz_leg5 * t914;
-        let t955 = pose[0] + t424 + 0.12360679774997894;
-        let t958 = pose[1] + t430 + 0.3804226065180615;
-        let t960 = 0.30901699437494734 * t955 + 0.9510565162951536 * t958;
-        let t962 = pose[2] + t438;
-        let t964 = t960 * t960 + t962 * t962;
-        let t965 = ::overact::math::sqrt(t964);
-        ::overact::guard::leg(t965, 0.5513142860385972, "leg6")?;
-        let t966 = 1.0 / t965;
-        let c_cross_leg6 = t962 * t966;
-        let t968 = 0.30901699437494734 * c_cross_leg6;
-        let gcross_vx_leg6 = t966 * t968;
-        let t972 = 0.30901699437494734 * t958 - 0.9510565162951536 * t955;
-        let t974 = t964 + t972 * t972;
-        ::overact::guard::reach(t974, "leg6")?;
-        let t975 = ::overact::math::sqrt(t974);
-        ::overact::guard::leg(t975, 0.5619721604570214, "leg6")?;
-        let t976 = 1.0 / t975;
-        let c_cylinder_leg6 = t965 * t976;
-        let s_cross_leg6 = t960 * t966;
-        let t980 = 0.9510565162951536 * s_cross_leg6;
-        let s_cylinder_leg6 = t972 / t975;
-        let t983 = 0.30901699437494734 * c_cylinder_leg6 - t980 * s_cylinder_leg6;
-        let t984 = twist[1] + t477;
-        let t986 = 0.30901699437494734 * s_cross_leg6;
-        let t989 = t986 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
-        let t990 = twist[0] + t467;
-        let t993 = c_cross_leg6 * s_cylinder_leg6;
-        let t994 = twist[2] + t487;
-        let rate_cylinder_leg6 = t976 * (t983 * t984 - t989 * t990 - t993 * t994);
-        let t1000 = 0.9510565162951536 * c_cross_leg6;
-        let t1003 = s_cross_leg6 * t994 - (t968 * t990 + t1000 * t984);
-        let minus_rate_cross_leg6 = t966 * t1003;
-        let t1005 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1006 = rate_cylinder_leg6 * t1005;
-        let t1007 = acceleration[2] + t522;
-        let t1009 = acceleration[0] + t511;
-        let t1011 = acceleration[1] + t516;
-        let t1014 = s_cross_leg6 * t1007 - (t968 * t1009 + t1000 * t1011);
-        let t1015 = t975 * t1006;
-        let t1018 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let minus_minus_grod_vx_leg6 = t955 * t976;
-        let grod_vy_leg6 = t958 * t976;
+        let t930 = minus_gcylinder_wz_leg5 * t892;
+        let t932 = pose[2] + t439;
+        let t934 = pose[0] + t425 + 0.12360679774997894;
+        let t937 = pose[1] + t431 + 0.3804226065180615;
+        let t939 = 0.30901699437494734 * t934 + 0.9510565162951536 * t937;
+        let t942 = t939 * t939 + t932 * t932;
+        let t943 = ::overact::math::sqrt(t942);
+        ::overact::guard::leg(t943, 0.5513142860385972, "leg6")?;
+        let c_cross_leg6 = t932 / t943;
+        let t945 = 0.30901699437494734 * c_cross_leg6;
+        let gcross_vx_leg6 = t945 / t943;
+        let s_cross_leg6 = t939 / t943;
+        let t948 = acceleration[2] + t511;
+        let t950 = acceleration[0] + t500;
+        let t952 = 0.9510565162951536 * c_cross_leg6;
+        let t953 = acceleration[1] + t505;
+        let t956 = s_cross_leg6 * t948 - (t945 * t950 + t952 * t953);
+        let t959 = 0.30901699437494734 * t937 - 0.9510565162951536 * t934;
+        let t961 = t942 + t959 * t959;
+        ::overact::guard::reach(t961, "leg6")?;
+        let t962 = ::overact::math::sqrt(t961);
+        ::overact::guard::leg(t962, 0.5619721604570214, "leg6")?;
+        let c_cylinder_leg6 = t943 / t962;
+        let t964 = twist[2] + t488;
+        let t966 = twist[0] + t468;
+        let t968 = twist[1] + t478;
+        let t971 = s_cross_leg6 * t964 - (t945 * t966 + t952 * t968);
+        let minus_rate_cross_leg6 = t971 / t943;
+        let t973 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t974 = 1.0 / t962;
+        let minus_minus_grod_vx_leg6 = t934 * t974;
+        let grod_vy_leg6 = t937 / t962;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t990
-            + grod_vy_leg6 * t984 + grod_vz_leg6 * t994;
-        let t1027 = minus_minus_rate_rod_leg6 + minus_minus_rate_rod_leg6;
-        let minus_rate_dot_cross_leg6 = t966 * (t1014 + t1015 + t1015 - t1018 * t1027);
-        let t1031 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1033 = t1006 + t1006 - t1031;
-        let t1034 = c_cylinder_leg6 * t1033;
-        let minus_gcylinder_vx_leg6 = t989 * t976;
-        let t1037 = t1018 * t1005;
-        let t1038 = minus_gcylinder_vx_leg6 * t1037;
-        let gcross_vy_leg6 = t966 * t1000;
-        let gcylinder_vy_leg6 = t983 * t976;
-        let t1043 = gcylinder_vy_leg6 * t1037;
-        let minus_gcross_vz_leg6 = t966 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t993 * t976;
-        let t1048 = minus_gcylinder_vz_leg6 * t1037;
-        let minus_gcross_wx_leg6 = t430 * minus_gcross_vz_leg6 + t438 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t430 * minus_gcylinder_vz_leg6
-            + t438 * gcylinder_vy_leg6;
-        let t1057 = minus_gcylinder_wx_leg6 * t1037;
-        let gcross_wy_leg6 = t438 * gcross_vx_leg6 + t424 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t424 * minus_gcylinder_vz_leg6
-            - t438 * minus_gcylinder_vx_leg6;
-        let t1066 = gcylinder_wy_leg6 * t1037;
-        let gcross_wz_leg6 = t424 * gcross_vy_leg6 - t430 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t424 * gcylinder_vy_leg6
-            + t430 * minus_gcylinder_vx_leg6;
-        let t1075 = gcylinder_wz_leg6 * t1037;
-        let t1077 = t364 * t364;
-        let t1078 = t330 * t330;
-        let t1079 = t1077 - t1078;
-        let t1081 = rate_cylinder_leg1 * t364;
-        let t1082 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1084 = t1081 + t1081 - t1082;
-        let t1087 = c_cylinder_leg1 * t1084 - minus_s_cylinder_leg1 * t379;
-        let t1105 = t493 * t493;
-        let t1106 = t494 * t494;
-        let t1107 = t1105 - t1106;
-        let t1109 = rate_cylinder_leg2 * t493;
-        let t1110 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1112 = t1109 + t1110 + t1109;
-        let t1115 = c_cylinder_leg2 * t1112 - s_cylinder_leg2 * t544;
-        let t1133 = rate_cylinder_leg3 * t649;
-        let t1134 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1136 = t1133 + t1134 + t1133;
-        let t1139 = c_cylinder_leg3 * t1136 - s_cylinder_leg3 * t664;
-        let t1141 = t649 * t649;
-        let t1142 = t636 * t636;
-        let t1143 = t1141 - t1142;
-        let t1161 = rate_cylinder_leg4 * t772;
-        let t1162 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1164 = t1161 + t1162 + t1161;
-        let t1167 = c_cylinder_leg4 * t1164 - s_cylinder_leg4 * t787;
-        let t1169 = t772 * t772;
-        let t1170 = t759 * t759;
-        let t1171 = t1169 - t1170;
-        let t1189 = rate_cylinder_leg5 * t895;
-        let t1190 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1192 = t1189 + t1190 + t1189;
-        let t1195 = c_cylinder_leg5 * t1192 - s_cylinder_leg5 * t910;
-        let t1197 = t895 * t895;
-        let t1198 = t882 * t882;
-        let t1199 = t1197 - t1198;
-        let t1217 = rate_cylinder_leg6 * t1018;
-        let t1218 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1220 = t1217 + t1218 + t1217;
-        let t1223 = c_cylinder_leg6 * t1220 - s_cylinder_leg6 * t1033;
-        let t1225 = t1018 * t1018;
-        let t1226 = t1005 * t1005;
-        let t1227 = t1225 - t1226;
-        let t1249 = t287 * t339 - t300 * t348 + t311 * t358;
-        let rate_dot_cylinder_leg1 = t280
-            * (t1249 + t279 * t383 - rate_cylinder_leg1 * t373);
-        let t1255 = t383 + rate_dot_cylinder_leg1;
-        let t1257 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t1260 = c_cylinder_leg1 * t1255 + minus_s_cylinder_leg1 * (t1257 - t1077);
-        let t1283 = t458 * t513 - t502 * t518 - t505 * t524;
-        let rate_dot_cylinder_leg2 = t450
-            * (t1283 - t449 * t495 - rate_cylinder_leg2 * t538);
-        let t1289 = rate_dot_cylinder_leg2 - t495;
-        let t1291 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t1294 = c_cylinder_leg2 * t1289 - s_cylinder_leg2 * (t1291 - t1105);
-        let t1317 = t614 * t640 + t620 * t638 - t624 * t643;
-        let rate_dot_cylinder_leg3 = t607
-            * (t1317 - t606 * t668 - rate_cylinder_leg3 * t658);
-        let t1323 = rate_dot_cylinder_leg3 - t668;
-        let t1325 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1328 = c_cylinder_leg3 * t1323 - s_cylinder_leg3 * (t1325 - t1141);
-        let t1351 = t737 * t763 + t743 * t761 - t747 * t766;
-        let rate_dot_cylinder_leg4 = t730
-            * (t1351 - t729 * t791 - rate_cylinder_leg4 * t781);
-        let t1357 = rate_dot_cylinder_leg4 - t791;
-        let t1359 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1362 = c_cylinder_leg4 * t1357 - s_cylinder_leg4 * (t1359 - t1169);
-        let t1385 = t860 * t888 - t866 * t886 - t870 * t884;
-        let rate_dot_cylinder_leg5 = t853
-            * (t1385 - t852 * t914 - rate_cylinder_leg5 * t904);
-        let t1391 = rate_dot_cylinder_leg5 - t914;
-        let t1393 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1396 = c_cylinder_leg5 * t1391 - s_cylinder_leg5 * (t1393 - t1197);
-        let t1419 = t983 * t1011 - t989 * t1009 - t993 * t1007;
-        let rate_dot_cylinder_leg6 = t976
-            * (t1419 - t975 * t1037 - rate_cylinder_leg6 * t1027);
-        let t1425 = rate_dot_cylinder_leg6 - t1037;
-        let t1427 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1430 = c_cylinder_leg6 * t1425 - s_cylinder_leg6 * (t1427 - t1225);
-        let t1449 = minus_s_cylinder_leg1 * t1084;
-        let t1462 = s_cylinder_leg2 * t1112;
-        let t1475 = s_cylinder_leg3 * t1136;
-        let t1488 = s_cylinder_leg4 * t1164;
-        let t1501 = s_cylinder_leg5 * t1192;
-        let t1514 = s_cylinder_leg6 * t1220;
-        let t1529 = t383 - rate_dot_cylinder_leg1;
-        let t1531 = c_cylinder_leg1 * (t1078 - t1257) - minus_s_cylinder_leg1 * t1529;
-        let t1553 = t495 + rate_dot_cylinder_leg2;
-        let t1555 = c_cylinder_leg2 * (t1106 - t1291) - s_cylinder_leg2 * t1553;
-        let t1575 = t668 + rate_dot_cylinder_leg3;
-        let t1577 = c_cylinder_leg3 * (t1142 - t1325) - s_cylinder_leg3 * t1575;
-        let t1598 = t791 + rate_dot_cylinder_leg4;
-        let t1600 = c_cylinder_leg4 * (t1170 - t1359) - s_cylinder_leg4 * t1598;
-        let t1621 = t914 + rate_dot_cylinder_leg5;
-        let t1623 = c_cylinder_leg5 * (t1198 - t1393) - s_cylinder_leg5 * t1621;
-        let t1644 = t1037 + rate_dot_cylinder_leg6;
-        let t1646 = c_cylinder_leg6 * (t1226 - t1427) - s_cylinder_leg6 * t1644;
-        let t1701 = 9.81 * minus_s_cross_leg1;
-        let t1702 = minus_s_cylinder_leg1 * t1701;
-        let t1704 = 9.81 * grod_vz_leg1;
-        let t1722 = 9.81 * minus_s_cross_leg2;
-        let t1723 = s_cylinder_leg2 * t1722;
-        let t1725 = 9.81 * grod_vz_leg2;
-        let t1743 = 9.81 * minus_s_cross_leg3;
-        let t1744 = s_cylinder_leg3 * t1743;
-        let t1746 = 9.81 * grod_vz_leg3;
-        let t1764 = 9.81 * minus_s_cross_leg4;
-        let t1765 = s_cylinder_leg4 * t1764;
-        let t1767 = 9.81 * grod_vz_leg4;
-        let t1785 = 9.81 * s_cross_leg5;
-        let t1786 = s_cylinder_leg5 * t1785;
-        let t1788 = 9.81 * grod_vz_leg5;
-        let t1806 = 9.81 * s_cross_leg6;
-        let t1807 = s_cylinder_leg6 * t1806;
-        let t1809 = 9.81 * grod_vz_leg6;
-        let t1827 = t280 * t1704;
-        let t1830 = c_cylinder_leg1 * t1701;
-        let t1832 = 9.81 * t311;
+        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t966
+            + grod_vy_leg6 * t968 + grod_vz_leg6 * t964;
+        let t983 = 2.0 * minus_minus_rate_rod_leg6;
+        let t985 = t956 - t973 * t983;
+        let t987 = 0.9510565162951536 * s_cross_leg6;
+        let s_cylinder_leg6 = t959 / t962;
+        let t990 = 0.30901699437494734 * c_cylinder_leg6 - t987 * s_cylinder_leg6;
+        let t992 = 0.30901699437494734 * s_cross_leg6;
+        let t995 = t992 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
+        let t998 = c_cross_leg6 * s_cylinder_leg6;
+        let t1000 = t990 * t968 - t995 * t966 - t998 * t964;
+        let t1001 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let minus_rate_dot_cross_leg6 = (t985 + 2.0 * (t1000 * t1001)) / t943;
+        let rate_cylinder_leg6 = t974 * t1000;
+        let t1007 = rate_cylinder_leg6 * t973;
+        let t1008 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1010 = t1007 + t1008 + t1007;
+        let t1011 = s_cylinder_leg6 * t1010;
+        let t1012 = t1011 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t995 * t974;
+        let t1015 = t973 * t1001;
+        let t1016 = minus_gcylinder_vx_leg6 * t1015;
+        let gcross_vy_leg6 = t952 / t943;
+        let gcylinder_vy_leg6 = t990 * t974;
+        let t1021 = gcylinder_vy_leg6 * t1015;
+        let minus_gcross_vz_leg6 = s_cross_leg6 / t943;
+        let minus_gcylinder_vz_leg6 = t998 * t974;
+        let t1026 = minus_gcylinder_vz_leg6 * t1015;
+        let minus_gcross_wx_leg6 = t431 * minus_gcross_vz_leg6 + t439 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t431 * minus_gcylinder_vz_leg6
+            + t439 * gcylinder_vy_leg6;
+        let t1035 = minus_gcylinder_wx_leg6 * t1015;
+        let gcross_wy_leg6 = t439 * gcross_vx_leg6 + t425 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t425 * minus_gcylinder_vz_leg6
+            - t439 * minus_gcylinder_vx_leg6;
+        let t1044 = gcylinder_wy_leg6 * t1015;
+        let gcross_wz_leg6 = t425 * gcross_vy_leg6 - t431 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t425 * gcylinder_vy_leg6
+            + t431 * minus_gcylinder_vx_leg6;
+        let t1053 = gcylinder_wz_leg6 * t1015;
+        let t1055 = t361 * t361;
+        let t1056 = t357 * t357;
+        let t1057 = t1055 - t1056;
+        let t1060 = t311 * t381;
+        let t1063 = c_cylinder_leg1 * t379 - minus_s_cylinder_leg1 * (t1060 / t269);
+        let t1081 = t494 * t494;
+        let t1082 = t495 * t495;
+        let t1083 = t1081 - t1082;
+        let t1088 = c_cylinder_leg2 * t545 + t526 * (s_cylinder_leg2 / t450);
+        let t1110 = t648 * t622 + t657 * t620 - t665 * t625;
+        let rate_cylinder_leg3 = t609 * t1110;
+        let t1112 = rate_cylinder_leg3 * t629;
+        let t1113 = t1110 * t650;
+        let minus_rate_dot_cross_leg3 = (t640 + t1113 + t1113) / t598;
+        let t1117 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1119 = t1112 + t1117 + t1112;
+        let t1122 = c_cylinder_leg3 * t1119 + s_cylinder_leg3 * t641;
+        let t1124 = t629 * t629;
+        let t1125 = t650 * t650;
+        let t1126 = t1124 - t1125;
+        let t1148 = t758 * t732 + t767 * t730 - t775 * t735;
+        let rate_cylinder_leg4 = t718 * t1148;
+        let t1150 = rate_cylinder_leg4 * t739;
+        let t1151 = t1148 * t760;
+        let minus_rate_dot_cross_leg4 = t708 * (t750 + t1151 + t1151);
+        let t1155 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1157 = t1150 + t1155 + t1150;
+        let t1160 = c_cylinder_leg4 * t1157 + s_cylinder_leg4 * t751;
+        let t1162 = t739 * t739;
+        let t1163 = t760 * t760;
+        let t1164 = t1162 - t1163;
+        let t1183 = t886 - t889 * t887;
+        let t1185 = t867 * t867;
+        let t1186 = t863 * t863;
+        let t1187 = t1185 - t1186;
+        let t1206 = s_cylinder_leg6 / t962;
+        let t1208 = c_cylinder_leg6 * t1010 + t985 * t1206;
+        let t1210 = t973 * t973;
+        let t1211 = t1001 * t1001;
+        let t1212 = t1210 - t1211;
+        let t1234 = t316 * t281 - t329 * t291 + t340 * t302;
+        let t1236 = rate_cylinder_leg1 * t370 - t1234;
+        let t1237 = t1236 / t311;
+        let rate_dot_cylinder_leg1 = t384 - t1237;
+        let t1239 = t384 + rate_dot_cylinder_leg1;
+        let t1241 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t1244 = c_cylinder_leg1 * t1239 + minus_s_cylinder_leg1 * (t1241 - t1055);
+        let t1246 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1268 = t459 * t502 - t531 * t507 - t534 * t513;
+        let t1270 = t1268 - rate_cylinder_leg2 * t524;
+        let t1271 = t1270 / t450;
+        let rate_dot_cylinder_leg2 = t1271 - t496;
+        let t1273 = rate_dot_cylinder_leg2 - t496;
+        let t1275 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t1278 = c_cylinder_leg2 * t1273 - s_cylinder_leg2 * (t1275 - t1081);
+        let t1280 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1302 = t648 * t613 + t657 * t611 - t665 * t617;
+        let t1304 = t1302 - rate_cylinder_leg3 * t638;
+        let t1305 = t1304 / t607;
+        let rate_dot_cylinder_leg3 = t1305 - t651;
+        let t1307 = rate_dot_cylinder_leg3 - t651;
+        let t1309 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1312 = c_cylinder_leg3 * t1307 - s_cylinder_leg3 * (t1309 - t1124);
+        let t1314 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1336 = t758 * t723 + t767 * t721 - t775 * t727;
+        let t1338 = t1336 - rate_cylinder_leg4 * t748;
+        let t1339 = t718 * t1338;
+        let rate_dot_cylinder_leg4 = t1339 - t761;
+        let t1341 = rate_dot_cylinder_leg4 - t761;
+        let t1343 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1346 = c_cylinder_leg4 * t1341 - s_cylinder_leg4 * (t1343 - t1162);
+        let t1348 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1370 = t843 * t828 - t849 * t825 - t853 * t823;
+        let t1372 = t1370 - rate_cylinder_leg5 * t877;
+        let t1373 = t868 * t1372;
+        let rate_dot_cylinder_leg5 = t1373 - t892;
+        let t1375 = rate_dot_cylinder_leg5 - t892;
+        let t1377 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1380 = c_cylinder_leg5 * t1375 - s_cylinder_leg5 * (t1377 - t1185);
+        let t1382 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1404 = t990 * t953 - t995 * t950 - t998 * t948;
+        let t1406 = t1404 - rate_cylinder_leg6 * t983;
+        let rate_dot_cylinder_leg6 = t974 * t1406 - t1015;
+        let t1409 = rate_dot_cylinder_leg6 - t1015;
+        let t1411 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1414 = c_cylinder_leg6 * t1409 - s_cylinder_leg6 * (t1411 - t1210);
+        let t1416 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1458 = s_cylinder_leg3 * t1119;
+        let t1471 = s_cylinder_leg4 * t1157;
+        let t1511 = c_cylinder_leg1 * (t1056 - t1241) - minus_s_cylinder_leg1 * t1237;
+        let t1534 = c_cylinder_leg2 * (t1082 - t1275) - s_cylinder_leg2 * t1271;
+        let t1555 = c_cylinder_leg3 * (t1125 - t1309) - s_cylinder_leg3 * t1305;
+        let t1577 = c_cylinder_leg4 * (t1163 - t1343) - s_cylinder_leg4 * t1339;
+        let t1599 = c_cylinder_leg5 * (t1186 - t1377) - s_cylinder_leg5 * t1373;
+        let t1621 = c_cylinder_leg6 * (t1211 - t1411) - t1406 * t1206;
+        let t1676 = 9.81 * minus_s_cross_leg1;
+        let t1677 = minus_s_cylinder_leg1 * t1676;
+        let t1679 = 9.81 * grod_vz_leg1;
+        let t1697 = 9.81 * minus_s_cross_leg2;
+        let t1698 = s_cylinder_leg2 * t1697;
+        let t1700 = 9.81 * grod_vz_leg2;
+        let t1718 = 9.81 * minus_s_cross_leg3;
+        let t1719 = s_cylinder_leg3 * t1718;
+        let t1721 = 9.81 * grod_vz_leg3;
+        let t1739 = 9.81 * minus_s_cross_leg4;
+        let t1740 = s_cylinder_leg4 * t1739;
+        let t1742 = 9.81 * grod_vz_leg4;
+        let t1760 = 9.81 * s_cross_leg5;
+        let t1761 = s_cylinder_leg5 * t1760;
+        let t1763 = 9.81 * grod_vz_leg5;
+        let t1781 = 9.81 * s_cross_leg6;
+        let t1782 = s_cylinder_leg6 * t1781;
+        let t1784 = 9.81 * grod_vz_leg6;
+        let t1802 = t1679 / t311;
+        let t1805 = c_cylinder_leg1 * t1676;
+        let t1807 = 9.81 * t340;
         let minus_grod_wz_leg1 = t253 * grod_vx_leg1 - t243 * minus_minus_grod_vy_leg1;
-        let t1845 = t450 * t1725;
-        let t1848 = c_cylinder_leg2 * t1722;
-        let t1850 = 9.81 * t505;
-        let minus_grod_wz_leg2 = t425 * minus_minus_grod_vy_leg2 - t431 * grod_vx_leg2;
-        let t1863 = t607 * t1746;
-        let t1866 = c_cylinder_leg3 * t1743;
-        let t1868 = 9.81 * t624;
+        let t1820 = t451 * t1700;
+        let t1823 = c_cylinder_leg2 * t1697;
+        let t1825 = 9.81 * t534;
+        let minus_grod_wz_leg2 = t426 * minus_minus_grod_vy_leg2 - t432 * grod_vx_leg2;
+        let t1838 = t609 * t1721;
+        let t1841 = c_cylinder_leg3 * t1718;
+        let t1843 = 9.81 * t665;
         let grod_wz_leg3 = t239 * grod_vy_leg3 - t249 * minus_minus_grod_vx_leg3;
-        let t1881 = t730 * t1767;
-        let t1884 = c_cylinder_leg4 * t1764;
-        let t1886 = 9.81 * t747;
-        let grod_wz_leg4 = t423 * grod_vy_leg4 - t429 * minus_minus_grod_vx_leg4;
-        let t1899 = t853 * t1788;
-        let t1902 = c_cylinder_leg5 * t1785;
-        let t1904 = 9.81 * t870;
+        let t1856 = t1742 / t717;
+        let t1859 = c_cylinder_leg4 * t1739;
+        let t1861 = 9.81 * t775;
+        let grod_wz_leg4 = t424 * grod_vy_leg4 - t430 * minus_minus_grod_vx_leg4;
+        let t1874 = t1763 / t837;
+        let t1877 = c_cylinder_leg5 * t1760;
+        let t1879 = 9.81 * t853;
         let minus_grod_wz_leg5 = t242 * grod_vy_leg5 - t252 * minus_minus_grod_vx_leg5;
-        let t1917 = t976 * t1809;
-        let t1920 = c_cylinder_leg6 * t1806;
-        let t1922 = 9.81 * t993;
-        let grod_wz_leg6 = t424 * grod_vy_leg6 - t430 * minus_minus_grod_vx_leg6;
-        let t1935 = 9.81 * c_cross_leg1;
-        let t1942 = 9.81 * c_cross_leg2;
-        let t1949 = 9.81 * c_cross_leg3;
-        let t1956 = 9.81 * c_cross_leg4;
-        let t1963 = 9.81 * c_cross_leg5;
-        let t1970 = 9.81 * c_cross_leg6;
-        let t1981 = minus_minus_grod_vy_leg1 * t348 + grod_vx_leg1 * t339
-            + grod_vz_leg1 * t358;
-        let t1982 = t1704 + t1981;
-        let t1985 = t1982 + t279 * (t1078 + t1257);
-        let t1988 = t360 - t1701;
-        let t1990 = t269 * t1084 - minus_s_cylinder_leg1 * t1988;
-        let t1994 = gcylinder_vx_leg1 * t1985 + minus_gcross_vx_leg1 * t1990
-            + grod_vx_leg1 * t1255;
-        let t1999 = gcross_vy_leg1 * t1990 + minus_gcylinder_vy_leg1 * t1985
-            - minus_minus_grod_vy_leg1 * t1255;
-        let t2004 = gcross_vz_leg1 * t1990 - gcylinder_vz_leg1 * t1985
-            - grod_vz_leg1 * t1255;
-        let t2018 = minus_minus_grod_vy_leg2 * t518 + grod_vx_leg2 * t513
-            + grod_vz_leg2 * t524;
-        let t2019 = t1725 + t2018;
-        let t2022 = t2019 + t449 * (t1106 + t1291);
-        let t2025 = t1722 - t526;
-        let t2027 = t443 * t1112 - s_cylinder_leg2 * t2025;
-        let t2031 = gcylinder_vx_leg2 * t2022 + minus_gcross_vx_leg2 * t2027
-            + grod_vx_leg2 * t1289;
-        let t2036 = minus_minus_grod_vy_leg2 * t1289 + minus_gcross_vy_leg2 * t2027
-            - minus_gcylinder_vy_leg2 * t2022;
-        let t2041 = gcross_vz_leg2 * t2027 + minus_gcylinder_vz_leg2 * t2022
-            - grod_vz_leg2 * t1289;
-        let t2052 = t1743 - t645;
-        let t2054 = t596 * t1136 - s_cylinder_leg3 * t2052;
-        let t2060 = minus_minus_grod_vx_leg3 * t640 + grod_vy_leg3 * t638
-            + grod_vz_leg3 * t643;
-        let t2061 = t1746 + t2060;
-        let t2064 = t2061 + t606 * (t1142 + t1325);
-        let t2068 = gcross_vx_leg3 * t2054 - gcylinder_vx_leg3 * t2064
-            - minus_minus_grod_vx_leg3 * t1323;
-        let t2073 = gcylinder_vy_leg3 * t2064 + minus_gcross_vy_leg3 * t2054
-            + grod_vy_leg3 * t1323;
-        let t2078 = gcross_vz_leg3 * t2054 + minus_gcylinder_vz_leg3 * t2064
-            - grod_vz_leg3 * t1323;
-        let t2089 = t1764 - t768;
-        let t2091 = t719 * t1164 - s_cylinder_leg4 * t2089;
-        let t2097 = minus_minus_grod_vx_leg4 * t763 + grod_vy_leg4 * t761
-            + grod_vz_leg4 * t766;
-        let t2098 = t1767 + t2097;
-        let t2101 = t2098 + t729 * (t1170 + t1359);
-        let t2105 = gcross_vx_leg4 * t2091 - gcylinder_vx_leg4 * t2101
-            - minus_minus_grod_vx_leg4 * t1357;
-        let t2110 = gcylinder_vy_leg4 * t2101 + minus_gcross_vy_leg4 * t2091
-            + grod_vy_leg4 * t1357;
-        let t2115 = gcross_vz_leg4 * t2091 + minus_gcylinder_vz_leg4 * t2101
-            - grod_vz_leg4 * t1357;
-        let t2126 = t891 + t1785;
-        let t2128 = t842 * t1192 + s_cylinder_leg5 * t2126;
-        let t2134 = minus_minus_grod_vx_leg5 * t886 + grod_vy_leg5 * t888
-            + grod_vz_leg5 * t884;
-        let t2135 = t1788 + t2134;
-        let t2138 = t2135 + t852 * (t1198 + t1393);
-        let t2142 = gcross_vx_leg5 * t2128 + minus_gcylinder_vx_leg5 * t2138
-            - minus_minus_grod_vx_leg5 * t1391;
-        let t2147 = gcross_vy_leg5 * t2128 - gcylinder_vy_leg5 * t2138
-            - grod_vy_leg5 * t1391;
-        let t2152 = minus_gcross_vz_leg5 * t2128 - minus_gcylinder_vz_leg5 * t2138
-            + grod_vz_leg5 * t1391;
-        let t2163 = t1014 + t1806;
-        let t2165 = t965 * t1220 + s_cylinder_leg6 * t2163;
-        let t2171 = minus_minus_grod_vx_leg6 * t1009 + grod_vy_leg6 * t1011
-            + grod_vz_leg6 * t1007;
-        let t2172 = t1809 + t2171;
-        let t2175 = t2172 + t975 * (t1226 + t1427);
-        let t2179 = gcross_vx_leg6 * t2165 + minus_gcylinder_vx_leg6 * t2175
-            - minus_minus_grod_vx_leg6 * t1425;
-        let t2184 = gcross_vy_leg6 * t2165 - gcylinder_vy_leg6 * t2175
-            - grod_vy_leg6 * t1425;
-        let t2189 = minus_gcross_vz_leg6 * t2165 - minus_gcylinder_vz_leg6 * t2175
-            + grod_vz_leg6 * t1425;
-        let t2200 = t1249 + t1832;
-        let t2204 = t328 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t2200
-            + c_cylinder_leg1 * t1982;
-        let t2207 = minus_gcross_vx_leg1 * t2204 + t283 * minus_rate_dot_cross_leg1;
-        let t2210 = gcross_vy_leg1 * t2204 + t297 * minus_rate_dot_cross_leg1;
-        let t2213 = gcross_vz_leg1 * t2204 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2225 = t1283 - t1850;
-        let t2228 = t491 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t2225 - c_cylinder_leg2 * t2019);
-        let t2231 = minus_gcross_vx_leg2 * t2228 + t455 * minus_rate_dot_cross_leg2;
-        let t2234 = minus_gcross_vy_leg2 * t2228 + t499 * minus_rate_dot_cross_leg2;
-        let t2237 = gcross_vz_leg2 * t2228 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2249 = t1317 - t1868;
-        let t2252 = t634 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t2249 - c_cylinder_leg3 * t2061);
-        let t2255 = gcross_vx_leg3 * t2252 + t610 * minus_rate_dot_cross_leg3;
-        let t2258 = minus_gcross_vy_leg3 * t2252 + t618 * minus_rate_dot_cross_leg3;
-        let t2261 = gcross_vz_leg3 * t2252 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2273 = t1351 - t1886;
-        let t2276 = t757 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t2273 - c_cylinder_leg4 * t2098);
-        let t2279 = gcross_vx_leg4 * t2276 + t733 * minus_rate_dot_cross_leg4;
-        let t2282 = minus_gcross_vy_leg4 * t2276 + t741 * minus_rate_dot_cross_leg4;
-        let t2285 = gcross_vz_leg4 * t2276 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2297 = t1385 - t1904;
-        let t2300 = t880 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2297 - c_cylinder_leg5 * t2135);
-        let t2303 = gcross_vx_leg5 * t2300 - t863 * minus_rate_dot_cross_leg5;
-        let t2306 = gcross_vy_leg5 * t2300 - t857 * minus_rate_dot_cross_leg5;
-        let t2309 = minus_gcross_vz_leg5 * t2300
+        let t1892 = t974 * t1784;
+        let t1895 = c_cylinder_leg6 * t1781;
+        let t1897 = 9.81 * t998;
+        let grod_wz_leg6 = t425 * grod_vy_leg6 - t431 * minus_minus_grod_vx_leg6;
+        let t1910 = 9.81 * c_cross_leg1;
+        let t1917 = 9.81 * c_cross_leg2;
+        let t1924 = 9.81 * c_cross_leg3;
+        let t1931 = 9.81 * c_cross_leg4;
+        let t1938 = 9.81 * c_cross_leg5;
+        let t1945 = 9.81 * c_cross_leg6;
+        let t1956 = minus_minus_grod_vy_leg1 * t291 + grod_vx_leg1 * t281
+            + grod_vz_leg1 * t302;
+        let t1957 = t1679 + t1956;
+        let t1960 = t1957 + t311 * (t1056 + t1241);
+        let t1963 = t304 - t1676;
+        let t1965 = t269 * t379 - minus_s_cylinder_leg1 * t1963;
+        let t1969 = gcylinder_vx_leg1 * t1960 + minus_gcross_vx_leg1 * t1965
+            + grod_vx_leg1 * t1239;
+        let t1974 = gcross_vy_leg1 * t1965 + minus_gcylinder_vy_leg1 * t1960
+            - minus_minus_grod_vy_leg1 * t1239;
+        let t1979 = gcross_vz_leg1 * t1965 - gcylinder_vz_leg1 * t1960
+            - grod_vz_leg1 * t1239;
+        let t1993 = minus_minus_grod_vy_leg2 * t507 + grod_vx_leg2 * t502
+            + grod_vz_leg2 * t513;
+        let t1994 = t1700 + t1993;
+        let t1997 = t1994 + t450 * (t1082 + t1275);
+        let t2000 = t1697 - t515;
+        let t2002 = t444 * t545 - s_cylinder_leg2 * t2000;
+        let t2006 = gcylinder_vx_leg2 * t1997 + minus_gcross_vx_leg2 * t2002
+            + grod_vx_leg2 * t1273;
+        let t2011 = minus_minus_grod_vy_leg2 * t1273 + minus_gcross_vy_leg2 * t2002
+            - minus_gcylinder_vy_leg2 * t1997;
+        let t2016 = gcross_vz_leg2 * t2002 + minus_gcylinder_vz_leg2 * t1997
+            - grod_vz_leg2 * t1273;
+        let t2027 = t1718 - t619;
+        let t2029 = t598 * t1119 - s_cylinder_leg3 * t2027;
+        let t2035 = minus_minus_grod_vx_leg3 * t613 + grod_vy_leg3 * t611
+            + grod_vz_leg3 * t617;
+        let t2036 = t1721 + t2035;
+        let t2039 = t2036 + t607 * (t1125 + t1309);
+        let t2043 = gcross_vx_leg3 * t2029 - gcylinder_vx_leg3 * t2039
+            - minus_minus_grod_vx_leg3 * t1307;
+        let t2048 = gcylinder_vy_leg3 * t2039 + minus_gcross_vy_leg3 * t2029
+            + grod_vy_leg3 * t1307;
+        let t2053 = gcross_vz_leg3 * t2029 + minus_gcylinder_vz_leg3 * t2039
+            - grod_vz_leg3 * t1307;
+        let t2064 = t1739 - t729;
+        let t2066 = t707 * t1157 - s_cylinder_leg4 * t2064;
+        let t2072 = minus_minus_grod_vx_leg4 * t723 + grod_vy_leg4 * t721
+            + grod_vz_leg4 * t727;
+        let t2073 = t1742 + t2072;
+        let t2076 = t2073 + t717 * (t1163 + t1343);
+        let t2080 = gcross_vx_leg4 * t2066 - gcylinder_vx_leg4 * t2076
+            - minus_minus_grod_vx_leg4 * t1341;
+        let t2085 = gcylinder_vy_leg4 * t2076 + minus_gcross_vy_leg4 * t2066
+            + grod_vy_leg4 * t1341;
+        let t2090 = gcross_vz_leg4 * t2066 + minus_gcylinder_vz_leg4 * t2076
+            - grod_vz_leg4 * t1341;
+        let t2101 = t831 + t1760;
+        let t2103 = t817 * t885 + s_cylinder_leg5 * t2101;
+        let t2109 = minus_minus_grod_vx_leg5 * t825 + grod_vy_leg5 * t828
+            + grod_vz_leg5 * t823;
+        let t2110 = t1763 + t2109;
+        let t2113 = t2110 + t837 * (t1186 + t1377);
+        let t2117 = gcross_vx_leg5 * t2103 + minus_gcylinder_vx_leg5 * t2113
+            - minus_minus_grod_vx_leg5 * t1375;
+        let t2122 = gcross_vy_leg5 * t2103 - gcylinder_vy_leg5 * t2113
+            - grod_vy_leg5 * t1375;
+        let t2127 = minus_gcross_vz_leg5 * t2103 - minus_gcylinder_vz_leg5 * t2113
+            + grod_vz_leg5 * t1375;
+        let t2138 = t956 + t1781;
+        let t2140 = t943 * t1010 + s_cylinder_leg6 * t2138;
+        let t2146 = minus_minus_grod_vx_leg6 * t950 + grod_vy_leg6 * t953
+            + grod_vz_leg6 * t948;
+        let t2147 = t1784 + t2146;
+        let t2150 = t2147 + t962 * (t1211 + t1411);
+        let t2154 = gcross_vx_leg6 * t2140 + minus_gcylinder_vx_leg6 * t2150
+            - minus_minus_grod_vx_leg6 * t1409;
+        let t2159 = gcross_vy_leg6 * t2140 - gcylinder_vy_leg6 * t2150
+            - grod_vy_leg6 * t1409;
+        let t2164 = minus_gcross_vz_leg6 * t2140 - minus_gcylinder_vz_leg6 * t2150
+            + grod_vz_leg6 * t1409;
+        let t2175 = t1234 + t1807;
+        let t2179 = t355 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t2175
+            + c_cylinder_leg1 * t1957;
+        let t2182 = minus_gcross_vx_leg1 * t2179 + t305 * minus_rate_dot_cross_leg1;
+        let t2185 = gcross_vy_leg1 * t2179 + t326 * minus_rate_dot_cross_leg1;
+        let t2188 = gcross_vz_leg1 * t2179 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t2200 = t1268 - t1825;
+        let t2203 = t492 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t2200 - c_cylinder_leg2 * t1994);
+        let t2206 = minus_gcross_vx_leg2 * t2203 + t456 * minus_rate_dot_cross_leg2;
+        let t2209 = minus_gcross_vy_leg2 * t2203 + t528 * minus_rate_dot_cross_leg2;
+        let t2212 = gcross_vz_leg2 * t2203 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t2224 = t1302 - t1843;
+        let t2227 = t627 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t2224 - c_cylinder_leg3 * t2036);
+        let t2230 = gcross_vx_leg3 * t2227 + t644 * minus_rate_dot_cross_leg3;
+        let t2233 = minus_gcross_vy_leg3 * t2227 + t655 * minus_rate_dot_cross_leg3;
+        let t2236 = gcross_vz_leg3 * t2227 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2248 = t1336 - t1861;
+        let t2251 = t737 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t2248 - c_cylinder_leg4 * t2073);
+        let t2254 = gcross_vx_leg4 * t2251 + t754 * minus_rate_dot_cross_leg4;
+        let t2257 = minus_gcross_vy_leg4 * t2251 + t765 * minus_rate_dot_cross_leg4;
+        let t2260 = gcross_vz_leg4 * t2251 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2272 = t1370 - t1879;
+        let t2275 = t861 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2272 - c_cylinder_leg5 * t2110);
+        let t2278 = gcross_vx_leg5 * t2275 - t846 * minus_rate_dot_cross_leg5;
+        let t2281 = gcross_vy_leg5 * t2275 - t840 * minus_rate_dot_cross_leg5;
+        let t2284 = minus_gcross_vz_leg5 * t2275
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2321 = t1419 - t1922;
-        let t2324 = t1003 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2321 - c_cylinder_leg6 * t2172);
-        let t2327 = gcross_vx_leg6 * t2324 - t986 * minus_rate_dot_cross_leg6;
-        let t2330 = gcross_vy_leg6 * t2324 - t980 * minus_rate_dot_cross_leg6;
-        let t2333 = minus_gcross_vz_leg6 * t2324
+        let t2296 = t1404 - t1897;
+        let t2299 = t971 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2296 - c_cylinder_leg6 * t2147);
+        let t2302 = gcross_vx_leg6 * t2299 - t992 * minus_rate_dot_cross_leg6;
+        let t2305 = gcross_vy_leg6 * t2299 - t987 * minus_rate_dot_cross_leg6;
+        let t2308 = minus_gcross_vz_leg6 * t2299
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2345 = t269 * t379 + c_cylinder_leg1 * t1988;
-        let t2348 = t2200 - t279 * t1529;
-        let t2351 = t1077 + t1257;
-        let t2353 = minus_gcross_vx_leg1 * t2345 + gcylinder_vx_leg1 * t2348
-            - grod_vx_leg1 * t2351;
-        let t2358 = minus_minus_grod_vy_leg1 * t2351 + gcross_vy_leg1 * t2345
-            + minus_gcylinder_vy_leg1 * t2348;
-        let t2363 = gcylinder_vz_leg1 * t2348 - gcross_vz_leg1 * t2345
-            - grod_vz_leg1 * t2351;
-        let t2374 = t449 * t1553 + t2225;
-        let t2378 = t443 * t544 + c_cylinder_leg2 * t2025;
-        let t2381 = t1105 + t1291;
-        let t2383 = gcylinder_vx_leg2 * t2374 - minus_gcross_vx_leg2 * t2378
-            - grod_vx_leg2 * t2381;
-        let t2388 = minus_minus_grod_vy_leg2 * t2381 + minus_gcross_vy_leg2 * t2378
-            + minus_gcylinder_vy_leg2 * t2374;
-        let t2393 = gcross_vz_leg2 * t2378 - minus_gcylinder_vz_leg2 * t2374
-            - grod_vz_leg2 * t2381;
-        let t2405 = t596 * t664 + c_cylinder_leg3 * t2052;
-        let t2408 = t606 * t1575 + t2249;
-        let t2411 = t1141 + t1325;
-        let t2413 = gcross_vx_leg3 * t2405 + gcylinder_vx_leg3 * t2408
-            - minus_minus_grod_vx_leg3 * t2411;
-        let t2418 = gcylinder_vy_leg3 * t2408 - minus_gcross_vy_leg3 * t2405
-            - grod_vy_leg3 * t2411;
-        let t2423 = gcross_vz_leg3 * t2405 - minus_gcylinder_vz_leg3 * t2408
-            - grod_vz_leg3 * t2411;
-        let t2435 = t719 * t787 + c_cylinder_leg4 * t2089;
-        let t2438 = t729 * t1598 + t2273;
-        let t2441 = t1169 + t1359;
-        let t2443 = gcross_vx_leg4 * t2435 + gcylinder_vx_leg4 * t2438
-            - minus_minus_grod_vx_leg4 * t2441;
-        let t2448 = gcylinder_vy_leg4 * t2438 - minus_gcross_vy_leg4 * t2435
-            - grod_vy_leg4 * t2441;
-        let t2453 = gcross_vz_leg4 * t2435 - minus_gcylinder_vz_leg4 * t2438
-            - grod_vz_leg4 * t2441;
-        let t2465 = t842 * t910 - c_cylinder_leg5 * t2126;
-        let t2468 = t852 * t1621 + t2297;
-        let t2471 = t1197 + t1393;
-        let t2473 = gcross_vx_leg5 * t2465 - minus_gcylinder_vx_leg5 * t2468
-            - minus_minus_grod_vx_leg5 * t2471;
-        let t2478 = gcross_vy_leg5 * t2465 + gcylinder_vy_leg5 * t2468
-            - grod_vy_leg5 * t2471;
-        let t2483 = minus_gcross_vz_leg5 * t2465 + minus_gcylinder_vz_leg5 * t2468
-            + grod_vz_leg5 * t2471;
-        let t2495 = t965 * t1033 - c_cylinder_leg6 * t2163;
-        let t2498 = t975 * t1644 + t2321;
-        let t2501 = t1225 + t1427;
-        let t2503 = gcross_vx_leg6 * t2495 - minus_gcylinder_vx_leg6 * t2498
-            - minus_minus_grod_vx_leg6 * t2501;
-        let t2508 = gcross_vy_leg6 * t2495 + gcylinder_vy_leg6 * t2498
-            - grod_vy_leg6 * t2501;
-        let t2513 = minus_gcross_vz_leg6 * t2495 + minus_gcylinder_vz_leg6 * t2498
-            + grod_vz_leg6 * t2501;
-        let minus_minus_rate_dot_rod_leg1 = t279 * t2351 + t1981;
+        let t2319 = t1060 + c_cylinder_leg1 * t1963;
+        let t2321 = t2175 - t1236;
+        let t2324 = t1055 + t1241;
+        let t2326 = minus_gcross_vx_leg1 * t2319 + gcylinder_vx_leg1 * t2321
+            - grod_vx_leg1 * t2324;
+        let t2331 = minus_minus_grod_vy_leg1 * t2324 + gcross_vy_leg1 * t2319
+            + minus_gcylinder_vy_leg1 * t2321;
+        let t2336 = gcylinder_vz_leg1 * t2321 - gcross_vz_leg1 * t2319
+            - grod_vz_leg1 * t2324;
+        let t2346 = t1270 + t2200;
+        let t2349 = c_cylinder_leg2 * (t2000 - t526);
+        let t2352 = t1081 + t1275;
+        let t2354 = gcylinder_vx_leg2 * t2346 - minus_gcross_vx_leg2 * t2349
+            - grod_vx_leg2 * t2352;
+        let t2359 = minus_minus_grod_vy_leg2 * t2352 + minus_gcross_vy_leg2 * t2349
+            + minus_gcylinder_vy_leg2 * t2346;
+        let t2364 = gcross_vz_leg2 * t2349 - minus_gcylinder_vz_leg2 * t2346
+            - grod_vz_leg2 * t2352;
+        let t2375 = c_cylinder_leg3 * (t2027 - t640);
+        let t2377 = t1304 + t2224;
+        let t2380 = t1124 + t1309;
+        let t2382 = gcross_vx_leg3 * t2375 + gcylinder_vx_leg3 * t2377
+            - minus_minus_grod_vx_leg3 * t2380;
+        let t2387 = gcylinder_vy_leg3 * t2377 - minus_gcross_vy_leg3 * t2375
+            - grod_vy_leg3 * t2380;
+        let t2392 = gcross_vz_leg3 * t2375 - minus_gcylinder_vz_leg3 * t2377
+            - grod_vz_leg3 * t2380;
+        let t2403 = c_cylinder_leg4 * (t2064 - t750);
+        let t2405 = t1338 + t2248;
+        let t2408 = t1162 + t1343;
+        let t2410 = gcross_vx_leg4 * t2403 + gcylinder_vx_leg4 * t2405
+            - minus_minus_grod_vx_leg4 * t2408;
+        let t2415 = gcylinder_vy_leg4 * t2405 - minus_gcross_vy_leg4 * t2403
+            - grod_vy_leg4 * t2408;
+        let t2420 = gcross_vz_leg4 * t2403 - minus_gcylinder_vz_leg4 * t2405
+            - grod_vz_leg4 * t2408;
+        let t2432 = t837 * t889 - c_cylinder_leg5 * t2101;
+        let t2434 = t1372 + t2272;
+        let t2437 = t1185 + t1377;
+        let t2439 = gcross_vx_leg5 * t2432 - minus_gcylinder_vx_leg5 * t2434
+            - minus_minus_grod_vx_leg5 * t2437;
+        let t2444 = gcross_vy_leg5 * t2432 + gcylinder_vy_leg5 * t2434
+            - grod_vy_leg5 * t2437;
+        let t2449 = minus_gcross_vz_leg5 * t2432 + minus_gcylinder_vz_leg5 * t2434
+            + grod_vz_leg5 * t2437;
+        let t2460 = c_cylinder_leg6 * (t2138 + t985);
+        let t2462 = t1406 + t2296;
+        let t2465 = t1210 + t1411;
+        let t2467 = gcross_vx_leg6 * t2460 + minus_gcylinder_vx_leg6 * t2462
+            + minus_minus_grod_vx_leg6 * t2465;
+        let t2472 = gcylinder_vy_leg6 * t2462 - gcross_vy_leg6 * t2460
+            - grod_vy_leg6 * t2465;
+        let t2477 = minus_gcylinder_vz_leg6 * t2462 - minus_gcross_vz_leg6 * t2460
+            + grod_vz_leg6 * t2465;
+        let minus_minus_rate_dot_rod_leg1 = t311 * t2324 + t1956;
         let grod_wx_leg1 = t253 * grod_vz_leg1 - t265 * minus_minus_grod_vy_leg1;
         let grod_wy_leg1 = t265 * grod_vx_leg1 - t243 * grod_vz_leg1;
-        let minus_minus_rate_dot_rod_leg2 = t449 * t2381 + t2018;
-        let grod_wx_leg2 = t439 * minus_minus_grod_vy_leg2 - t431 * grod_vz_leg2;
-        let grod_wy_leg2 = t425 * grod_vz_leg2 - t439 * grod_vx_leg2;
-        let minus_minus_rate_dot_rod_leg3 = t606 * t2411 + t2060;
+        let minus_minus_rate_dot_rod_leg2 = t450 * t2352 + t1993;
+        let grod_wx_leg2 = t440 * minus_minus_grod_vy_leg2 - t432 * grod_vz_leg2;
+        let grod_wy_leg2 = t426 * grod_vz_leg2 - t440 * grod_vx_leg2;
+        let minus_minus_rate_dot_rod_leg3 = t607 * t2380 + t2035;
         let grod_wx_leg3 = t249 * grod_vz_leg3 - t261 * grod_vy_leg3;
         let minus_grod_wy_leg3 = t239 * grod_vz_leg3 - t261 * minus_minus_grod_vx_leg3;
-        let minus_minus_rate_dot_rod_leg4 = t729 * t2441 + t2097;
-        let grod_wx_leg4 = t429 * grod_vz_leg4 - t437 * grod_vy_leg4;
-        let minus_grod_wy_leg4 = t423 * grod_vz_leg4 - t437 * minus_minus_grod_vx_leg4;
-        let minus_minus_rate_dot_rod_leg5 = t852 * t2471 + t2134;
+        let minus_minus_rate_dot_rod_leg4 = t717 * t2408 + t2072;
+        let grod_wx_leg4 = t430 * grod_vz_leg4 - t438 * grod_vy_leg4;
+        let minus_grod_wy_leg4 = t424 * grod_vz_leg4 - t438 * minus_minus_grod_vx_leg4;
+        let minus_minus_rate_dot_rod_leg5 = t837 * t2437 + t2109;
         let grod_wx_leg5 = t264 * grod_vy_leg5 - t252 * grod_vz_leg5;
         let grod_wy_leg5 = t242 * grod_vz_leg5 - t264 * minus_minus_grod_vx_leg5;
-        let minus_minus_rate_dot_rod_leg6 = t975 * t2501 + t2171;
-        let grod_wx_leg6 = t430 * grod_vz_leg6 - t438 * grod_vy_leg6;
-        let minus_grod_wy_leg6 = t424 * grod_vz_leg6 - t438 * minus_minus_grod_vx_leg6;
-        let t2643 = -minus_minus_rate_rod_leg1;
-        let t2650 = -minus_minus_rate_rod_leg2;
-        let t2657 = -minus_minus_rate_rod_leg3;
-        let t2664 = -minus_minus_rate_rod_leg4;
-        let t2671 = -minus_minus_rate_rod_leg5;
-        let t2678 = -minus_minus_rate_rod_leg6;
+        let minus_minus_rate_dot_rod_leg6 = t962 * t2465 + t2146;
+        let grod_wx_leg6 = t431 * grod_vz_leg6 - t439 * grod_vy_leg6;
+        let minus_grod_wy_leg6 = t425 * grod_vz_leg6 - t439 * minus_minus_grod_vx_leg6;
+        let t2607 = -minus_minus_rate_rod_leg1;
+        let t2614 = -minus_minus_rate_rod_leg2;
+        let t2621 = -minus_minus_rate_rod_leg3;
+        let t2628 = -minus_minus_rate_rod_leg4;
+        let t2635 = -minus_minus_rate_rod_leg5;
+        let t2642 = -minus_minus_rate_rod_leg6;
         Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
-                acceleration[0], minus_gcross_vx_leg1 * t380 - t384,
-                t496 - minus_gcross_vx_leg2 * t545, gcross_vx_leg3 * t665 + t669,
-                gcross_vx_leg4 * t788 + t792, gcross_vx_leg5 * t911 - t915,
-                gcross_vx_leg6 * t1034 - t1038,
-                gcylinder_vx_leg1 * t1079 - minus_gcross_vx_leg1 * t1087,
-                gcylinder_vx_leg2 * t1107 - minus_gcross_vx_leg2 * t1115,
-                gcross_vx_leg3 * t1139 + gcylinder_vx_leg3 * t1143,
-                gcross_vx_leg4 * t1167 + gcylinder_vx_leg4 * t1171,
-                gcross_vx_leg5 * t1195 - minus_gcylinder_vx_leg5 * t1199,
-                gcross_vx_leg6 * t1223 - minus_gcylinder_vx_leg6 * t1227,
-                -(minus_gcross_vx_leg1 * t1260 + gcylinder_vx_leg1 * t377),
-                -(minus_gcross_vx_leg2 * t1294 + gcylinder_vx_leg2 * t542),
-                gcross_vx_leg3 * t1328 - gcylinder_vx_leg3 * t662,
-                gcross_vx_leg4 * t1362 - gcylinder_vx_leg4 * t785,
-                gcross_vx_leg5 * t1396 + minus_gcylinder_vx_leg5 * t908,
-                gcross_vx_leg6 * t1430 + minus_gcylinder_vx_leg6 * t1031,
-                t384 - minus_gcross_vx_leg1 * t1449, minus_gcross_vx_leg2 * t1462 - t496,
-                -(gcross_vx_leg3 * t1475 + t669), -(gcross_vx_leg4 * t1488 + t792),
-                t915 - gcross_vx_leg5 * t1501, t1038 - gcross_vx_leg6 * t1514,
-                -(minus_gcross_vx_leg1 * t1531 + gcylinder_vx_leg1 * t1082),
-                gcylinder_vx_leg2 * t1110 - minus_gcross_vx_leg2 * t1555,
-                gcross_vx_leg3 * t1577 + gcylinder_vx_leg3 * t1134,
-                gcross_vx_leg4 * t1600 + gcylinder_vx_leg4 * t1162,
-                gcross_vx_leg5 * t1623 - minus_gcylinder_vx_leg5 * t1190,
-                gcross_vx_leg6 * t1646 - minus_gcylinder_vx_leg6 * t1218,
+                acceleration[0], minus_gcross_vx_leg1 * t381 - t385,
+                t497 - minus_gcross_vx_leg2 * t547, t652 - gcross_vx_leg3 * t642,
+                t762 - gcross_vx_leg4 * t752, gcross_vx_leg5 * t889 - t893,
+                gcross_vx_leg6 * t1012 - t1016,
+                gcylinder_vx_leg1 * t1057 - minus_gcross_vx_leg1 * t1063,
+                gcylinder_vx_leg2 * t1083 - minus_gcross_vx_leg2 * t1088,
+                gcross_vx_leg3 * t1122 + gcylinder_vx_leg3 * t1126,
+                gcross_vx_leg4 * t1160 + gcylinder_vx_leg4 * t1164,
+                gcross_vx_leg5 * t1183 - minus_gcylinder_vx_leg5 * t1187,
+                gcross_vx_leg6 * t1208 - minus_gcylinder_vx_leg6 * t1212,
+                -(minus_gcross_vx_leg1 * t1244 + gcylinder_vx_leg1 * t1246),
+                -(minus_gcross_vx_leg2 * t1278 + gcylinder_vx_leg2 * t1280),
+                gcross_vx_leg3 * t1312 - gcylinder_vx_leg3 * t1314,
+                gcross_vx_leg4 * t1346 - gcylinder_vx_leg4 * t1348,
+                gcross_vx_leg5 * t1380 + minus_gcylinder_vx_leg5 * t1382,
+                gcross_vx_leg6 * t1414 + minus_gcylinder_vx_leg6 * t1416,
+                t385 - minus_gcross_vx_leg1 * t380, minus_gcross_vx_leg2 * t546 - t497,
+                -(gcross_vx_leg3 * t1458 + t652), -(gcross_vx_leg4 * t1471 + t762),
+                t893 - gcross_vx_leg5 * t888, t1016 - gcross_vx_leg6 * t1011,
+                -(minus_gcross_vx_leg1 * t1511 + gcylinder_vx_leg1 * t377),
+                gcylinder_vx_leg2 * t543 - minus_gcross_vx_leg2 * t1534,
+                gcross_vx_leg3 * t1555 + gcylinder_vx_leg3 * t1117,
+                gcross_vx_leg4 * t1577 + gcylinder_vx_leg4 * t1155,
+                gcross_vx_leg5 * t1599 - minus_gcylinder_vx_leg5 * t883,
+                gcross_vx_leg6 * t1621 - minus_gcylinder_vx_leg6 * t1008,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t1702 + gcylinder_vx_leg1 * t1704),
-                minus_gcross_vx_leg2 * t1723 - gcylinder_vx_leg2 * t1725,
-                -(gcross_vx_leg3 * t1744 + gcylinder_vx_leg3 * t1746),
-                -(gcross_vx_leg4 * t1765 + gcylinder_vx_leg4 * t1767),
-                gcross_vx_leg5 * t1786 + minus_gcylinder_vx_leg5 * t1788,
-                gcross_vx_leg6 * t1807 + minus_gcylinder_vx_leg6 * t1809, grod_vx_leg1 * t1827,
-                grod_vx_leg2 * t1845, minus_minus_grod_vx_leg3 * t1863,
-                minus_minus_grod_vx_leg4 * t1881, minus_minus_grod_vx_leg5 * t1899,
-                minus_minus_grod_vx_leg6 * t1917, -(minus_gcross_vx_leg1 * t1935),
-                -(minus_gcross_vx_leg2 * t1942), gcross_vx_leg3 * t1949, gcross_vx_leg4 * t1956,
-                gcross_vx_leg5 * t1963, gcross_vx_leg6 * t1970, -t1994, -t2031, t2068, t2105, t2142,
-                t2179, -t2207, -t2231, t2255, t2279, t2303, t2327, t2353, t2383, t2413, t2443,
-                t2473, t2503, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
+                -(minus_gcross_vx_leg1 * t1677 + gcylinder_vx_leg1 * t1679),
+                minus_gcross_vx_leg2 * t1698 - gcylinder_vx_leg2 * t1700,
+                -(gcross_vx_leg3 * t1719 + gcylinder_vx_leg3 * t1721),
+                -(gcross_vx_leg4 * t1740 + gcylinder_vx_leg4 * t1742),
+                gcross_vx_leg5 * t1761 + minus_gcylinder_vx_leg5 * t1763,
+                gcross_vx_leg6 * t1782 + minus_gcylinder_vx_leg6 * t1784, grod_vx_leg1 * t1802,
+                grod_vx_leg2 * t1820, minus_minus_grod_vx_leg3 * t1838,
+                minus_minus_grod_vx_leg4 * t1856, minus_minus_grod_vx_leg5 * t1874,
+                minus_minus_grod_vx_leg6 * t1892, -(minus_gcross_vx_leg1 * t1910),
+                -(minus_gcross_vx_leg2 * t1917), gcross_vx_leg3 * t1924, gcross_vx_leg4 * t1931,
+                gcross_vx_leg5 * t1938, gcross_vx_leg6 * t1945, -t1969, -t2006, t2043, t2080, t2117,
+                t2154, -t2182, -t2206, t2230, t2254, t2278, t2302, t2326, t2354, t2382, t2410,
+                t2439, -t2467, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_dot_rod_leg3,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_dot_rod_leg4,
@@ -14251,61 +14235,61 @@ impl Hexapod {
                 minus_minus_grod_vx_leg4 * minus_minus_rate_rod_leg4,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_rod_leg5,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vx_leg1, t2643),
-                -::overact::math::signed(grod_vx_leg2, t2650),
-                -::overact::math::signed(minus_minus_grod_vx_leg3, t2657),
-                -::overact::math::signed(minus_minus_grod_vx_leg4, t2664),
-                -::overact::math::signed(minus_minus_grod_vx_leg5, t2671),
-                -::overact::math::signed(minus_minus_grod_vx_leg6, t2678), grod_vx_leg1,
+                -::overact::math::signed(grod_vx_leg1, t2607),
+                -::overact::math::signed(grod_vx_leg2, t2614),
+                -::overact::math::signed(minus_minus_grod_vx_leg3, t2621),
+                -::overact::math::signed(minus_minus_grod_vx_leg4, t2628),
+                -::overact::math::signed(minus_minus_grod_vx_leg5, t2635),
+                -::overact::math::signed(minus_minus_grod_vx_leg6, t2642), grod_vx_leg1,
                 grod_vx_leg2, minus_minus_grod_vx_leg3, minus_minus_grod_vx_leg4,
                 minus_minus_grod_vx_leg5, minus_minus_grod_vx_leg6,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t170, t198, t25 * t161 - t29 * t164 + t34 * t168,
-                acceleration[1], t387 - gcross_vy_leg1 * t380,
-                -(minus_gcross_vy_leg2 * t545 + t551), t672 - minus_gcross_vy_leg3 * t665,
-                t795 - minus_gcross_vy_leg4 * t788, gcross_vy_leg5 * t911 + t920,
-                gcross_vy_leg6 * t1034 + t1043,
-                gcross_vy_leg1 * t1087 - minus_gcylinder_vy_leg1 * t1079,
-                -(minus_gcross_vy_leg2 * t1115 + minus_gcylinder_vy_leg2 * t1107),
-                gcylinder_vy_leg3 * t1143 - minus_gcross_vy_leg3 * t1139,
-                gcylinder_vy_leg4 * t1171 - minus_gcross_vy_leg4 * t1167,
-                gcross_vy_leg5 * t1195 + gcylinder_vy_leg5 * t1199,
-                gcross_vy_leg6 * t1223 + gcylinder_vy_leg6 * t1227,
-                gcross_vy_leg1 * t1260 + minus_gcylinder_vy_leg1 * t377,
-                minus_gcylinder_vy_leg2 * t542 - minus_gcross_vy_leg2 * t1294,
-                -(minus_gcross_vy_leg3 * t1328 + gcylinder_vy_leg3 * t662),
-                -(minus_gcross_vy_leg4 * t1362 + gcylinder_vy_leg4 * t785),
-                gcross_vy_leg5 * t1396 - gcylinder_vy_leg5 * t908,
-                gcross_vy_leg6 * t1430 - gcylinder_vy_leg6 * t1031, gcross_vy_leg1 * t1449 - t387,
-                minus_gcross_vy_leg2 * t1462 + t551, minus_gcross_vy_leg3 * t1475 - t672,
-                minus_gcross_vy_leg4 * t1488 - t795, -(gcross_vy_leg5 * t1501 + t920),
-                -(gcross_vy_leg6 * t1514 + t1043),
-                gcross_vy_leg1 * t1531 + minus_gcylinder_vy_leg1 * t1082,
-                -(minus_gcross_vy_leg2 * t1555 + minus_gcylinder_vy_leg2 * t1110),
-                gcylinder_vy_leg3 * t1134 - minus_gcross_vy_leg3 * t1577,
-                gcylinder_vy_leg4 * t1162 - minus_gcross_vy_leg4 * t1600,
-                gcross_vy_leg5 * t1623 + gcylinder_vy_leg5 * t1190,
-                gcross_vy_leg6 * t1646 + gcylinder_vy_leg6 * t1218,
+                acceleration[1], t388 - gcross_vy_leg1 * t381,
+                -(minus_gcross_vy_leg2 * t547 + t553), t659 + minus_gcross_vy_leg3 * t642,
+                t769 + minus_gcross_vy_leg4 * t752, gcross_vy_leg5 * t889 + t898,
+                gcross_vy_leg6 * t1012 + t1021,
+                gcross_vy_leg1 * t1063 - minus_gcylinder_vy_leg1 * t1057,
+                -(minus_gcross_vy_leg2 * t1088 + minus_gcylinder_vy_leg2 * t1083),
+                gcylinder_vy_leg3 * t1126 - minus_gcross_vy_leg3 * t1122,
+                gcylinder_vy_leg4 * t1164 - minus_gcross_vy_leg4 * t1160,
+                gcross_vy_leg5 * t1183 + gcylinder_vy_leg5 * t1187,
+                gcross_vy_leg6 * t1208 + gcylinder_vy_leg6 * t1212,
+                gcross_vy_leg1 * t1244 + minus_gcylinder_vy_leg1 * t1246,
+                minus_gcylinder_vy_leg2 * t1280 - minus_gcross_vy_leg2 * t1278,
+                -(minus_gcross_vy_leg3 * t1312 + gcylinder_vy_leg3 * t1314),
+                -(minus_gcross_vy_leg4 * t1346 + gcylinder_vy_leg4 * t1348),
+                gcross_vy_leg5 * t1380 - gcylinder_vy_leg5 * t1382,
+                gcross_vy_leg6 * t1414 - gcylinder_vy_leg6 * t1416, gcross_vy_leg1 * t380 - t388,
+                minus_gcross_vy_leg2 * t546 + t553, minus_gcross_vy_leg3 * t1458 - t659,
+                minus_gcross_vy_leg4 * t1471 - t769, -(gcross_vy_leg5 * t888 + t898),
+                -(gcross_vy_leg6 * t1011 + t1021),
+                gcross_vy_leg1 * t1511 + minus_gcylinder_vy_leg1 * t377,
+                -(minus_gcross_vy_leg2 * t1534 + minus_gcylinder_vy_leg2 * t543),
+                gcylinder_vy_leg3 * t1117 - minus_gcross_vy_leg3 * t1555,
+                gcylinder_vy_leg4 * t1155 - minus_gcross_vy_leg4 * t1577,
+                gcross_vy_leg5 * t1599 + gcylinder_vy_leg5 * t883,
+                gcross_vy_leg6 * t1621 + gcylinder_vy_leg6 * t1008,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t1702 + minus_gcylinder_vy_leg1 * t1704,
-                minus_gcross_vy_leg2 * t1723 + minus_gcylinder_vy_leg2 * t1725,
-                minus_gcross_vy_leg3 * t1744 - gcylinder_vy_leg3 * t1746,
-                minus_gcross_vy_leg4 * t1765 - gcylinder_vy_leg4 * t1767,
-                gcross_vy_leg5 * t1786 - gcylinder_vy_leg5 * t1788,
-                gcross_vy_leg6 * t1807 - gcylinder_vy_leg6 * t1809,
-                minus_minus_grod_vy_leg1 * t1827, minus_minus_grod_vy_leg2 * t1845,
-                grod_vy_leg3 * t1863, grod_vy_leg4 * t1881, grod_vy_leg5 * t1899,
-                grod_vy_leg6 * t1917, gcross_vy_leg1 * t1935, -(minus_gcross_vy_leg2 * t1942),
-                -(minus_gcross_vy_leg3 * t1949), -(minus_gcross_vy_leg4 * t1956),
-                gcross_vy_leg5 * t1963, gcross_vy_leg6 * t1970, t1999, -t2036, -t2073, -t2110,
-                t2147, t2184, t2210, -t2234, -t2258, -t2282, t2306, t2330, -t2358, -t2388, t2418,
-                t2448, t2478, t2508, minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
+                gcross_vy_leg1 * t1677 + minus_gcylinder_vy_leg1 * t1679,
+                minus_gcross_vy_leg2 * t1698 + minus_gcylinder_vy_leg2 * t1700,
+                minus_gcross_vy_leg3 * t1719 - gcylinder_vy_leg3 * t1721,
+                minus_gcross_vy_leg4 * t1740 - gcylinder_vy_leg4 * t1742,
+                gcross_vy_leg5 * t1761 - gcylinder_vy_leg5 * t1763,
+                gcross_vy_leg6 * t1782 - gcylinder_vy_leg6 * t1784,
+                minus_minus_grod_vy_leg1 * t1802, minus_minus_grod_vy_leg2 * t1820,
+                grod_vy_leg3 * t1838, grod_vy_leg4 * t1856, grod_vy_leg5 * t1874,
+                grod_vy_leg6 * t1892, gcross_vy_leg1 * t1910, -(minus_gcross_vy_leg2 * t1917),
+                -(minus_gcross_vy_leg3 * t1924), -(minus_gcross_vy_leg4 * t1931),
+                gcross_vy_leg5 * t1938, gcross_vy_leg6 * t1945, t1974, -t2011, -t2048, -t2085,
+                t2122, t2159, t2185, -t2209, -t2233, -t2257, t2281, t2305, -t2331, -t2359, t2387,
+                t2415, t2444, t2472, minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vy_leg4 * minus_minus_rate_dot_rod_leg4,
@@ -14315,62 +14299,62 @@ impl Hexapod {
                 minus_minus_grod_vy_leg2 * minus_minus_rate_rod_leg2,
                 grod_vy_leg3 * minus_minus_rate_rod_leg3, grod_vy_leg4 * minus_minus_rate_rod_leg4,
                 grod_vy_leg5 * minus_minus_rate_rod_leg5, grod_vy_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(minus_minus_grod_vy_leg1, t2643),
-                -::overact::math::signed(minus_minus_grod_vy_leg2, t2650),
-                -::overact::math::signed(grod_vy_leg3, t2657),
-                -::overact::math::signed(grod_vy_leg4, t2664),
-                -::overact::math::signed(grod_vy_leg5, t2671),
-                -::overact::math::signed(grod_vy_leg6, t2678), minus_minus_grod_vy_leg1,
+                -::overact::math::signed(minus_minus_grod_vy_leg1, t2607),
+                -::overact::math::signed(minus_minus_grod_vy_leg2, t2614),
+                -::overact::math::signed(grod_vy_leg3, t2621),
+                -::overact::math::signed(grod_vy_leg4, t2628),
+                -::overact::math::signed(grod_vy_leg5, t2635),
+                -::overact::math::signed(grod_vy_leg6, t2642), minus_minus_grod_vy_leg1,
                 minus_minus_grod_vy_leg2, grod_vy_leg3, grod_vy_leg4, grod_vy_leg5, grod_vy_leg6,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t178, t203, t25 * t171 + t29 * t173 - t34 * t176,
-                t179, -(gcross_vz_leg1 * t380 + t394), gcross_vz_leg2 * t545 - t556,
-                gcross_vz_leg3 * t665 - t679, gcross_vz_leg4 * t788 - t802,
-                -(minus_gcross_vz_leg5 * t911 + t925), -(minus_gcross_vz_leg6 * t1034 + t1048),
-                gcross_vz_leg1 * t1087 + gcylinder_vz_leg1 * t1079,
-                gcross_vz_leg2 * t1115 - minus_gcylinder_vz_leg2 * t1107,
-                gcross_vz_leg3 * t1139 - minus_gcylinder_vz_leg3 * t1143,
-                gcross_vz_leg4 * t1167 - minus_gcylinder_vz_leg4 * t1171,
-                -(minus_gcross_vz_leg5 * t1195 + minus_gcylinder_vz_leg5 * t1199),
-                -(minus_gcross_vz_leg6 * t1223 + minus_gcylinder_vz_leg6 * t1227),
-                gcross_vz_leg1 * t1260 - gcylinder_vz_leg1 * t377,
-                gcross_vz_leg2 * t1294 + minus_gcylinder_vz_leg2 * t542,
-                gcross_vz_leg3 * t1328 + minus_gcylinder_vz_leg3 * t662,
-                gcross_vz_leg4 * t1362 + minus_gcylinder_vz_leg4 * t785,
-                minus_gcylinder_vz_leg5 * t908 - minus_gcross_vz_leg5 * t1396,
-                minus_gcylinder_vz_leg6 * t1031 - minus_gcross_vz_leg6 * t1430,
-                gcross_vz_leg1 * t1449 + t394, t556 - gcross_vz_leg2 * t1462,
-                t679 - gcross_vz_leg3 * t1475, t802 - gcross_vz_leg4 * t1488,
-                minus_gcross_vz_leg5 * t1501 + t925, minus_gcross_vz_leg6 * t1514 + t1048,
-                gcross_vz_leg1 * t1531 - gcylinder_vz_leg1 * t1082,
-                gcross_vz_leg2 * t1555 - minus_gcylinder_vz_leg2 * t1110,
-                gcross_vz_leg3 * t1577 - minus_gcylinder_vz_leg3 * t1134,
-                gcross_vz_leg4 * t1600 - minus_gcylinder_vz_leg4 * t1162,
-                -(minus_gcross_vz_leg5 * t1623 + minus_gcylinder_vz_leg5 * t1190),
-                -(minus_gcross_vz_leg6 * t1646 + minus_gcylinder_vz_leg6 * t1218),
+                t179, -(gcross_vz_leg1 * t381 + t395), gcross_vz_leg2 * t547 - t558,
+                -(gcross_vz_leg3 * t642 + t667), -(gcross_vz_leg4 * t752 + t777),
+                -(minus_gcross_vz_leg5 * t889 + t903), -(minus_gcross_vz_leg6 * t1012 + t1026),
+                gcross_vz_leg1 * t1063 + gcylinder_vz_leg1 * t1057,
+                gcross_vz_leg2 * t1088 - minus_gcylinder_vz_leg2 * t1083,
+                gcross_vz_leg3 * t1122 - minus_gcylinder_vz_leg3 * t1126,
+                gcross_vz_leg4 * t1160 - minus_gcylinder_vz_leg4 * t1164,
+                -(minus_gcross_vz_leg5 * t1183 + minus_gcylinder_vz_leg5 * t1187),
+                -(minus_gcross_vz_leg6 * t1208 + minus_gcylinder_vz_leg6 * t1212),
+                gcross_vz_leg1 * t1244 - gcylinder_vz_leg1 * t1246,
+                gcross_vz_leg2 * t1278 + minus_gcylinder_vz_leg2 * t1280,
+                gcross_vz_leg3 * t1312 + minus_gcylinder_vz_leg3 * t1314,
+                gcross_vz_leg4 * t1346 + minus_gcylinder_vz_leg4 * t1348,
+                minus_gcylinder_vz_leg5 * t1382 - minus_gcross_vz_leg5 * t1380,
+                minus_gcylinder_vz_leg6 * t1416 - minus_gcross_vz_leg6 * t1414,
+                gcross_vz_leg1 * t380 + t395, t558 - gcross_vz_leg2 * t546,
+                t667 - gcross_vz_leg3 * t1458, t777 - gcross_vz_leg4 * t1471,
+                minus_gcross_vz_leg5 * t888 + t903, minus_gcross_vz_leg6 * t1011 + t1026,
+                gcross_vz_leg1 * t1511 - gcylinder_vz_leg1 * t377,
+                gcross_vz_leg2 * t1534 - minus_gcylinder_vz_leg2 * t543,
+                gcross_vz_leg3 * t1555 - minus_gcylinder_vz_leg3 * t1117,
+                gcross_vz_leg4 * t1577 - minus_gcylinder_vz_leg4 * t1155,
+                -(minus_gcross_vz_leg5 * t1599 + minus_gcylinder_vz_leg5 * t883),
+                -(minus_gcross_vz_leg6 * t1621 + minus_gcylinder_vz_leg6 * t1008),
                 gcylinder_vz_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                gcross_vz_leg1 * t1702 - gcylinder_vz_leg1 * t1704,
-                minus_gcylinder_vz_leg2 * t1725 - gcross_vz_leg2 * t1723,
-                minus_gcylinder_vz_leg3 * t1746 - gcross_vz_leg3 * t1744,
-                minus_gcylinder_vz_leg4 * t1767 - gcross_vz_leg4 * t1765,
-                minus_gcylinder_vz_leg5 * t1788 - minus_gcross_vz_leg5 * t1786,
-                minus_gcylinder_vz_leg6 * t1809 - minus_gcross_vz_leg6 * t1807,
-                -(gcross_vz_leg1 * t1830 + gcylinder_vz_leg1 * t1832),
-                -(gcross_vz_leg2 * t1848 + minus_gcylinder_vz_leg2 * t1850),
-                -(gcross_vz_leg3 * t1866 + minus_gcylinder_vz_leg3 * t1868),
-                -(gcross_vz_leg4 * t1884 + minus_gcylinder_vz_leg4 * t1886),
-                -(minus_gcross_vz_leg5 * t1902 + minus_gcylinder_vz_leg5 * t1904),
-                -(minus_gcross_vz_leg6 * t1920 + minus_gcylinder_vz_leg6 * t1922),
-                gcross_vz_leg1 * t1935, gcross_vz_leg2 * t1942, gcross_vz_leg3 * t1949,
-                gcross_vz_leg4 * t1956, -(minus_gcross_vz_leg5 * t1963),
-                -(minus_gcross_vz_leg6 * t1970), t2004, t2041, t2078, t2115, -t2152, -t2189, t2213,
-                t2237, t2261, t2285, -t2309, -t2333, t2363, t2393, t2423, t2453, -t2483, -t2513,
+                gcross_vz_leg1 * t1677 - gcylinder_vz_leg1 * t1679,
+                minus_gcylinder_vz_leg2 * t1700 - gcross_vz_leg2 * t1698,
+                minus_gcylinder_vz_leg3 * t1721 - gcross_vz_leg3 * t1719,
+                minus_gcylinder_vz_leg4 * t1742 - gcross_vz_leg4 * t1740,
+                minus_gcylinder_vz_leg5 * t1763 - minus_gcross_vz_leg5 * t1761,
+                minus_gcylinder_vz_leg6 * t1784 - minus_gcross_vz_leg6 * t1782,
+                -(gcross_vz_leg1 * t1805 + gcylinder_vz_leg1 * t1807),
+                -(gcross_vz_leg2 * t1823 + minus_gcylinder_vz_leg2 * t1825),
+                -(gcross_vz_leg3 * t1841 + minus_gcylinder_vz_leg3 * t1843),
+                -(gcross_vz_leg4 * t1859 + minus_gcylinder_vz_leg4 * t1861),
+                -(minus_gcross_vz_leg5 * t1877 + minus_gcylinder_vz_leg5 * t1879),
+                -(minus_gcross_vz_leg6 * t1895 + minus_gcylinder_vz_leg6 * t1897),
+                gcross_vz_leg1 * t1910, gcross_vz_leg2 * t1917, gcross_vz_leg3 * t1924,
+                gcross_vz_leg4 * t1931, -(minus_gcross_vz_leg5 * t1938),
+                -(minus_gcross_vz_leg6 * t1945), t1979, t2016, t2053, t2090, -t2127, -t2164, t2188,
+                t2212, t2236, t2260, -t2284, -t2308, t2336, t2364, t2392, t2420, -t2449, -t2477,
                 grod_vz_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vz_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vz_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14380,12 +14364,12 @@ impl Hexapod {
                 grod_vz_leg1 * minus_minus_rate_rod_leg1, grod_vz_leg2 * minus_minus_rate_rod_leg2,
                 grod_vz_leg3 * minus_minus_rate_rod_leg3, grod_vz_leg4 * minus_minus_rate_rod_leg4,
                 grod_vz_leg5 * minus_minus_rate_rod_leg5, grod_vz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vz_leg1, t2643),
-                -::overact::math::signed(grod_vz_leg2, t2650),
-                -::overact::math::signed(grod_vz_leg3, t2657),
-                -::overact::math::signed(grod_vz_leg4, t2664),
-                -::overact::math::signed(grod_vz_leg5, t2671),
-                -::overact::math::signed(grod_vz_leg6, t2678), grod_vz_leg1, grod_vz_leg2,
+                -::overact::math::signed(grod_vz_leg1, t2607),
+                -::overact::math::signed(grod_vz_leg2, t2614),
+                -::overact::math::signed(grod_vz_leg3, t2621),
+                -::overact::math::signed(grod_vz_leg4, t2628),
+                -::overact::math::signed(grod_vz_leg5, t2635),
+                -::overact::math::signed(grod_vz_leg6, t2642), grod_vz_leg1, grod_vz_leg2,
                 grod_vz_leg3, grod_vz_leg4, grod_vz_leg5, grod_vz_leg6,
             ],
             [
@@ -14393,60 +14377,60 @@ impl Hexapod {
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
                 t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
                 t10 * t179 - t15 * acceleration[1], t41 * t179 - t44 * acceleration[1],
-                t29 * t179 - t34 * acceleration[1], 0.0, -(gcross_wx_leg1 * t380 + t403),
-                t565 - minus_gcross_wx_leg2 * t545, gcross_wx_leg3 * t665 - t688,
-                gcross_wx_leg4 * t788 - t811, gcross_wx_leg5 * t911 + t934,
-                -(minus_gcross_wx_leg6 * t1034 + t1057),
-                gcross_wx_leg1 * t1087 + gcylinder_wx_leg1 * t1079,
-                gcylinder_wx_leg2 * t1107 - minus_gcross_wx_leg2 * t1115,
-                gcross_wx_leg3 * t1139 - minus_gcylinder_wx_leg3 * t1143,
-                gcross_wx_leg4 * t1167 - minus_gcylinder_wx_leg4 * t1171,
-                gcross_wx_leg5 * t1195 + gcylinder_wx_leg5 * t1199,
-                -(minus_gcross_wx_leg6 * t1223 + minus_gcylinder_wx_leg6 * t1227),
-                gcross_wx_leg1 * t1260 - gcylinder_wx_leg1 * t377,
-                -(minus_gcross_wx_leg2 * t1294 + gcylinder_wx_leg2 * t542),
-                gcross_wx_leg3 * t1328 + minus_gcylinder_wx_leg3 * t662,
-                gcross_wx_leg4 * t1362 + minus_gcylinder_wx_leg4 * t785,
-                gcross_wx_leg5 * t1396 - gcylinder_wx_leg5 * t908,
-                minus_gcylinder_wx_leg6 * t1031 - minus_gcross_wx_leg6 * t1430,
-                gcross_wx_leg1 * t1449 + t403, -(t565 - minus_gcross_wx_leg2 * t1462),
-                t688 - gcross_wx_leg3 * t1475, t811 - gcross_wx_leg4 * t1488,
-                -(gcross_wx_leg5 * t1501 + t934), minus_gcross_wx_leg6 * t1514 + t1057,
-                gcross_wx_leg1 * t1531 - gcylinder_wx_leg1 * t1082,
-                gcylinder_wx_leg2 * t1110 - minus_gcross_wx_leg2 * t1555,
-                gcross_wx_leg3 * t1577 - minus_gcylinder_wx_leg3 * t1134,
-                gcross_wx_leg4 * t1600 - minus_gcylinder_wx_leg4 * t1162,
-                gcross_wx_leg5 * t1623 + gcylinder_wx_leg5 * t1190,
-                -(minus_gcross_wx_leg6 * t1646 + minus_gcylinder_wx_leg6 * t1218),
+                t29 * t179 - t34 * acceleration[1], 0.0, -(gcross_wx_leg1 * t381 + t404),
+                t567 - minus_gcross_wx_leg2 * t547, -(gcross_wx_leg3 * t642 + t676),
+                -(gcross_wx_leg4 * t752 + t786), gcross_wx_leg5 * t889 + t912,
+                -(minus_gcross_wx_leg6 * t1012 + t1035),
+                gcross_wx_leg1 * t1063 + gcylinder_wx_leg1 * t1057,
+                gcylinder_wx_leg2 * t1083 - minus_gcross_wx_leg2 * t1088,
+                gcross_wx_leg3 * t1122 - minus_gcylinder_wx_leg3 * t1126,
+                gcross_wx_leg4 * t1160 - minus_gcylinder_wx_leg4 * t1164,
+                gcross_wx_leg5 * t1183 + gcylinder_wx_leg5 * t1187,
+                -(minus_gcross_wx_leg6 * t1208 + minus_gcylinder_wx_leg6 * t1212),
+                gcross_wx_leg1 * t1244 - gcylinder_wx_leg1 * t1246,
+                -(minus_gcross_wx_leg2 * t1278 + gcylinder_wx_leg2 * t1280),
+                gcross_wx_leg3 * t1312 + minus_gcylinder_wx_leg3 * t1314,
+                gcross_wx_leg4 * t1346 + minus_gcylinder_wx_leg4 * t1348,
+                gcross_wx_leg5 * t1380 - gcylinder_wx_leg5 * t1382,
+                minus_gcylinder_wx_leg6 * t1416 - minus_gcross_wx_leg6 * t1414,
+                gcross_wx_leg1 * t380 + t404, -(t567 - minus_gcross_wx_leg2 * t546),
+                t676 - gcross_wx_leg3 * t1458, t786 - gcross_wx_leg4 * t1471,
+                -(gcross_wx_leg5 * t888 + t912), minus_gcross_wx_leg6 * t1011 + t1035,
+                gcross_wx_leg1 * t1511 - gcylinder_wx_leg1 * t377,
+                gcylinder_wx_leg2 * t543 - minus_gcross_wx_leg2 * t1534,
+                gcross_wx_leg3 * t1555 - minus_gcylinder_wx_leg3 * t1117,
+                gcross_wx_leg4 * t1577 - minus_gcylinder_wx_leg4 * t1155,
+                gcross_wx_leg5 * t1599 + gcylinder_wx_leg5 * t883,
+                -(minus_gcross_wx_leg6 * t1621 + minus_gcylinder_wx_leg6 * t1008),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                gcross_wx_leg1 * t1702 - gcylinder_wx_leg1 * t1704,
-                -(gcylinder_wx_leg2 * t1725 - minus_gcross_wx_leg2 * t1723),
-                minus_gcylinder_wx_leg3 * t1746 - gcross_wx_leg3 * t1744,
-                minus_gcylinder_wx_leg4 * t1767 - gcross_wx_leg4 * t1765,
-                gcross_wx_leg5 * t1786 - gcylinder_wx_leg5 * t1788,
-                minus_gcylinder_wx_leg6 * t1809 - minus_gcross_wx_leg6 * t1807,
-                -(gcross_wx_leg1 * t1830 + gcylinder_wx_leg1 * t1832),
-                gcylinder_wx_leg2 * t1850 + minus_gcross_wx_leg2 * t1848,
-                -(gcross_wx_leg3 * t1866 + minus_gcylinder_wx_leg3 * t1868),
-                -(gcross_wx_leg4 * t1884 + minus_gcylinder_wx_leg4 * t1886),
-                gcross_wx_leg5 * t1902 + gcylinder_wx_leg5 * t1904,
-                -(minus_gcross_wx_leg6 * t1920 + minus_gcylinder_wx_leg6 * t1922),
-                gcross_wx_leg1 * t1935, -(minus_gcross_wx_leg2 * t1942), gcross_wx_leg3 * t1949,
-                gcross_wx_leg4 * t1956, gcross_wx_leg5 * t1963, -(minus_gcross_wx_leg6 * t1970),
-                t253 * t2004 - t265 * t1999, -(t431 * t2041 + t439 * t2036),
-                t249 * t2078 + t261 * t2073, t429 * t2115 + t437 * t2110,
-                t252 * t2152 + t264 * t2147, -(t430 * t2189 + t438 * t2184),
-                t253 * t2213 - t265 * t2210, -(t431 * t2237 + t439 * t2234),
-                t249 * t2261 + t261 * t2258, t429 * t2285 + t437 * t2282,
-                t252 * t2309 + t264 * t2306, -(t430 * t2333 + t438 * t2330),
-                t253 * t2363 + t265 * t2358, -(t431 * t2393 + t439 * t2388),
-                t249 * t2423 - t261 * t2418, t429 * t2453 - t437 * t2448,
-                t252 * t2483 + t264 * t2478, -(t430 * t2513 + t438 * t2508),
+                gcross_wx_leg1 * t1677 - gcylinder_wx_leg1 * t1679,
+                -(gcylinder_wx_leg2 * t1700 - minus_gcross_wx_leg2 * t1698),
+                minus_gcylinder_wx_leg3 * t1721 - gcross_wx_leg3 * t1719,
+                minus_gcylinder_wx_leg4 * t1742 - gcross_wx_leg4 * t1740,
+                gcross_wx_leg5 * t1761 - gcylinder_wx_leg5 * t1763,
+                minus_gcylinder_wx_leg6 * t1784 - minus_gcross_wx_leg6 * t1782,
+                -(gcross_wx_leg1 * t1805 + gcylinder_wx_leg1 * t1807),
+                gcylinder_wx_leg2 * t1825 + minus_gcross_wx_leg2 * t1823,
+                -(gcross_wx_leg3 * t1841 + minus_gcylinder_wx_leg3 * t1843),
+                -(gcross_wx_leg4 * t1859 + minus_gcylinder_wx_leg4 * t1861),
+                gcross_wx_leg5 * t1877 + gcylinder_wx_leg5 * t1879,
+                -(minus_gcross_wx_leg6 * t1895 + minus_gcylinder_wx_leg6 * t1897),
+                gcross_wx_leg1 * t1910, -(minus_gcross_wx_leg2 * t1917), gcross_wx_leg3 * t1924,
+                gcross_wx_leg4 * t1931, gcross_wx_leg5 * t1938, -(minus_gcross_wx_leg6 * t1945),
+                t253 * t1979 - t265 * t1974, -(t432 * t2016 + t440 * t2011),
+                t249 * t2053 + t261 * t2048, t430 * t2090 + t438 * t2085,
+                t252 * t2127 + t264 * t2122, -(t431 * t2164 + t439 * t2159),
+                t253 * t2188 - t265 * t2185, -(t432 * t2212 + t440 * t2209),
+                t249 * t2236 + t261 * t2233, t430 * t2260 + t438 * t2257,
+                t252 * t2284 + t264 * t2281, -(t431 * t2308 + t439 * t2305),
+                t253 * t2336 + t265 * t2331, -(t432 * t2364 + t440 * t2359),
+                t249 * t2392 - t261 * t2387, t430 * t2420 - t438 * t2415,
+                t252 * t2449 + t264 * t2444, -(t431 * t2477 + t439 * t2472),
                 grod_wx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wx_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14456,12 +14440,12 @@ impl Hexapod {
                 grod_wx_leg1 * minus_minus_rate_rod_leg1, grod_wx_leg2 * minus_minus_rate_rod_leg2,
                 grod_wx_leg3 * minus_minus_rate_rod_leg3, grod_wx_leg4 * minus_minus_rate_rod_leg4,
                 grod_wx_leg5 * minus_minus_rate_rod_leg5, grod_wx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wx_leg1, t2643),
-                -::overact::math::signed(grod_wx_leg2, t2650),
-                -::overact::math::signed(grod_wx_leg3, t2657),
-                -::overact::math::signed(grod_wx_leg4, t2664),
-                -::overact::math::signed(grod_wx_leg5, t2671),
-                -::overact::math::signed(grod_wx_leg6, t2678), grod_wx_leg1, grod_wx_leg2,
+                -::overact::math::signed(grod_wx_leg1, t2607),
+                -::overact::math::signed(grod_wx_leg2, t2614),
+                -::overact::math::signed(grod_wx_leg3, t2621),
+                -::overact::math::signed(grod_wx_leg4, t2628),
+                -::overact::math::signed(grod_wx_leg5, t2635),
+                -::overact::math::signed(grod_wx_leg6, t2642), grod_wx_leg1, grod_wx_leg2,
                 grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
             ],
             [
@@ -14469,60 +14453,60 @@ impl Hexapod {
                 t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
                 t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
                 t15 * acceleration[0] - t5 * t179, t44 * acceleration[0] - t19 * t179,
-                t34 * acceleration[0] - t25 * t179, 0.0, minus_gcross_wy_leg1 * t380 - t412,
-                minus_minus_gcross_wy_leg2 * t545 - t570, gcross_wy_leg3 * t665 + t697,
-                gcross_wy_leg4 * t788 + t820, t939 - minus_gcross_wy_leg5 * t911,
-                gcross_wy_leg6 * t1034 + t1066,
-                gcylinder_wy_leg1 * t1079 - minus_gcross_wy_leg1 * t1087,
-                minus_minus_gcross_wy_leg2 * t1115 - minus_gcylinder_wy_leg2 * t1107,
-                gcross_wy_leg3 * t1139 + gcylinder_wy_leg3 * t1143,
-                gcross_wy_leg4 * t1167 + gcylinder_wy_leg4 * t1171,
-                gcylinder_wy_leg5 * t1199 - minus_gcross_wy_leg5 * t1195,
-                gcross_wy_leg6 * t1223 + gcylinder_wy_leg6 * t1227,
-                -(minus_gcross_wy_leg1 * t1260 + gcylinder_wy_leg1 * t377),
-                minus_minus_gcross_wy_leg2 * t1294 + minus_gcylinder_wy_leg2 * t542,
-                gcross_wy_leg3 * t1328 - gcylinder_wy_leg3 * t662,
-                gcross_wy_leg4 * t1362 - gcylinder_wy_leg4 * t785,
-                -(minus_gcross_wy_leg5 * t1396 + gcylinder_wy_leg5 * t908),
-                gcross_wy_leg6 * t1430 - gcylinder_wy_leg6 * t1031,
-                t412 - minus_gcross_wy_leg1 * t1449, t570 - minus_minus_gcross_wy_leg2 * t1462,
-                -(gcross_wy_leg3 * t1475 + t697), -(gcross_wy_leg4 * t1488 + t820),
-                minus_gcross_wy_leg5 * t1501 - t939, -(gcross_wy_leg6 * t1514 + t1066),
-                -(minus_gcross_wy_leg1 * t1531 + gcylinder_wy_leg1 * t1082),
-                minus_minus_gcross_wy_leg2 * t1555 - minus_gcylinder_wy_leg2 * t1110,
-                gcross_wy_leg3 * t1577 + gcylinder_wy_leg3 * t1134,
-                gcross_wy_leg4 * t1600 + gcylinder_wy_leg4 * t1162,
-                gcylinder_wy_leg5 * t1190 - minus_gcross_wy_leg5 * t1623,
-                gcross_wy_leg6 * t1646 + gcylinder_wy_leg6 * t1218,
+                t34 * acceleration[0] - t25 * t179, 0.0, minus_gcross_wy_leg1 * t381 - t413,
+                minus_minus_gcross_wy_leg2 * t547 - t572, t685 - gcross_wy_leg3 * t642,
+                t795 - gcross_wy_leg4 * t752, t917 - minus_gcross_wy_leg5 * t889,
+                gcross_wy_leg6 * t1012 + t1044,
+                gcylinder_wy_leg1 * t1057 - minus_gcross_wy_leg1 * t1063,
+                minus_minus_gcross_wy_leg2 * t1088 - minus_gcylinder_wy_leg2 * t1083,
+                gcross_wy_leg3 * t1122 + gcylinder_wy_leg3 * t1126,
+                gcross_wy_leg4 * t1160 + gcylinder_wy_leg4 * t1164,
+                gcylinder_wy_leg5 * t1187 - minus_gcross_wy_leg5 * t1183,
+                gcross_wy_leg6 * t1208 + gcylinder_wy_leg6 * t1212,
+                -(minus_gcross_wy_leg1 * t1244 + gcylinder_wy_leg1 * t1246),
+                minus_minus_gcross_wy_leg2 * t1278 + minus_gcylinder_wy_leg2 * t1280,
+                gcross_wy_leg3 * t1312 - gcylinder_wy_leg3 * t1314,
+                gcross_wy_leg4 * t1346 - gcylinder_wy_leg4 * t1348,
+                -(minus_gcross_wy_leg5 * t1380 + gcylinder_wy_leg5 * t1382),
+                gcross_wy_leg6 * t1414 - gcylinder_wy_leg6 * t1416,
+                t413 - minus_gcross_wy_leg1 * t380, t572 - minus_minus_gcross_wy_leg2 * t546,
+                -(gcross_wy_leg3 * t1458 + t685), -(gcross_wy_leg4 * t1471 + t795),
+                minus_gcross_wy_leg5 * t888 - t917, -(gcross_wy_leg6 * t1011 + t1044),
+                -(minus_gcross_wy_leg1 * t1511 + gcylinder_wy_leg1 * t377),
+                minus_minus_gcross_wy_leg2 * t1534 - minus_gcylinder_wy_leg2 * t543,
+                gcross_wy_leg3 * t1555 + gcylinder_wy_leg3 * t1117,
+                gcross_wy_leg4 * t1577 + gcylinder_wy_leg4 * t1155,
+                gcylinder_wy_leg5 * t883 - minus_gcross_wy_leg5 * t1599,
+                gcross_wy_leg6 * t1621 + gcylinder_wy_leg6 * t1008,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                -(minus_gcross_wy_leg1 * t1702 + gcylinder_wy_leg1 * t1704),
-                minus_gcylinder_wy_leg2 * t1725 - minus_minus_gcross_wy_leg2 * t1723,
-                -(gcross_wy_leg3 * t1744 + gcylinder_wy_leg3 * t1746),
-                -(gcross_wy_leg4 * t1765 + gcylinder_wy_leg4 * t1767),
-                -(minus_gcross_wy_leg5 * t1786 + gcylinder_wy_leg5 * t1788),
-                gcross_wy_leg6 * t1807 - gcylinder_wy_leg6 * t1809,
-                minus_gcross_wy_leg1 * t1830 - gcylinder_wy_leg1 * t1832,
-                -(minus_minus_gcross_wy_leg2 * t1848 + minus_gcylinder_wy_leg2 * t1850),
-                gcylinder_wy_leg3 * t1868 - gcross_wy_leg3 * t1866,
-                gcylinder_wy_leg4 * t1886 - gcross_wy_leg4 * t1884,
-                gcylinder_wy_leg5 * t1904 - minus_gcross_wy_leg5 * t1902,
-                gcross_wy_leg6 * t1920 + gcylinder_wy_leg6 * t1922, -(minus_gcross_wy_leg1 * t1935),
-                minus_minus_gcross_wy_leg2 * t1942, gcross_wy_leg3 * t1949, gcross_wy_leg4 * t1956,
-                -(minus_gcross_wy_leg5 * t1963), gcross_wy_leg6 * t1970,
-                -(t265 * t1994 + t243 * t2004), t439 * t2031 + t425 * t2041,
-                t261 * t2068 - t239 * t2078, t437 * t2105 - t423 * t2115,
-                -(t264 * t2142 + t242 * t2152), t438 * t2179 + t424 * t2189,
-                -(t265 * t2207 + t243 * t2213), t439 * t2231 + t425 * t2237,
-                t261 * t2255 - t239 * t2261, t437 * t2279 - t423 * t2285,
-                -(t264 * t2303 + t242 * t2309), t438 * t2327 + t424 * t2333,
-                t265 * t2353 - t243 * t2363, t425 * t2393 - t439 * t2383,
-                t261 * t2413 - t239 * t2423, t437 * t2443 - t423 * t2453,
-                -(t264 * t2473 + t242 * t2483), t438 * t2503 + t424 * t2513,
+                -(minus_gcross_wy_leg1 * t1677 + gcylinder_wy_leg1 * t1679),
+                minus_gcylinder_wy_leg2 * t1700 - minus_minus_gcross_wy_leg2 * t1698,
+                -(gcross_wy_leg3 * t1719 + gcylinder_wy_leg3 * t1721),
+                -(gcross_wy_leg4 * t1740 + gcylinder_wy_leg4 * t1742),
+                -(minus_gcross_wy_leg5 * t1761 + gcylinder_wy_leg5 * t1763),
+                gcross_wy_leg6 * t1782 - gcylinder_wy_leg6 * t1784,
+                minus_gcross_wy_leg1 * t1805 - gcylinder_wy_leg1 * t1807,
+                -(minus_minus_gcross_wy_leg2 * t1823 + minus_gcylinder_wy_leg2 * t1825),
+                gcylinder_wy_leg3 * t1843 - gcross_wy_leg3 * t1841,
+                gcylinder_wy_leg4 * t1861 - gcross_wy_leg4 * t1859,
+                gcylinder_wy_leg5 * t1879 - minus_gcross_wy_leg5 * t1877,
+                gcross_wy_leg6 * t1895 + gcylinder_wy_leg6 * t1897, -(minus_gcross_wy_leg1 * t1910),
+                minus_minus_gcross_wy_leg2 * t1917, gcross_wy_leg3 * t1924, gcross_wy_leg4 * t1931,
+                -(minus_gcross_wy_leg5 * t1938), gcross_wy_leg6 * t1945,
+                -(t265 * t1969 + t243 * t1979), t440 * t2006 + t426 * t2016,
+                t261 * t2043 - t239 * t2053, t438 * t2080 - t424 * t2090,
+                -(t264 * t2117 + t242 * t2127), t439 * t2154 + t425 * t2164,
+                -(t265 * t2182 + t243 * t2188), t440 * t2206 + t426 * t2212,
+                t261 * t2230 - t239 * t2236, t438 * t2254 - t424 * t2260,
+                -(t264 * t2278 + t242 * t2284), t439 * t2302 + t425 * t2308,
+                t265 * t2326 - t243 * t2336, t426 * t2364 - t440 * t2354,
+                t261 * t2382 - t239 * t2392, t438 * t2410 - t424 * t2420,
+                -(t264 * t2439 + t242 * t2449), t425 * t2477 - t439 * t2467,
                 grod_wy_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
                 -(minus_grod_wy_leg3 * minus_minus_rate_dot_rod_leg3),
@@ -14534,12 +14518,12 @@ impl Hexapod {
                 -(minus_grod_wy_leg4 * minus_minus_rate_rod_leg4),
                 grod_wy_leg5 * minus_minus_rate_rod_leg5,
                 -(minus_grod_wy_leg6 * minus_minus_rate_rod_leg6),
-                -::overact::math::signed(grod_wy_leg1, t2643),
-                -::overact::math::signed(grod_wy_leg2, t2650),
-                ::overact::math::signed(minus_grod_wy_leg3, t2657),
-                ::overact::math::signed(minus_grod_wy_leg4, t2664),
-                -::overact::math::signed(grod_wy_leg5, t2671),
-                ::overact::math::signed(minus_grod_wy_leg6, t2678), grod_wy_leg1, grod_wy_leg2,
+                -::overact::math::signed(grod_wy_leg1, t2607),
+                -::overact::math::signed(grod_wy_leg2, t2614),
+                ::overact::math::signed(minus_grod_wy_leg3, t2621),
+                ::overact::math::signed(minus_grod_wy_leg4, t2628),
+                -::overact::math::signed(grod_wy_leg5, t2635),
+                ::overact::math::signed(minus_grod_wy_leg6, t2642), grod_wy_leg1, grod_wy_leg2,
                 -minus_grod_wy_leg3, -minus_grod_wy_leg4, grod_wy_leg5, -minus_grod_wy_leg6,
             ],
             [
@@ -14548,56 +14532,56 @@ impl Hexapod {
                 t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90,
                 t5 * acceleration[1] - t10 * acceleration[0],
                 t19 * acceleration[1] - t41 * acceleration[0],
-                t25 * acceleration[1] - t29 * acceleration[0], 0.0, t417 - gcross_wz_leg1 * t380,
-                gcross_wz_leg2 * t545 + t583, t702 - minus_gcross_wz_leg3 * t665,
-                t825 - minus_gcross_wz_leg4 * t788, gcross_wz_leg5 * t911 - t952,
-                gcross_wz_leg6 * t1034 + t1075,
-                gcross_wz_leg1 * t1087 - minus_gcylinder_wz_leg1 * t1079,
-                gcross_wz_leg2 * t1115 + minus_minus_gcylinder_wz_leg2 * t1107,
-                gcylinder_wz_leg3 * t1143 - minus_gcross_wz_leg3 * t1139,
-                gcylinder_wz_leg4 * t1171 - minus_gcross_wz_leg4 * t1167,
-                gcross_wz_leg5 * t1195 - minus_gcylinder_wz_leg5 * t1199,
-                gcross_wz_leg6 * t1223 + gcylinder_wz_leg6 * t1227,
-                gcross_wz_leg1 * t1260 + minus_gcylinder_wz_leg1 * t377,
-                gcross_wz_leg2 * t1294 - minus_minus_gcylinder_wz_leg2 * t542,
-                -(minus_gcross_wz_leg3 * t1328 + gcylinder_wz_leg3 * t662),
-                -(minus_gcross_wz_leg4 * t1362 + gcylinder_wz_leg4 * t785),
-                gcross_wz_leg5 * t1396 + minus_gcylinder_wz_leg5 * t908,
-                gcross_wz_leg6 * t1430 - gcylinder_wz_leg6 * t1031, gcross_wz_leg1 * t1449 - t417,
-                -(t583 + gcross_wz_leg2 * t1462), minus_gcross_wz_leg3 * t1475 - t702,
-                minus_gcross_wz_leg4 * t1488 - t825, t952 - gcross_wz_leg5 * t1501,
-                -(gcross_wz_leg6 * t1514 + t1075),
-                gcross_wz_leg1 * t1531 + minus_gcylinder_wz_leg1 * t1082,
-                gcross_wz_leg2 * t1555 + minus_minus_gcylinder_wz_leg2 * t1110,
-                gcylinder_wz_leg3 * t1134 - minus_gcross_wz_leg3 * t1577,
-                gcylinder_wz_leg4 * t1162 - minus_gcross_wz_leg4 * t1600,
-                gcross_wz_leg5 * t1623 - minus_gcylinder_wz_leg5 * t1190,
-                gcross_wz_leg6 * t1646 + gcylinder_wz_leg6 * t1218,
+                t25 * acceleration[1] - t29 * acceleration[0], 0.0, t418 - gcross_wz_leg1 * t381,
+                gcross_wz_leg2 * t547 + t585, t690 + minus_gcross_wz_leg3 * t642,
+                t800 + minus_gcross_wz_leg4 * t752, gcross_wz_leg5 * t889 - t930,
+                gcross_wz_leg6 * t1012 + t1053,
+                gcross_wz_leg1 * t1063 - minus_gcylinder_wz_leg1 * t1057,
+                gcross_wz_leg2 * t1088 + minus_minus_gcylinder_wz_leg2 * t1083,
+                gcylinder_wz_leg3 * t1126 - minus_gcross_wz_leg3 * t1122,
+                gcylinder_wz_leg4 * t1164 - minus_gcross_wz_leg4 * t1160,
+                gcross_wz_leg5 * t1183 - minus_gcylinder_wz_leg5 * t1187,
+                gcross_wz_leg6 * t1208 + gcylinder_wz_leg6 * t1212,
+                gcross_wz_leg1 * t1244 + minus_gcylinder_wz_leg1 * t1246,
+                gcross_wz_leg2 * t1278 - minus_minus_gcylinder_wz_leg2 * t1280,
+                -(minus_gcross_wz_leg3 * t1312 + gcylinder_wz_leg3 * t1314),
+                -(minus_gcross_wz_leg4 * t1346 + gcylinder_wz_leg4 * t1348),
+                gcross_wz_leg5 * t1380 + minus_gcylinder_wz_leg5 * t1382,
+                gcross_wz_leg6 * t1414 - gcylinder_wz_leg6 * t1416, gcross_wz_leg1 * t380 - t418,
+                -(t585 + gcross_wz_leg2 * t546), minus_gcross_wz_leg3 * t1458 - t690,
+                minus_gcross_wz_leg4 * t1471 - t800, t930 - gcross_wz_leg5 * t888,
+                -(gcross_wz_leg6 * t1011 + t1053),
+                gcross_wz_leg1 * t1511 + minus_gcylinder_wz_leg1 * t377,
+                gcross_wz_leg2 * t1534 + minus_minus_gcylinder_wz_leg2 * t543,
+                gcylinder_wz_leg3 * t1117 - minus_gcross_wz_leg3 * t1555,
+                gcylinder_wz_leg4 * t1155 - minus_gcross_wz_leg4 * t1577,
+                gcross_wz_leg5 * t1599 - minus_gcylinder_wz_leg5 * t883,
+                gcross_wz_leg6 * t1621 + gcylinder_wz_leg6 * t1008,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
                 minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t1702 + minus_gcylinder_wz_leg1 * t1704,
-                -(minus_minus_gcylinder_wz_leg2 * t1725 + gcross_wz_leg2 * t1723),
-                minus_gcross_wz_leg3 * t1744 - gcylinder_wz_leg3 * t1746,
-                minus_gcross_wz_leg4 * t1765 - gcylinder_wz_leg4 * t1767,
-                gcross_wz_leg5 * t1786 + minus_gcylinder_wz_leg5 * t1788,
-                gcross_wz_leg6 * t1807 - gcylinder_wz_leg6 * t1809, -(minus_grod_wz_leg1 * t1827),
-                -(minus_grod_wz_leg2 * t1845), grod_wz_leg3 * t1863, grod_wz_leg4 * t1881,
-                -(minus_grod_wz_leg5 * t1899), grod_wz_leg6 * t1917, gcross_wz_leg1 * t1935,
-                gcross_wz_leg2 * t1942, -(minus_gcross_wz_leg3 * t1949),
-                -(minus_gcross_wz_leg4 * t1956), gcross_wz_leg5 * t1963, gcross_wz_leg6 * t1970,
-                t243 * t1999 + t253 * t1994, t425 * t2036 - t431 * t2031,
-                -(t239 * t2073 + t249 * t2068), -(t423 * t2110 + t429 * t2105),
-                t252 * t2142 - t242 * t2147, t424 * t2184 - t430 * t2179,
-                t243 * t2210 + t253 * t2207, t425 * t2234 - t431 * t2231,
-                -(t239 * t2258 + t249 * t2255), -(t423 * t2282 + t429 * t2279),
-                t252 * t2303 - t242 * t2306, t424 * t2330 - t430 * t2327,
-                -(t243 * t2358 + t253 * t2353), t425 * t2388 + t431 * t2383,
-                t239 * t2418 - t249 * t2413, t423 * t2448 - t429 * t2443,
-                t252 * t2473 - t242 * t2478, t424 * t2508 - t430 * t2503,
+                gcross_wz_leg1 * t1677 + minus_gcylinder_wz_leg1 * t1679,
+                -(minus_minus_gcylinder_wz_leg2 * t1700 + gcross_wz_leg2 * t1698),
+                minus_gcross_wz_leg3 * t1719 - gcylinder_wz_leg3 * t1721,
+                minus_gcross_wz_leg4 * t1740 - gcylinder_wz_leg4 * t1742,
+                gcross_wz_leg5 * t1761 + minus_gcylinder_wz_leg5 * t1763,
+                gcross_wz_leg6 * t1782 - gcylinder_wz_leg6 * t1784, -(minus_grod_wz_leg1 * t1802),
+                -(minus_grod_wz_leg2 * t1820), grod_wz_leg3 * t1838, grod_wz_leg4 * t1856,
+                -(minus_grod_wz_leg5 * t1874), grod_wz_leg6 * t1892, gcross_wz_leg1 * t1910,
+                gcross_wz_leg2 * t1917, -(minus_gcross_wz_leg3 * t1924),
+                -(minus_gcross_wz_leg4 * t1931), gcross_wz_leg5 * t1938, gcross_wz_leg6 * t1945,
+                t243 * t1974 + t253 * t1969, t426 * t2011 - t432 * t2006,
+                -(t239 * t2048 + t249 * t2043), -(t424 * t2085 + t430 * t2080),
+                t252 * t2117 - t242 * t2122, t425 * t2159 - t431 * t2154,
+                t243 * t2185 + t253 * t2182, t426 * t2209 - t432 * t2206,
+                -(t239 * t2233 + t249 * t2230), -(t424 * t2257 + t430 * t2254),
+                t252 * t2278 - t242 * t2281, t425 * t2305 - t431 * t2302,
+                -(t243 * t2331 + t253 * t2326), t426 * t2359 + t432 * t2354,
+                t239 * t2387 - t249 * t2382, t424 * t2415 - t430 * t2410,
+                t252 * t2439 - t242 * t2444, t425 * t2472 + t431 * t2467,
                 -(minus_grod_wz_leg1 * minus_minus_rate_dot_rod_leg1),
                 -(minus_grod_wz_leg2 * minus_minus_rate_dot_rod_leg2),
                 grod_wz_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14609,12 +14593,12 @@ impl Hexapod {
                 grod_wz_leg3 * minus_minus_rate_rod_leg3, grod_wz_leg4 * minus_minus_rate_rod_leg4,
                 -(minus_grod_wz_leg5 * minus_minus_rate_rod_leg5),
                 grod_wz_leg6 * minus_minus_rate_rod_leg6,
-                ::overact::math::signed(minus_grod_wz_leg1, t2643),
-                ::overact::math::signed(minus_grod_wz_leg2, t2650),
-                -::overact::math::signed(grod_wz_leg3, t2657),
-                -::overact::math::signed(grod_wz_leg4, t2664),
-                ::overact::math::signed(minus_grod_wz_leg5, t2671),
-                -::overact::math::signed(grod_wz_leg6, t2678), -minus_grod_wz_leg1,
+                ::overact::math::signed(minus_grod_wz_leg1, t2607),
+                ::overact::math::signed(minus_grod_wz_leg2, t2614),
+                -::overact::math::signed(grod_wz_leg3, t2621),
+                -::overact::math::signed(grod_wz_leg4, t2628),
+                ::overact::math::signed(minus_grod_wz_leg5, t2635),
+                -::overact::math::signed(grod_wz_leg6, t2642), -minus_grod_wz_leg1,
                 -minus_grod_wz_leg2, grod_wz_leg3, grod_wz_leg4, -minus_grod_wz_leg5, grod_wz_leg6,
             ],
         ])
@@ -14630,7 +14614,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 2541 operations (903 additions, 1626 multiplications, 12 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1988 intermediates.
+    /// 2500 operations (885 additions, 1575 multiplications, 40 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1947 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -14640,14 +14624,14 @@ impl Hexapod {
         twist: &[f64; 6],
         acceleration: &[f64; 6],
     ) -> Result<[[f64; 106]; 6], ::overact::Error> {
-        let [(minus_c_cylinder_leg1, s_cylinder_leg1),
-        (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
-        (minus_c_cross_leg2, s_cross_leg2), (minus_c_cross_leg3, s_cross_leg3),
-        (minus_c_cylinder_leg3, s_cylinder_leg3), (minus_c_cross_leg4, s_cross_leg4),
-        (minus_c_cylinder_leg4, s_cylinder_leg4), (minus_c_cross_leg5, s_cross_leg5),
-        (minus_c_cylinder_leg5, s_cylinder_leg5), (minus_c_cross_leg6, s_cross_leg6),
-        (minus_c_cylinder_leg6, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[4], joints[3], joints[6], joints[7], joints[9], joints[10],
+        let [(minus_c_cross_leg1, s_cross_leg1),
+        (minus_c_cylinder_leg1, s_cylinder_leg1),
+        (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg2, s_cross_leg2),
+        (minus_c_cross_leg3, s_cross_leg3), (minus_c_cylinder_leg3, s_cylinder_leg3),
+        (minus_c_cross_leg4, s_cross_leg4), (minus_c_cylinder_leg4, s_cylinder_leg4),
+        (minus_c_cross_leg5, s_cross_leg5), (minus_c_cylinder_leg5, s_cylinder_leg5),
+        (minus_c_cross_leg6, s_cross_leg6), (minus_c_cylinder_leg6, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[4], joints[3], joints[6], joints[7], joints[9], joints[10],
             joints[12], joints[13], joints[15], joints[16],
         ]);
         let t0 = 2.0 * pose[5];
@@ -14723,799 +14707,798 @@ impl Hexapod {
         let t193 = t41 * t150 - t19 * t154 + t44 * t158;
         let t198 = t19 * t161 - t41 * t164 + t44 * t168;
         let t203 = t19 * t171 + t41 * t173 - t44 * t176;
-        let t241 = 0.9781476007338057 * minus_c_cross_leg1;
-        let t244 = minus_c_cylinder_leg1 * t241 - 0.20791169081775931 * s_cylinder_leg1;
+        let t241 = 0.9781476007338057 * minus_c_cylinder_leg1;
+        let t243 = 0.20791169081775931 * s_cylinder_leg1;
+        let t244 = minus_c_cross_leg1 * t241 - t243;
         let t245 = 1.0 / joints[2];
         let gcylinder_vx_leg1 = t244 * t245;
-        let t247 = s_cylinder_leg1 * joints[2];
-        ::overact::guard::leg(t247, 0.5513142860394166, "leg1")?;
-        let t248 = 1.0 / t247;
-        let t249 = 0.9781476007338057 * s_cross_leg1;
-        let t250 = 0.05176380902050415 * t15;
-        let t251 = 0.19318516525781368 * t44;
-        let t252 = t250 + t251;
-        let t254 = 0.05176380902050415 * t10;
-        let t255 = 0.19318516525781368 * t41;
-        let t256 = t254 + t255;
-        let t258 = t252 * twist[4] - t256 * twist[5];
-        let t259 = 0.19318516525781368 * t10;
-        let t260 = 0.05176380902050415 * t41;
-        let t261 = t259 + t260;
-        let t263 = 0.19318516525781368 * t15;
-        let t264 = 0.05176380902050415 * t44;
-        let t265 = t263 + t264;
-        let t267 = t261 * twist[5] - t265 * twist[4];
-        let t269 = twist[0] - (t258 + t267);
-        let t271 = 0.20791169081775931 * s_cross_leg1;
-        let t272 = 0.05176380902050415 * t5;
-        let t273 = 0.19318516525781368 * t19;
-        let t274 = t272 + t273;
-        let t277 = t274 * twist[5] - t252 * twist[3];
-        let t279 = 0.19318516525781368 * t5;
-        let t280 = 0.05176380902050415 * t19;
-        let t281 = t279 + t280;
-        let t283 = t265 * twist[3] - t281 * twist[5];
-        let t285 = twist[1] - (t277 + t283);
-        let t290 = t256 * twist[3] - t274 * twist[4];
-        let t293 = t281 * twist[4] - t261 * twist[3];
-        let t295 = twist[2] - (t290 + t293);
-        let t297 = t249 * t269 - t271 * t285 + minus_c_cross_leg1 * t295;
-        let minus_rate_cross_leg1 = t248 * t297;
-        let t299 = s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t300 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t301 = t299 * t300;
-        let t302 = gcylinder_vx_leg1 * t301;
-        let minus_gcross_vx_leg1 = t249 * t248;
-        let t305 = 0.20791169081775931 * minus_c_cross_leg1;
-        let t308 = minus_c_cylinder_leg1 * t305 + 0.9781476007338057 * s_cylinder_leg1;
-        let t311 = s_cross_leg1 * minus_c_cylinder_leg1;
-        let rate_cylinder_leg1 = t245 * (t244 * t269 - t308 * t285 - t311 * t295);
-        let t315 = rate_cylinder_leg1 * t300;
-        let t316 = 0.05176380902050415 * t160;
-        let t317 = 0.19318516525781368 * t193;
-        let t318 = t316 + t317;
-        let t319 = 0.19318516525781368 * t160;
-        let t320 = 0.05176380902050415 * t193;
-        let t321 = t319 + t320;
-        let t323 = acceleration[0] + t321 - t318;
-        let t325 = 0.05176380902050415 * t170;
-        let t326 = 0.19318516525781368 * t198;
+        let t247 = 0.9781476007338057 * s_cross_leg1;
+        let t248 = 0.05176380902050415 * t15;
+        let t249 = 0.19318516525781368 * t44;
+        let t250 = t248 + t249;
+        let t252 = 0.05176380902050415 * t10;
+        let t253 = 0.19318516525781368 * t41;
+        let t254 = t252 + t253;
+        let t256 = t250 * twist[4] - t254 * twist[5];
+        let t257 = 0.19318516525781368 * t10;
+        let t258 = 0.05176380902050415 * t41;
+        let t259 = t257 + t258;
+        let t261 = 0.19318516525781368 * t15;
+        let t262 = 0.05176380902050415 * t44;
+        let t263 = t261 + t262;
+        let t265 = t259 * twist[5] - t263 * twist[4];
+        let t267 = twist[0] - (t256 + t265);
+        let t269 = 0.20791169081775931 * s_cross_leg1;
+        let t270 = 0.05176380902050415 * t5;
+        let t271 = 0.19318516525781368 * t19;
+        let t272 = t270 + t271;
+        let t275 = t272 * twist[5] - t250 * twist[3];
+        let t277 = 0.19318516525781368 * t5;
+        let t278 = 0.05176380902050415 * t19;
+        let t279 = t277 + t278;
+        let t281 = t263 * twist[3] - t279 * twist[5];
+        let t283 = twist[1] - (t275 + t281);
+        let t288 = t254 * twist[3] - t272 * twist[4];
+        let t291 = t279 * twist[4] - t259 * twist[3];
+        let t293 = twist[2] - (t288 + t291);
+        let t295 = t247 * t267 - t269 * t283 + minus_c_cross_leg1 * t293;
+        let t296 = s_cylinder_leg1 * joints[2];
+        ::overact::guard::leg(t296, 0.5513142860394166, "leg1")?;
+        let minus_rate_cross_leg1 = t295 / t296;
+        let t298 = s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t299 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t300 = t298 * t299;
+        let t301 = gcylinder_vx_leg1 * t300;
+        let minus_gcross_vx_leg1 = t247 / t296;
+        let t303 = 0.05176380902050415 * t160;
+        let t304 = 0.19318516525781368 * t193;
+        let t305 = t303 + t304;
+        let t306 = 0.19318516525781368 * t160;
+        let t307 = 0.05176380902050415 * t193;
+        let t308 = t306 + t307;
+        let t310 = acceleration[0] + t308 - t305;
+        let t312 = 0.05176380902050415 * t170;
+        let t313 = 0.19318516525781368 * t198;
+        let t314 = t312 + t313;
+        let t315 = 0.19318516525781368 * t170;
+        let t316 = 0.05176380902050415 * t198;
+        let t317 = t315 + t316;
+        let t319 = acceleration[1] + t317 - t314;
+        let t322 = 0.05176380902050415 * t178;
+        let t323 = 0.19318516525781368 * t203;
+        let t324 = t322 + t323;
+        let t325 = 0.19318516525781368 * t178;
+        let t326 = 0.05176380902050415 * t203;
         let t327 = t325 + t326;
-        let t328 = 0.19318516525781368 * t170;
-        let t329 = 0.05176380902050415 * t198;
-        let t330 = t328 + t329;
-        let t332 = acceleration[1] + t330 - t327;
-        let t335 = 0.05176380902050415 * t178;
-        let t336 = 0.19318516525781368 * t203;
-        let t337 = t335 + t336;
-        let t338 = 0.19318516525781368 * t178;
-        let t339 = 0.05176380902050415 * t203;
-        let t340 = t338 + t339;
-        let t342 = acceleration[2] + t340 - t337;
-        let t344 = t249 * t323 - t271 * t332 + minus_c_cross_leg1 * t342;
-        let t345 = joints[2] * t315;
-        let minus_grod_vx_leg1 = s_cylinder_leg1 * t241
-            + 0.20791169081775931 * minus_c_cylinder_leg1;
-        let minus_grod_vy_leg1 = 0.9781476007338057 * minus_c_cylinder_leg1
-            - s_cylinder_leg1 * t305;
+        let t329 = acceleration[2] + t327 - t324;
+        let t331 = t247 * t310 - t269 * t319 + minus_c_cross_leg1 * t329;
+        let t332 = 0.9781476007338057 * s_cylinder_leg1;
+        let t334 = 0.20791169081775931 * minus_c_cylinder_leg1;
+        let minus_grod_vx_leg1 = minus_c_cross_leg1 * t332 + t334;
+        let minus_grod_vy_leg1 = t241 - minus_c_cross_leg1 * t243;
         let grod_vz_leg1 = s_cross_leg1 * s_cylinder_leg1;
-        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t269 + minus_grod_vy_leg1 * t285
-            - grod_vz_leg1 * t295;
-        let t360 = minus_rate_rod_leg1 + minus_rate_rod_leg1;
-        let minus_rate_dot_cross_leg1 = t248 * (t344 + t345 + t345 + t299 * t360);
-        let t364 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t366 = t315 + t315 - t364;
-        let t367 = s_cylinder_leg1 * t366;
-        let gcross_vy_leg1 = t271 * t248;
-        let minus_gcylinder_vy_leg1 = t308 * t245;
-        let t373 = minus_gcylinder_vy_leg1 * t301;
-        let minus_gcross_vz_leg1 = minus_c_cross_leg1 * t248;
-        let minus_gcylinder_vz_leg1 = t311 * t245;
-        let t378 = minus_gcylinder_vz_leg1 * t301;
-        let t380 = t265 - t252;
-        let t382 = t261 - t256;
-        let gcylinder_wx_leg1 = t380 * minus_gcylinder_vy_leg1
-            - t382 * minus_gcylinder_vz_leg1;
-        let t385 = gcylinder_wx_leg1 * t301;
-        let minus_gcross_wx_leg1 = t382 * minus_gcross_vz_leg1 + t380 * gcross_vy_leg1;
-        let t391 = t281 - t274;
-        let gcross_wy_leg1 = t391 * minus_gcross_vz_leg1 - t380 * minus_gcross_vx_leg1;
-        let gcylinder_wy_leg1 = t380 * gcylinder_vx_leg1
-            + t391 * minus_gcylinder_vz_leg1;
-        let t399 = gcylinder_wy_leg1 * t301;
-        let gcross_wz_leg1 = t391 * gcross_vy_leg1 + t382 * minus_gcross_vx_leg1;
-        let minus_gcylinder_wz_leg1 = t391 * minus_gcylinder_vy_leg1
-            + t382 * gcylinder_vx_leg1;
-        let t408 = minus_gcylinder_wz_leg1 * t301;
-        let t414 = 0.9781476007338057 * minus_c_cross_leg2;
-        let t417 = minus_c_cylinder_leg2 * t414 + 0.20791169081775931 * s_cylinder_leg2;
-        let t418 = 1.0 / joints[5];
-        let gcylinder_vx_leg2 = t417 * t418;
-        let t420 = s_cylinder_leg2 * joints[5];
-        ::overact::guard::leg(t420, 0.5513142860394165, "leg2")?;
-        let t421 = 1.0 / t420;
-        let t422 = 0.9781476007338057 * s_cross_leg2;
-        let t423 = t264 - t263;
-        let t425 = t260 - t259;
-        let t427 = t423 * twist[4] - t425 * twist[5];
-        let t428 = t250 - t251;
-        let t430 = t254 - t255;
-        let t432 = t428 * twist[4] - t430 * twist[5];
-        let t434 = twist[0] - (t427 + t432);
-        let t436 = 0.20791169081775931 * s_cross_leg2;
-        let t437 = t280 - t279;
-        let t440 = t437 * twist[5] - t423 * twist[3];
-        let t441 = t272 - t273;
-        let t444 = t441 * twist[5] - t428 * twist[3];
-        let t446 = twist[1] - (t440 + t444);
-        let t451 = t425 * twist[3] - t437 * twist[4];
-        let t454 = t430 * twist[3] - t441 * twist[4];
-        let t456 = twist[2] - (t451 + t454);
-        let t458 = t422 * t434 + t436 * t446 + minus_c_cross_leg2 * t456;
-        let minus_rate_cross_leg2 = t421 * t458;
-        let t460 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t461 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t462 = t460 * t461;
-        let t463 = gcylinder_vx_leg2 * t462;
-        let minus_gcross_vx_leg2 = t422 * t421;
-        let t466 = 0.20791169081775931 * minus_c_cross_leg2;
-        let t469 = minus_c_cylinder_leg2 * t466 - 0.9781476007338057 * s_cylinder_leg2;
-        let t472 = s_cross_leg2 * minus_c_cylinder_leg2;
-        let rate_cylinder_leg2 = t418 * (t417 * t434 + t469 * t446 - t472 * t456);
-        let t476 = rate_cylinder_leg2 * t461;
-        let t477 = t320 - t319;
-        let t478 = t316 - t317;
-        let t480 = acceleration[0] - (t477 + t478);
-        let t482 = t329 - t328;
-        let t483 = t325 - t326;
-        let t485 = acceleration[1] - (t482 + t483);
-        let t488 = t339 - t338;
-        let t489 = t335 - t336;
-        let t491 = acceleration[2] - (t488 + t489);
-        let t493 = t422 * t480 + t436 * t485 + minus_c_cross_leg2 * t491;
-        let t494 = joints[5] * t476;
-        let minus_grod_vx_leg2 = s_cylinder_leg2 * t414
+        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t267 + minus_grod_vy_leg1 * t283
+            - grod_vz_leg1 * t293;
+        let t344 = minus_rate_rod_leg1 + minus_rate_rod_leg1;
+        let t346 = t331 + t298 * t344;
+        let t347 = t245 * t346;
+        let t348 = s_cylinder_leg1 * t347;
+        let gcross_vy_leg1 = t269 / t296;
+        let t354 = minus_c_cross_leg1 * t334 + t332;
+        let minus_gcylinder_vy_leg1 = t354 * t245;
+        let t356 = minus_gcylinder_vy_leg1 * t300;
+        let minus_gcross_vz_leg1 = minus_c_cross_leg1 / t296;
+        let t360 = s_cross_leg1 * minus_c_cylinder_leg1;
+        let minus_gcylinder_vz_leg1 = t360 * t245;
+        let t362 = minus_gcylinder_vz_leg1 * t300;
+        let t364 = t263 - t250;
+        let t366 = t259 - t254;
+        let gcylinder_wx_leg1 = t364 * minus_gcylinder_vy_leg1
+            - t366 * minus_gcylinder_vz_leg1;
+        let t369 = gcylinder_wx_leg1 * t300;
+        let minus_gcross_wx_leg1 = t366 * minus_gcross_vz_leg1 + t364 * gcross_vy_leg1;
+        let t375 = t279 - t272;
+        let gcross_wy_leg1 = t375 * minus_gcross_vz_leg1 - t364 * minus_gcross_vx_leg1;
+        let gcylinder_wy_leg1 = t364 * gcylinder_vx_leg1
+            + t375 * minus_gcylinder_vz_leg1;
+        let t383 = gcylinder_wy_leg1 * t300;
+        let gcross_wz_leg1 = t375 * gcross_vy_leg1 + t366 * minus_gcross_vx_leg1;
+        let minus_gcylinder_wz_leg1 = t375 * minus_gcylinder_vy_leg1
+            + t366 * gcylinder_vx_leg1;
+        let t392 = minus_gcylinder_wz_leg1 * t300;
+        let t398 = 0.9781476007338057 * minus_c_cross_leg2;
+        let t401 = minus_c_cylinder_leg2 * t398 + 0.20791169081775931 * s_cylinder_leg2;
+        let t402 = 1.0 / joints[5];
+        let gcylinder_vx_leg2 = t401 * t402;
+        let t404 = 0.9781476007338057 * s_cross_leg2;
+        let t405 = t262 - t261;
+        let t407 = t258 - t257;
+        let t409 = t405 * twist[4] - t407 * twist[5];
+        let t410 = t248 - t249;
+        let t412 = t252 - t253;
+        let t414 = t410 * twist[4] - t412 * twist[5];
+        let t416 = twist[0] - (t409 + t414);
+        let t418 = 0.20791169081775931 * s_cross_leg2;
+        let t419 = t278 - t277;
+        let t422 = t419 * twist[5] - t405 * twist[3];
+        let t423 = t270 - t271;
+        let t426 = t423 * twist[5] - t410 * twist[3];
+        let t428 = twist[1] - (t422 + t426);
+        let t433 = t407 * twist[3] - t419 * twist[4];
+        let t436 = t412 * twist[3] - t423 * twist[4];
+        let t438 = twist[2] - (t433 + t436);
+        let t440 = t404 * t416 + t418 * t428 + minus_c_cross_leg2 * t438;
+        let t441 = s_cylinder_leg2 * joints[5];
+        ::overact::guard::leg(t441, 0.5513142860394165, "leg2")?;
+        let minus_rate_cross_leg2 = t440 / t441;
+        let t443 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t444 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t445 = t443 * t444;
+        let t446 = gcylinder_vx_leg2 * t445;
+        let minus_gcross_vx_leg2 = t404 / t441;
+        let t448 = t307 - t306;
+        let t449 = t303 - t304;
+        let t451 = acceleration[0] - (t448 + t449);
+        let t453 = t316 - t315;
+        let t454 = t312 - t313;
+        let t456 = acceleration[1] - (t453 + t454);
+        let t459 = t326 - t325;
+        let t460 = t322 - t323;
+        let t462 = acceleration[2] - (t459 + t460);
+        let t464 = t404 * t451 + t418 * t456 + minus_c_cross_leg2 * t462;
+        let minus_grod_vx_leg2 = s_cylinder_leg2 * t398
             - 0.20791169081775931 * minus_c_cylinder_leg2;
-        let minus_grod_vy_leg2 = s_cylinder_leg2 * t466
+        let t469 = 0.20791169081775931 * minus_c_cross_leg2;
+        let minus_grod_vy_leg2 = s_cylinder_leg2 * t469
             + 0.9781476007338057 * minus_c_cylinder_leg2;
         let grod_vz_leg2 = s_cross_leg2 * s_cylinder_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t434 + minus_grod_vy_leg2 * t446
-            - grod_vz_leg2 * t456;
-        let t509 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
-        let minus_rate_dot_cross_leg2 = t421 * (t493 + t494 + t494 + t460 * t509);
-        let t513 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t515 = t476 + t476 - t513;
-        let t516 = s_cylinder_leg2 * t515;
-        let gcylinder_vy_leg2 = t469 * t418;
-        let t520 = gcylinder_vy_leg2 * t462;
-        let minus_gcross_vy_leg2 = t436 * t421;
-        let minus_gcross_vz_leg2 = minus_c_cross_leg2 * t421;
-        let minus_gcylinder_vz_leg2 = t472 * t418;
-        let t527 = minus_gcylinder_vz_leg2 * t462;
-        let t529 = t423 + t428;
-        let t531 = t425 + t430;
-        let gcross_wx_leg2 = t531 * minus_gcross_vz_leg2 - t529 * minus_gcross_vy_leg2;
-        let minus_minus_gcylinder_wx_leg2 = t531 * minus_gcylinder_vz_leg2
-            + t529 * gcylinder_vy_leg2;
-        let t538 = minus_minus_gcylinder_wx_leg2 * t462;
-        let t540 = t437 + t441;
-        let gcross_wy_leg2 = t529 * minus_gcross_vx_leg2 - t540 * minus_gcross_vz_leg2;
-        let minus_gcylinder_wy_leg2 = t529 * gcylinder_vx_leg2
-            + t540 * minus_gcylinder_vz_leg2;
-        let t548 = minus_gcylinder_wy_leg2 * t462;
-        let gcross_wz_leg2 = t540 * minus_gcross_vy_leg2 - t531 * minus_gcross_vx_leg2;
-        let gcylinder_wz_leg2 = t531 * gcylinder_vx_leg2 - t540 * gcylinder_vy_leg2;
-        let t557 = gcylinder_wz_leg2 * t462;
-        let t561 = 0.30901699437494734 * s_cross_leg3;
-        let t564 = s_cylinder_leg3 * joints[8];
-        ::overact::guard::leg(t564, 0.5513142860394162, "leg3")?;
-        let t565 = 1.0 / t564;
-        let gcross_vx_leg3 = t561 * t565;
-        let t567 = 1.0 / joints[8];
-        let t569 = 0.30901699437494734 * minus_c_cross_leg3;
-        let t571 = 0.9510565162951536 * s_cylinder_leg3 - minus_c_cylinder_leg3 * t569;
-        let t572 = twist[0] + t258;
-        let t574 = 0.9510565162951536 * minus_c_cross_leg3;
-        let t577 = minus_c_cylinder_leg3 * t574 + 0.30901699437494734 * s_cylinder_leg3;
-        let t578 = twist[1] + t277;
-        let t581 = s_cross_leg3 * minus_c_cylinder_leg3;
-        let t582 = twist[2] + t290;
-        let rate_cylinder_leg3 = t567 * (t571 * t572 + t577 * t578 - t581 * t582);
-        let t586 = 0.9510565162951536 * s_cross_leg3;
-        let t591 = t586 * t578 - t561 * t572 + minus_c_cross_leg3 * t582;
-        let minus_rate_cross_leg3 = t565 * t591;
-        let t593 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t594 = rate_cylinder_leg3 * t593;
-        let t595 = acceleration[1] + t327;
-        let t597 = acceleration[0] + t318;
-        let t600 = acceleration[2] + t337;
-        let t602 = t586 * t595 - t561 * t597 + minus_c_cross_leg3 * t600;
-        let t603 = joints[8] * t594;
-        let t606 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_grod_vy_leg3 = s_cylinder_leg3 * t574
-            - 0.30901699437494734 * minus_c_cylinder_leg3;
-        let grod_vx_leg3 = s_cylinder_leg3 * t569
-            + 0.9510565162951536 * minus_c_cylinder_leg3;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t416 + minus_grod_vy_leg2 * t428
+            - grod_vz_leg2 * t438;
+        let t478 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
+        let t480 = t464 + t443 * t478;
+        let t484 = minus_c_cylinder_leg2 * t469 - 0.9781476007338057 * s_cylinder_leg2;
+        let t487 = s_cross_leg2 * minus_c_cylinder_leg2;
+        let t489 = t401 * t416 + t484 * t428 - t487 * t438;
+        let minus_rate_dot_cross_leg2 = (t480 + 2.0 * (t444 * t489)) / t441;
+        let rate_cylinder_leg2 = t402 * t489;
+        let t495 = rate_cylinder_leg2 * t443;
+        let t496 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t498 = t495 + t496 + t495;
+        let t499 = minus_c_cylinder_leg2 * t498;
+        let t500 = t499 - minus_rate_dot_cross_leg2;
+        let gcylinder_vy_leg2 = t484 * t402;
+        let t504 = gcylinder_vy_leg2 * t445;
+        let minus_gcross_vy_leg2 = t418 / t441;
+        let minus_gcross_vz_leg2 = minus_c_cross_leg2 / t441;
+        let minus_gcylinder_vz_leg2 = t487 * t402;
+        let t511 = minus_gcylinder_vz_leg2 * t445;
+        let t513 = t405 + t410;
+        let t515 = t407 + t412;
+        let gcross_wx_leg2 = t515 * minus_gcross_vz_leg2 - t513 * minus_gcross_vy_leg2;
+        let minus_minus_gcylinder_wx_leg2 = t515 * minus_gcylinder_vz_leg2
+            + t513 * gcylinder_vy_leg2;
+        let t522 = minus_minus_gcylinder_wx_leg2 * t445;
+        let t524 = t419 + t423;
+        let gcross_wy_leg2 = t513 * minus_gcross_vx_leg2 - t524 * minus_gcross_vz_leg2;
+        let minus_gcylinder_wy_leg2 = t513 * gcylinder_vx_leg2
+            + t524 * minus_gcylinder_vz_leg2;
+        let t532 = minus_gcylinder_wy_leg2 * t445;
+        let gcross_wz_leg2 = t524 * minus_gcross_vy_leg2 - t515 * minus_gcross_vx_leg2;
+        let gcylinder_wz_leg2 = t515 * gcylinder_vx_leg2 - t524 * gcylinder_vy_leg2;
+        let t541 = gcylinder_wz_leg2 * t445;
+        let t545 = 0.30901699437494734 * s_cross_leg3;
+        let t548 = s_cylinder_leg3 * joints[8];
+        ::overact::guard::leg(t548, 0.5513142860394162, "leg3")?;
+        let gcross_vx_leg3 = t545 / t548;
+        let t550 = 0.9510565162951536 * s_cross_leg3;
+        let t551 = acceleration[1] + t314;
+        let t553 = acceleration[0] + t305;
+        let t556 = acceleration[2] + t324;
+        let t558 = t550 * t551 - t545 * t553 + minus_c_cross_leg3 * t556;
+        let t559 = 0.9510565162951536 * s_cylinder_leg3;
+        let t560 = 0.30901699437494734 * minus_c_cylinder_leg3;
+        let t562 = t559 - minus_c_cross_leg3 * t560;
+        let t563 = twist[0] + t256;
+        let t565 = 0.9510565162951536 * minus_c_cylinder_leg3;
+        let t567 = 0.30901699437494734 * s_cylinder_leg3;
+        let t568 = minus_c_cross_leg3 * t565 + t567;
+        let t569 = twist[1] + t275;
+        let t572 = s_cross_leg3 * minus_c_cylinder_leg3;
+        let t573 = twist[2] + t288;
+        let t575 = t562 * t563 + t568 * t569 - t572 * t573;
+        let t580 = t550 * t569 - t545 * t563 + minus_c_cross_leg3 * t573;
+        let minus_rate_cross_leg3 = t580 / t548;
+        let t582 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t583 = t575 * t582;
+        let t586 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_grod_vy_leg3 = t559 * minus_c_cross_leg3 - t560;
+        let grod_vx_leg3 = minus_c_cross_leg3 * t567 + t565;
         let grod_vz_leg3 = s_cross_leg3 * s_cylinder_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t578 - grod_vx_leg3 * t572
-            - grod_vz_leg3 * t582;
-        let t619 = minus_rate_rod_leg3 + minus_rate_rod_leg3;
-        let minus_rate_dot_cross_leg3 = t565 * (t602 + t603 + t603 + t606 * t619);
-        let t623 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t625 = t594 + t594 - t623;
-        let t626 = s_cylinder_leg3 * t625;
-        let gcylinder_vx_leg3 = t571 * t567;
-        let t629 = t606 * t593;
-        let t630 = gcylinder_vx_leg3 * t629;
-        let gcylinder_vy_leg3 = t577 * t567;
-        let t633 = gcylinder_vy_leg3 * t629;
-        let minus_gcross_vy_leg3 = t586 * t565;
-        let minus_gcross_vz_leg3 = minus_c_cross_leg3 * t565;
-        let minus_gcylinder_vz_leg3 = t581 * t567;
-        let t640 = minus_gcylinder_vz_leg3 * t629;
-        let gcross_wx_leg3 = t252 * minus_gcross_vy_leg3 - t256 * minus_gcross_vz_leg3;
-        let minus_gcylinder_wx_leg3 = t256 * minus_gcylinder_vz_leg3
-            + t252 * gcylinder_vy_leg3;
-        let t649 = minus_gcylinder_wx_leg3 * t629;
-        let gcross_wy_leg3 = t252 * gcross_vx_leg3 + t274 * minus_gcross_vz_leg3;
-        let gcylinder_wy_leg3 = t252 * gcylinder_vx_leg3
-            + t274 * minus_gcylinder_vz_leg3;
-        let t658 = gcylinder_wy_leg3 * t629;
-        let gcylinder_wz_leg3 = t274 * gcylinder_vy_leg3 - t256 * gcylinder_vx_leg3;
-        let t663 = gcylinder_wz_leg3 * t629;
-        let minus_gcross_wz_leg3 = t274 * minus_gcross_vy_leg3 + t256 * gcross_vx_leg3;
-        let t671 = 0.6691306063588579 * s_cross_leg4;
-        let t674 = s_cylinder_leg4 * joints[11];
-        ::overact::guard::leg(t674, 0.5513142860394165, "leg4")?;
-        let t675 = 1.0 / t674;
-        let gcross_vx_leg4 = t671 * t675;
-        let t677 = 1.0 / joints[11];
-        let t679 = 0.6691306063588579 * minus_c_cross_leg4;
-        let t681 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t679;
-        let t682 = twist[0] + t427;
-        let t684 = 0.7431448254773945 * minus_c_cross_leg4;
-        let t687 = minus_c_cylinder_leg4 * t684 + 0.6691306063588579 * s_cylinder_leg4;
-        let t688 = twist[1] + t440;
-        let t691 = s_cross_leg4 * minus_c_cylinder_leg4;
-        let t692 = twist[2] + t451;
-        let rate_cylinder_leg4 = t677 * (t681 * t682 + t687 * t688 - t691 * t692);
-        let t696 = 0.7431448254773945 * s_cross_leg4;
-        let t701 = t696 * t688 - t671 * t682 + minus_c_cross_leg4 * t692;
-        let minus_rate_cross_leg4 = t675 * t701;
-        let t703 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t704 = rate_cylinder_leg4 * t703;
-        let t705 = acceleration[1] + t482;
-        let t707 = acceleration[0] + t477;
-        let t710 = acceleration[2] + t488;
-        let t712 = t696 * t705 - t671 * t707 + minus_c_cross_leg4 * t710;
-        let t713 = joints[11] * t704;
-        let t716 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_grod_vy_leg4 = s_cylinder_leg4 * t684
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t569 - grod_vx_leg3 * t563
+            - grod_vz_leg3 * t573;
+        let t597 = 2.0 * minus_rate_rod_leg3;
+        let t599 = t558 + t583 + t583 + t586 * t597;
+        let minus_rate_dot_cross_leg3 = t599 / t548;
+        let t601 = 1.0 / joints[8];
+        let rate_cylinder_leg3 = t601 * t575;
+        let t603 = rate_cylinder_leg3 * t586;
+        let t604 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t606 = t603 + t604 + t603;
+        let t607 = minus_c_cylinder_leg3 * t606;
+        let t608 = t607 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t562 * t601;
+        let t611 = t586 * t582;
+        let t612 = gcylinder_vx_leg3 * t611;
+        let gcylinder_vy_leg3 = t568 * t601;
+        let t615 = gcylinder_vy_leg3 * t611;
+        let minus_gcross_vy_leg3 = t550 / t548;
+        let minus_gcross_vz_leg3 = minus_c_cross_leg3 / t548;
+        let minus_gcylinder_vz_leg3 = t572 * t601;
+        let t622 = minus_gcylinder_vz_leg3 * t611;
+        let gcross_wx_leg3 = t250 * minus_gcross_vy_leg3 - t254 * minus_gcross_vz_leg3;
+        let minus_gcylinder_wx_leg3 = t254 * minus_gcylinder_vz_leg3
+            + t250 * gcylinder_vy_leg3;
+        let t631 = minus_gcylinder_wx_leg3 * t611;
+        let gcross_wy_leg3 = t250 * gcross_vx_leg3 + t272 * minus_gcross_vz_leg3;
+        let gcylinder_wy_leg3 = t250 * gcylinder_vx_leg3
+            + t272 * minus_gcylinder_vz_leg3;
+        let t640 = gcylinder_wy_leg3 * t611;
+        let gcylinder_wz_leg3 = t272 * gcylinder_vy_leg3 - t254 * gcylinder_vx_leg3;
+        let t645 = gcylinder_wz_leg3 * t611;
+        let minus_gcross_wz_leg3 = t272 * minus_gcross_vy_leg3 + t254 * gcross_vx_leg3;
+        let t653 = 0.6691306063588579 * s_cross_leg4;
+        let t656 = s_cylinder_leg4 * joints[11];
+        ::overact::guard::leg(t656, 0.5513142860394165, "leg4")?;
+        let gcross_vx_leg4 = t653 / t656;
+        let t658 = 0.7431448254773945 * s_cross_leg4;
+        let t659 = acceleration[1] + t453;
+        let t661 = acceleration[0] + t448;
+        let t664 = acceleration[2] + t459;
+        let t666 = t658 * t659 - t653 * t661 + minus_c_cross_leg4 * t664;
+        let t668 = 0.6691306063588579 * minus_c_cross_leg4;
+        let t670 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t668;
+        let t671 = twist[0] + t409;
+        let t673 = 0.7431448254773945 * minus_c_cross_leg4;
+        let t676 = minus_c_cylinder_leg4 * t673 + 0.6691306063588579 * s_cylinder_leg4;
+        let t677 = twist[1] + t422;
+        let t680 = s_cross_leg4 * minus_c_cylinder_leg4;
+        let t681 = twist[2] + t433;
+        let t683 = t670 * t671 + t676 * t677 - t680 * t681;
+        let t688 = t658 * t677 - t653 * t671 + minus_c_cross_leg4 * t681;
+        let minus_rate_cross_leg4 = t688 / t656;
+        let t690 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t691 = t683 * t690;
+        let t694 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_grod_vy_leg4 = s_cylinder_leg4 * t673
             - 0.6691306063588579 * minus_c_cylinder_leg4;
-        let grod_vx_leg4 = s_cylinder_leg4 * t679
+        let grod_vx_leg4 = s_cylinder_leg4 * t668
             + 0.7431448254773945 * minus_c_cylinder_leg4;
         let grod_vz_leg4 = s_cross_leg4 * s_cylinder_leg4;
-        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t688 - grod_vx_leg4 * t682
-            - grod_vz_leg4 * t692;
-        let t729 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = t675 * (t712 + t713 + t713 + t716 * t729);
-        let t733 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t735 = t704 + t704 - t733;
-        let t736 = s_cylinder_leg4 * t735;
-        let gcylinder_vx_leg4 = t681 * t677;
-        let t739 = t716 * t703;
-        let t740 = gcylinder_vx_leg4 * t739;
-        let gcylinder_vy_leg4 = t687 * t677;
-        let t743 = gcylinder_vy_leg4 * t739;
-        let minus_gcross_vy_leg4 = t696 * t675;
-        let minus_gcross_vz_leg4 = minus_c_cross_leg4 * t675;
-        let minus_gcylinder_vz_leg4 = t691 * t677;
-        let t750 = minus_gcylinder_vz_leg4 * t739;
-        let gcross_wx_leg4 = t423 * minus_gcross_vy_leg4 - t425 * minus_gcross_vz_leg4;
-        let minus_gcylinder_wx_leg4 = t425 * minus_gcylinder_vz_leg4
-            + t423 * gcylinder_vy_leg4;
-        let t759 = minus_gcylinder_wx_leg4 * t739;
-        let gcross_wy_leg4 = t423 * gcross_vx_leg4 + t437 * minus_gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t423 * gcylinder_vx_leg4
-            + t437 * minus_gcylinder_vz_leg4;
-        let t768 = gcylinder_wy_leg4 * t739;
-        let gcylinder_wz_leg4 = t437 * gcylinder_vy_leg4 - t425 * gcylinder_vx_leg4;
-        let t773 = gcylinder_wz_leg4 * t739;
-        let minus_gcross_wz_leg4 = t437 * minus_gcross_vy_leg4 + t425 * gcross_vx_leg4;
-        let t781 = 0.6691306063588579 * s_cross_leg5;
-        let t784 = s_cylinder_leg5 * joints[14];
-        ::overact::guard::leg(t784, 0.5513142860394162, "leg5")?;
-        let t785 = 1.0 / t784;
-        let gcross_vx_leg5 = t781 * t785;
-        let t787 = 1.0 / joints[14];
-        let t789 = 0.7431448254773945 * minus_c_cross_leg5;
-        let t791 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t789;
-        let t792 = twist[1] + t283;
-        let t794 = 0.6691306063588579 * minus_c_cross_leg5;
-        let t797 = minus_c_cylinder_leg5 * t794 + 0.7431448254773945 * s_cylinder_leg5;
-        let t798 = twist[0] + t267;
-        let t801 = s_cross_leg5 * minus_c_cylinder_leg5;
-        let t802 = twist[2] + t293;
-        let rate_cylinder_leg5 = t787 * (t791 * t792 - t797 * t798 - t801 * t802);
-        let t808 = 0.7431448254773945 * s_cross_leg5;
-        let t811 = minus_c_cross_leg5 * t802 - (t781 * t798 + t808 * t792);
-        let minus_rate_cross_leg5 = t785 * t811;
-        let t813 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t814 = rate_cylinder_leg5 * t813;
-        let t815 = acceleration[2] - t340;
-        let t817 = acceleration[0] - t321;
-        let t819 = acceleration[1] - t330;
-        let t822 = minus_c_cross_leg5 * t815 - (t781 * t817 + t808 * t819);
-        let t823 = joints[14] * t814;
-        let t826 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_grod_vx_leg5 = 0.7431448254773945 * minus_c_cylinder_leg5
-            - s_cylinder_leg5 * t794;
-        let grod_vy_leg5 = s_cylinder_leg5 * t789
-            + 0.6691306063588579 * minus_c_cylinder_leg5;
+        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t677 - grod_vx_leg4 * t671
+            - grod_vz_leg4 * t681;
+        let t707 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
+        let minus_rate_dot_cross_leg4 = (t666 + t691 + t691 + t694 * t707) / t656;
+        let t711 = 1.0 / joints[11];
+        let rate_cylinder_leg4 = t711 * t683;
+        let t713 = rate_cylinder_leg4 * t694;
+        let t714 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t716 = t713 + t714 + t713;
+        let t717 = minus_c_cylinder_leg4 * t716;
+        let t718 = t717 - minus_rate_dot_cross_leg4;
+        let gcylinder_vx_leg4 = t670 * t711;
+        let t721 = t694 * t690;
+        let t722 = gcylinder_vx_leg4 * t721;
+        let gcylinder_vy_leg4 = t676 * t711;
+        let t725 = gcylinder_vy_leg4 * t721;
+        let minus_gcross_vy_leg4 = t658 / t656;
+        let minus_gcross_vz_leg4 = minus_c_cross_leg4 / t656;
+        let minus_gcylinder_vz_leg4 = t680 * t711;
+        let t732 = minus_gcylinder_vz_leg4 * t721;
+        let gcross_wx_leg4 = t405 * minus_gcross_vy_leg4 - t407 * minus_gcross_vz_leg4;
+        let minus_gcylinder_wx_leg4 = t407 * minus_gcylinder_vz_leg4
+            + t405 * gcylinder_vy_leg4;
+        let t741 = minus_gcylinder_wx_leg4 * t721;
+        let gcross_wy_leg4 = t405 * gcross_vx_leg4 + t419 * minus_gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t405 * gcylinder_vx_leg4
+            + t419 * minus_gcylinder_vz_leg4;
+        let t750 = gcylinder_wy_leg4 * t721;
+        let gcylinder_wz_leg4 = t419 * gcylinder_vy_leg4 - t407 * gcylinder_vx_leg4;
+        let t755 = gcylinder_wz_leg4 * t721;
+        let minus_gcross_wz_leg4 = t419 * minus_gcross_vy_leg4 + t407 * gcross_vx_leg4;
+        let t763 = 0.6691306063588579 * s_cross_leg5;
+        let t766 = s_cylinder_leg5 * joints[14];
+        ::overact::guard::leg(t766, 0.5513142860394162, "leg5")?;
+        let t767 = 1.0 / t766;
+        let gcross_vx_leg5 = t763 * t767;
+        let t769 = acceleration[2] - t327;
+        let t771 = acceleration[0] - t308;
+        let t773 = 0.7431448254773945 * s_cross_leg5;
+        let t774 = acceleration[1] - t317;
+        let t777 = minus_c_cross_leg5 * t769 - (t763 * t771 + t773 * t774);
+        let t778 = 0.6691306063588579 * s_cylinder_leg5;
+        let t779 = 0.7431448254773945 * minus_c_cylinder_leg5;
+        let t781 = t778 - minus_c_cross_leg5 * t779;
+        let t782 = twist[1] + t281;
+        let t784 = 0.6691306063588579 * minus_c_cylinder_leg5;
+        let t786 = 0.7431448254773945 * s_cylinder_leg5;
+        let t787 = minus_c_cross_leg5 * t784 + t786;
+        let t788 = twist[0] + t265;
+        let t791 = s_cross_leg5 * minus_c_cylinder_leg5;
+        let t792 = twist[2] + t291;
+        let t794 = t781 * t782 - t787 * t788 - t791 * t792;
+        let t799 = minus_c_cross_leg5 * t792 - (t763 * t788 + t773 * t782);
+        let minus_rate_cross_leg5 = t767 * t799;
+        let t801 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t802 = t794 * t801;
+        let t805 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_grod_vx_leg5 = t779 - t778 * minus_c_cross_leg5;
+        let grod_vy_leg5 = minus_c_cross_leg5 * t786 + t784;
         let grod_vz_leg5 = s_cross_leg5 * s_cylinder_leg5;
-        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t798 - grod_vy_leg5 * t792
-            - grod_vz_leg5 * t802;
-        let t839 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t785 * (t822 + t823 + t823 + t826 * t839);
-        let t843 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t845 = t814 + t814 - t843;
-        let t846 = s_cylinder_leg5 * t845;
-        let minus_gcylinder_vx_leg5 = t797 * t787;
-        let t849 = t826 * t813;
-        let t850 = minus_gcylinder_vx_leg5 * t849;
-        let gcross_vy_leg5 = t808 * t785;
-        let gcylinder_vy_leg5 = t791 * t787;
-        let t855 = gcylinder_vy_leg5 * t849;
-        let minus_gcross_vz_leg5 = minus_c_cross_leg5 * t785;
-        let minus_gcylinder_vz_leg5 = t801 * t787;
-        let t860 = minus_gcylinder_vz_leg5 * t849;
-        let gcross_wx_leg5 = t261 * minus_gcross_vz_leg5 + t265 * gcross_vy_leg5;
-        let gcylinder_wx_leg5 = t261 * minus_gcylinder_vz_leg5
-            + t265 * gcylinder_vy_leg5;
-        let t869 = gcylinder_wx_leg5 * t849;
-        let gcylinder_wy_leg5 = t265 * minus_gcylinder_vx_leg5
-            - t281 * minus_gcylinder_vz_leg5;
-        let t874 = gcylinder_wy_leg5 * t849;
-        let minus_gcross_wy_leg5 = t265 * gcross_vx_leg5 + t281 * minus_gcross_vz_leg5;
-        let gcross_wz_leg5 = t261 * gcross_vx_leg5 - t281 * gcross_vy_leg5;
-        let minus_gcylinder_wz_leg5 = t281 * gcylinder_vy_leg5
-            + t261 * minus_gcylinder_vx_leg5;
-        let t887 = minus_gcylinder_wz_leg5 * t849;
-        let t891 = 0.30901699437494734 * s_cross_leg6;
-        let t894 = s_cylinder_leg6 * joints[17];
-        ::overact::guard::leg(t894, 0.5513142860394162, "leg6")?;
-        let t895 = 1.0 / t894;
-        let gcross_vx_leg6 = t891 * t895;
-        let t897 = 1.0 / joints[17];
-        let t899 = 0.9510565162951536 * minus_c_cross_leg6;
-        let t901 = 0.30901699437494734 * s_cylinder_leg6 - minus_c_cylinder_leg6 * t899;
-        let t902 = twist[1] + t444;
-        let t904 = 0.30901699437494734 * minus_c_cross_leg6;
-        let t907 = minus_c_cylinder_leg6 * t904 + 0.9510565162951536 * s_cylinder_leg6;
-        let t908 = twist[0] + t432;
-        let t911 = s_cross_leg6 * minus_c_cylinder_leg6;
-        let t912 = twist[2] + t454;
-        let rate_cylinder_leg6 = t897 * (t901 * t902 - t907 * t908 - t911 * t912);
-        let t918 = 0.9510565162951536 * s_cross_leg6;
-        let t921 = minus_c_cross_leg6 * t912 - (t891 * t908 + t918 * t902);
-        let minus_rate_cross_leg6 = t895 * t921;
-        let t923 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t924 = rate_cylinder_leg6 * t923;
-        let t925 = acceleration[2] + t489;
-        let t927 = acceleration[0] + t478;
-        let t929 = acceleration[1] + t483;
-        let t932 = minus_c_cross_leg6 * t925 - (t891 * t927 + t918 * t929);
-        let t933 = joints[17] * t924;
-        let t936 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t788 - grod_vy_leg5 * t782
+            - grod_vz_leg5 * t792;
+        let t816 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
+        let minus_rate_dot_cross_leg5 = t767 * (t777 + t802 + t802 + t805 * t816);
+        let rate_cylinder_leg5 = t794 / joints[14];
+        let t821 = rate_cylinder_leg5 * t805;
+        let t822 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t824 = t821 + t822 + t821;
+        let t825 = minus_c_cylinder_leg5 * t824;
+        let t826 = t825 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t787 / joints[14];
+        let t829 = t805 * t801;
+        let t830 = minus_gcylinder_vx_leg5 * t829;
+        let gcross_vy_leg5 = t773 * t767;
+        let gcylinder_vy_leg5 = t781 / joints[14];
+        let t835 = gcylinder_vy_leg5 * t829;
+        let minus_gcross_vz_leg5 = minus_c_cross_leg5 * t767;
+        let minus_gcylinder_vz_leg5 = t791 / joints[14];
+        let t840 = minus_gcylinder_vz_leg5 * t829;
+        let gcross_wx_leg5 = t259 * minus_gcross_vz_leg5 + t263 * gcross_vy_leg5;
+        let gcylinder_wx_leg5 = t259 * minus_gcylinder_vz_leg5
+            + t263 * gcylinder_vy_leg5;
+        let t849 = gcylinder_wx_leg5 * t829;
+        let gcylinder_wy_leg5 = t263 * minus_gcylinder_vx_leg5
+            - t279 * minus_gcylinder_vz_leg5;
+        let t854 = gcylinder_wy_leg5 * t829;
+        let minus_gcross_wy_leg5 = t263 * gcross_vx_leg5 + t279 * minus_gcross_vz_leg5;
+        let gcross_wz_leg5 = t259 * gcross_vx_leg5 - t279 * gcross_vy_leg5;
+        let minus_gcylinder_wz_leg5 = t279 * gcylinder_vy_leg5
+            + t259 * minus_gcylinder_vx_leg5;
+        let t867 = minus_gcylinder_wz_leg5 * t829;
+        let t871 = 0.30901699437494734 * s_cross_leg6;
+        let t874 = s_cylinder_leg6 * joints[17];
+        ::overact::guard::leg(t874, 0.5513142860394162, "leg6")?;
+        let gcross_vx_leg6 = t871 / t874;
+        let t876 = 1.0 / joints[17];
+        let t877 = acceleration[2] + t460;
+        let t879 = acceleration[0] + t449;
+        let t881 = 0.9510565162951536 * s_cross_leg6;
+        let t882 = acceleration[1] + t454;
+        let t885 = minus_c_cross_leg6 * t877 - (t871 * t879 + t881 * t882);
+        let t886 = twist[2] + t436;
+        let t888 = twist[0] + t414;
+        let t890 = twist[1] + t426;
+        let t893 = minus_c_cross_leg6 * t886 - (t871 * t888 + t881 * t890);
+        let minus_rate_cross_leg6 = t893 / t874;
+        let t895 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t897 = 0.30901699437494734 * minus_c_cross_leg6;
         let minus_grod_vx_leg6 = 0.9510565162951536 * minus_c_cylinder_leg6
-            - s_cylinder_leg6 * t904;
-        let grod_vy_leg6 = s_cylinder_leg6 * t899
+            - s_cylinder_leg6 * t897;
+        let t901 = 0.9510565162951536 * minus_c_cross_leg6;
+        let grod_vy_leg6 = s_cylinder_leg6 * t901
             + 0.30901699437494734 * minus_c_cylinder_leg6;
         let grod_vz_leg6 = s_cross_leg6 * s_cylinder_leg6;
-        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t908 - grod_vy_leg6 * t902
-            - grod_vz_leg6 * t912;
-        let t949 = minus_rate_rod_leg6 + minus_rate_rod_leg6;
-        let minus_rate_dot_cross_leg6 = t895 * (t932 + t933 + t933 + t936 * t949);
-        let t953 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t955 = t924 + t924 - t953;
-        let t956 = s_cylinder_leg6 * t955;
-        let minus_gcylinder_vx_leg6 = t907 * t897;
-        let t959 = t936 * t923;
-        let t960 = minus_gcylinder_vx_leg6 * t959;
-        let gcross_vy_leg6 = t918 * t895;
-        let gcylinder_vy_leg6 = t901 * t897;
-        let t965 = gcylinder_vy_leg6 * t959;
-        let minus_gcross_vz_leg6 = minus_c_cross_leg6 * t895;
-        let minus_gcylinder_vz_leg6 = t911 * t897;
-        let t970 = minus_gcylinder_vz_leg6 * t959;
-        let minus_gcross_wx_leg6 = t430 * minus_gcross_vz_leg6 + t428 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t430 * minus_gcylinder_vz_leg6
-            + t428 * gcylinder_vy_leg6;
-        let t979 = minus_gcylinder_wx_leg6 * t959;
-        let gcross_wy_leg6 = t428 * gcross_vx_leg6 + t441 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t441 * minus_gcylinder_vz_leg6
-            - t428 * minus_gcylinder_vx_leg6;
-        let t988 = gcylinder_wy_leg6 * t959;
-        let gcross_wz_leg6 = t441 * gcross_vy_leg6 - t430 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t441 * gcylinder_vy_leg6
-            + t430 * minus_gcylinder_vx_leg6;
-        let t997 = gcylinder_wz_leg6 * t959;
-        let t999 = t299 * t299;
-        let t1000 = t300 * t300;
-        let t1001 = t999 - t1000;
-        let t1003 = rate_cylinder_leg1 * t299;
-        let t1004 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1006 = t1003 + t1004 + t1003;
-        let t1009 = s_cylinder_leg1 * t1006 - minus_c_cylinder_leg1 * t366;
-        let t1027 = t460 * t460;
-        let t1028 = t461 * t461;
-        let t1029 = t1027 - t1028;
-        let t1031 = rate_cylinder_leg2 * t460;
-        let t1032 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1034 = t1031 + t1032 + t1031;
-        let t1037 = s_cylinder_leg2 * t1034 - minus_c_cylinder_leg2 * t515;
-        let t1055 = rate_cylinder_leg3 * t606;
-        let t1056 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1058 = t1055 + t1056 + t1055;
-        let t1061 = s_cylinder_leg3 * t1058 - minus_c_cylinder_leg3 * t625;
-        let t1063 = t606 * t606;
-        let t1064 = t593 * t593;
-        let t1065 = t1063 - t1064;
-        let t1083 = rate_cylinder_leg4 * t716;
-        let t1084 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1086 = t1083 + t1084 + t1083;
-        let t1089 = s_cylinder_leg4 * t1086 - minus_c_cylinder_leg4 * t735;
-        let t1091 = t716 * t716;
-        let t1092 = t703 * t703;
-        let t1093 = t1091 - t1092;
-        let t1111 = rate_cylinder_leg5 * t826;
-        let t1112 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1114 = t1111 + t1112 + t1111;
-        let t1117 = s_cylinder_leg5 * t1114 - minus_c_cylinder_leg5 * t845;
-        let t1119 = t826 * t826;
-        let t1120 = t813 * t813;
-        let t1121 = t1119 - t1120;
-        let t1139 = rate_cylinder_leg6 * t936;
-        let t1140 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1142 = t1139 + t1140 + t1139;
-        let t1145 = s_cylinder_leg6 * t1142 - minus_c_cylinder_leg6 * t955;
-        let t1147 = t936 * t936;
-        let t1148 = t923 * t923;
-        let t1149 = t1147 - t1148;
-        let t1171 = t244 * t323 - t308 * t332 - t311 * t342;
-        let t1172 = t297 * minus_rate_cross_leg1;
-        let rate_dot_cylinder_leg1 = t245
-            * (t1171 - minus_c_cylinder_leg1 * t1172 + rate_cylinder_leg1 * t360);
-        let t1178 = rate_dot_cylinder_leg1 - t301;
-        let t1180 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t1183 = s_cylinder_leg1 * t1178 - minus_c_cylinder_leg1 * (t1180 - t999);
-        let t1206 = t417 * t480 + t469 * t485 - t472 * t491;
-        let t1207 = t458 * minus_rate_cross_leg2;
-        let rate_dot_cylinder_leg2 = t418
-            * (t1206 - minus_c_cylinder_leg2 * t1207 + rate_cylinder_leg2 * t509);
-        let t1213 = rate_dot_cylinder_leg2 - t462;
-        let t1215 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t1218 = s_cylinder_leg2 * t1213 - minus_c_cylinder_leg2 * (t1215 - t1027);
-        let t1241 = t571 * t597 + t577 * t595 - t581 * t600;
-        let rate_dot_cylinder_leg3 = t567
-            * (t1241 - joints[8] * t629 + rate_cylinder_leg3 * t619);
-        let t1247 = rate_dot_cylinder_leg3 - t629;
-        let t1249 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1252 = s_cylinder_leg3 * t1247 - minus_c_cylinder_leg3 * (t1249 - t1063);
-        let t1275 = t681 * t707 + t687 * t705 - t691 * t710;
-        let rate_dot_cylinder_leg4 = t677
-            * (t1275 - joints[11] * t739 + rate_cylinder_leg4 * t729);
-        let t1281 = rate_dot_cylinder_leg4 - t739;
-        let t1283 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1286 = s_cylinder_leg4 * t1281 - minus_c_cylinder_leg4 * (t1283 - t1091);
-        let t1309 = t791 * t819 - t797 * t817 - t801 * t815;
-        let rate_dot_cylinder_leg5 = t787
-            * (t1309 - joints[14] * t849 + rate_cylinder_leg5 * t839);
-        let t1315 = rate_dot_cylinder_leg5 - t849;
-        let t1317 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1320 = s_cylinder_leg5 * t1315 - minus_c_cylinder_leg5 * (t1317 - t1119);
-        let t1343 = t901 * t929 - t907 * t927 - t911 * t925;
-        let rate_dot_cylinder_leg6 = t897
-            * (t1343 - joints[17] * t959 + rate_cylinder_leg6 * t949);
-        let t1349 = rate_dot_cylinder_leg6 - t959;
-        let t1351 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1354 = s_cylinder_leg6 * t1349 - minus_c_cylinder_leg6 * (t1351 - t1147);
-        let t1373 = minus_c_cylinder_leg1 * t1006;
-        let t1386 = minus_c_cylinder_leg2 * t1034;
-        let t1399 = minus_c_cylinder_leg3 * t1058;
-        let t1412 = minus_c_cylinder_leg4 * t1086;
-        let t1425 = minus_c_cylinder_leg5 * t1114;
-        let t1438 = minus_c_cylinder_leg6 * t1142;
-        let t1454 = t301 + rate_dot_cylinder_leg1;
-        let t1456 = s_cylinder_leg1 * (t1000 - t1180) - minus_c_cylinder_leg1 * t1454;
-        let t1477 = t462 + rate_dot_cylinder_leg2;
-        let t1479 = s_cylinder_leg2 * (t1028 - t1215) - minus_c_cylinder_leg2 * t1477;
-        let t1499 = t629 + rate_dot_cylinder_leg3;
-        let t1501 = s_cylinder_leg3 * (t1064 - t1249) - minus_c_cylinder_leg3 * t1499;
-        let t1522 = t739 + rate_dot_cylinder_leg4;
-        let t1524 = s_cylinder_leg4 * (t1092 - t1283) - minus_c_cylinder_leg4 * t1522;
-        let t1545 = t849 + rate_dot_cylinder_leg5;
-        let t1547 = s_cylinder_leg5 * (t1120 - t1317) - minus_c_cylinder_leg5 * t1545;
-        let t1568 = t959 + rate_dot_cylinder_leg6;
-        let t1570 = s_cylinder_leg6 * (t1148 - t1351) - minus_c_cylinder_leg6 * t1568;
-        let t1625 = 9.81 * minus_c_cross_leg1;
-        let t1626 = minus_c_cylinder_leg1 * t1625;
-        let t1628 = 9.81 * grod_vz_leg1;
-        let t1646 = 9.81 * minus_c_cross_leg2;
-        let t1647 = minus_c_cylinder_leg2 * t1646;
-        let t1649 = 9.81 * grod_vz_leg2;
-        let t1667 = 9.81 * minus_c_cross_leg3;
-        let t1668 = minus_c_cylinder_leg3 * t1667;
-        let t1670 = 9.81 * grod_vz_leg3;
-        let t1688 = 9.81 * minus_c_cross_leg4;
-        let t1689 = minus_c_cylinder_leg4 * t1688;
-        let t1691 = 9.81 * grod_vz_leg4;
-        let t1709 = 9.81 * minus_c_cross_leg5;
-        let t1710 = minus_c_cylinder_leg5 * t1709;
-        let t1712 = 9.81 * grod_vz_leg5;
-        let t1730 = 9.81 * minus_c_cross_leg6;
-        let t1731 = minus_c_cylinder_leg6 * t1730;
-        let t1733 = 9.81 * grod_vz_leg6;
-        let t1751 = t245 * t1628;
-        let t1754 = s_cylinder_leg1 * t1625;
-        let t1756 = 9.81 * t311;
-        let grod_wz_leg1 = minus_grod_vx_leg1 * t382 - minus_grod_vy_leg1 * t391;
-        let t1769 = t418 * t1649;
-        let t1772 = s_cylinder_leg2 * t1646;
-        let t1774 = 9.81 * t472;
-        let grod_wz_leg2 = minus_grod_vy_leg2 * t540 - minus_grod_vx_leg2 * t531;
-        let t1787 = t567 * t1670;
-        let t1790 = s_cylinder_leg3 * t1667;
-        let t1792 = 9.81 * t581;
-        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t274 + grod_vx_leg3 * t256;
-        let t1805 = t677 * t1691;
-        let t1808 = s_cylinder_leg4 * t1688;
-        let t1810 = 9.81 * t691;
-        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t437 + grod_vx_leg4 * t425;
-        let t1823 = t787 * t1712;
-        let t1826 = s_cylinder_leg5 * t1709;
-        let t1828 = 9.81 * t801;
-        let minus_grod_wz_leg5 = grod_vy_leg5 * t281 + minus_grod_vx_leg5 * t261;
-        let t1841 = t897 * t1733;
-        let t1844 = s_cylinder_leg6 * t1730;
-        let t1846 = 9.81 * t911;
-        let grod_wz_leg6 = grod_vy_leg6 * t441 + minus_grod_vx_leg6 * t430;
-        let t1859 = 9.81 * s_cross_leg1;
-        let t1866 = 9.81 * s_cross_leg2;
-        let t1873 = 9.81 * s_cross_leg3;
-        let t1880 = 9.81 * s_cross_leg4;
-        let t1887 = 9.81 * s_cross_leg5;
-        let t1894 = 9.81 * s_cross_leg6;
-        let t1905 = minus_grod_vx_leg1 * t323 + minus_grod_vy_leg1 * t332
-            - grod_vz_leg1 * t342;
-        let t1906 = t1905 - t1628;
-        let t1909 = t1906 - joints[2] * (t1000 + t1180);
-        let t1912 = t344 + t1625;
-        let t1914 = t247 * t1006 + minus_c_cylinder_leg1 * t1912;
-        let t1918 = gcylinder_vx_leg1 * t1909 - minus_gcross_vx_leg1 * t1914
-            + minus_grod_vx_leg1 * t1178;
-        let t1923 = gcross_vy_leg1 * t1914 - minus_gcylinder_vy_leg1 * t1909
-            + minus_grod_vy_leg1 * t1178;
-        let t1928 = minus_gcross_vz_leg1 * t1914 + minus_gcylinder_vz_leg1 * t1909
-            + grod_vz_leg1 * t1178;
-        let t1942 = minus_grod_vx_leg2 * t480 + minus_grod_vy_leg2 * t485
-            - grod_vz_leg2 * t491;
-        let t1943 = t1942 - t1649;
-        let t1946 = t1943 - joints[5] * (t1028 + t1215);
-        let t1949 = t493 + t1646;
-        let t1951 = t420 * t1034 + minus_c_cylinder_leg2 * t1949;
-        let t1955 = gcylinder_vx_leg2 * t1946 - minus_gcross_vx_leg2 * t1951
-            + minus_grod_vx_leg2 * t1213;
-        let t1960 = gcylinder_vy_leg2 * t1946 - minus_gcross_vy_leg2 * t1951
-            + minus_grod_vy_leg2 * t1213;
-        let t1965 = minus_gcross_vz_leg2 * t1951 + minus_gcylinder_vz_leg2 * t1946
-            + grod_vz_leg2 * t1213;
-        let t1976 = t602 + t1667;
-        let t1978 = t564 * t1058 + minus_c_cylinder_leg3 * t1976;
-        let t1984 = minus_grod_vy_leg3 * t595 - grod_vx_leg3 * t597
-            - grod_vz_leg3 * t600;
-        let t1985 = t1984 - t1670;
-        let t1988 = t1985 - joints[8] * (t1064 + t1249);
-        let t1992 = gcross_vx_leg3 * t1978 + gcylinder_vx_leg3 * t1988
-            - grod_vx_leg3 * t1247;
-        let t1997 = gcylinder_vy_leg3 * t1988 - minus_gcross_vy_leg3 * t1978
-            + minus_grod_vy_leg3 * t1247;
-        let t2002 = minus_gcross_vz_leg3 * t1978 + minus_gcylinder_vz_leg3 * t1988
-            + grod_vz_leg3 * t1247;
-        let t2013 = t712 + t1688;
-        let t2015 = t674 * t1086 + minus_c_cylinder_leg4 * t2013;
-        let t2021 = minus_grod_vy_leg4 * t705 - grod_vx_leg4 * t707
-            - grod_vz_leg4 * t710;
-        let t2022 = t2021 - t1691;
-        let t2025 = t2022 - joints[11] * (t1092 + t1283);
-        let t2029 = gcross_vx_leg4 * t2015 + gcylinder_vx_leg4 * t2025
-            - grod_vx_leg4 * t1281;
-        let t2034 = gcylinder_vy_leg4 * t2025 - minus_gcross_vy_leg4 * t2015
-            + minus_grod_vy_leg4 * t1281;
-        let t2039 = minus_gcross_vz_leg4 * t2015 + minus_gcylinder_vz_leg4 * t2025
-            + grod_vz_leg4 * t1281;
-        let t2050 = t822 + t1709;
-        let t2052 = t784 * t1114 + minus_c_cylinder_leg5 * t2050;
-        let t2058 = minus_grod_vx_leg5 * t817 - grod_vy_leg5 * t819
-            - grod_vz_leg5 * t815;
-        let t2059 = t2058 - t1712;
-        let t2062 = t2059 - joints[14] * (t1120 + t1317);
-        let t2066 = gcross_vx_leg5 * t2052 - minus_gcylinder_vx_leg5 * t2062
-            + minus_grod_vx_leg5 * t1315;
-        let t2071 = gcross_vy_leg5 * t2052 + gcylinder_vy_leg5 * t2062
-            - grod_vy_leg5 * t1315;
-        let t2076 = minus_gcross_vz_leg5 * t2052 + minus_gcylinder_vz_leg5 * t2062
-            + grod_vz_leg5 * t1315;
-        let t2087 = t932 + t1730;
-        let t2089 = t894 * t1142 + minus_c_cylinder_leg6 * t2087;
-        let t2095 = minus_grod_vx_leg6 * t927 - grod_vy_leg6 * t929
-            - grod_vz_leg6 * t925;
-        let t2096 = t2095 - t1733;
-        let t2099 = t2096 - joints[17] * (t1148 + t1351);
-        let t2103 = gcross_vx_leg6 * t2089 - minus_gcylinder_vx_leg6 * t2099
-            + minus_grod_vx_leg6 * t1349;
-        let t2108 = gcross_vy_leg6 * t2089 + gcylinder_vy_leg6 * t2099
-            - grod_vy_leg6 * t1349;
-        let t2113 = minus_gcross_vz_leg6 * t2089 + minus_gcylinder_vz_leg6 * t2099
-            + grod_vz_leg6 * t1349;
-        let t2124 = t1171 - t1756;
-        let t2127 = t1172 - (s_cylinder_leg1 * t1906 + minus_c_cylinder_leg1 * t2124);
-        let t2130 = t241 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t2127;
-        let t2133 = gcross_vy_leg1 * t2127 - t305 * minus_rate_dot_cross_leg1;
-        let t2136 = minus_gcross_vz_leg1 * t2127
+        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t888 - grod_vy_leg6 * t890
+            - grod_vz_leg6 * t886;
+        let t910 = 2.0 * minus_rate_rod_leg6;
+        let t912 = t885 + t895 * t910;
+        let t913 = t876 * t912;
+        let t914 = s_cylinder_leg6 * t913;
+        let t918 = minus_c_cylinder_leg6 * t897 + 0.9510565162951536 * s_cylinder_leg6;
+        let minus_gcylinder_vx_leg6 = t918 * t876;
+        let t920 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t921 = t895 * t920;
+        let t922 = minus_gcylinder_vx_leg6 * t921;
+        let gcross_vy_leg6 = t881 / t874;
+        let t928 = 0.30901699437494734 * s_cylinder_leg6 - minus_c_cylinder_leg6 * t901;
+        let gcylinder_vy_leg6 = t928 * t876;
+        let t930 = gcylinder_vy_leg6 * t921;
+        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t874;
+        let t934 = s_cross_leg6 * minus_c_cylinder_leg6;
+        let minus_gcylinder_vz_leg6 = t934 * t876;
+        let t936 = minus_gcylinder_vz_leg6 * t921;
+        let minus_gcross_wx_leg6 = t412 * minus_gcross_vz_leg6 + t410 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t412 * minus_gcylinder_vz_leg6
+            + t410 * gcylinder_vy_leg6;
+        let t945 = minus_gcylinder_wx_leg6 * t921;
+        let gcross_wy_leg6 = t410 * gcross_vx_leg6 + t423 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t423 * minus_gcylinder_vz_leg6
+            - t410 * minus_gcylinder_vx_leg6;
+        let t954 = gcylinder_wy_leg6 * t921;
+        let gcross_wz_leg6 = t423 * gcross_vy_leg6 - t412 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t423 * gcylinder_vy_leg6
+            + t412 * minus_gcylinder_vx_leg6;
+        let t963 = gcylinder_wz_leg6 * t921;
+        let t965 = t298 * t298;
+        let t966 = t299 * t299;
+        let t967 = t965 - t966;
+        let t973 = t244 * t267 - t354 * t283 - t360 * t293;
+        let rate_cylinder_leg1 = t245 * t973;
+        let t975 = rate_cylinder_leg1 * t298;
+        let t976 = t299 * t973;
+        let t978 = t346 + t976 + t976;
+        let minus_rate_dot_cross_leg1 = t978 / t296;
+        let t980 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t982 = t975 + t980 + t975;
+        let t985 = s_cylinder_leg1 * t982 + minus_c_cylinder_leg1 * t347;
+        let t1003 = t443 * t443;
+        let t1004 = t444 * t444;
+        let t1005 = t1003 - t1004;
+        let t1010 = s_cylinder_leg2 * t498 + minus_c_cylinder_leg2 * (t402 * t480);
+        let t1029 = joints[8] * t608;
+        let t1032 = s_cylinder_leg3 * t606 - minus_c_cylinder_leg3 * (t1029 / t548);
+        let t1034 = t586 * t586;
+        let t1035 = t582 * t582;
+        let t1036 = t1034 - t1035;
+        let t1055 = joints[11] * t718;
+        let t1058 = s_cylinder_leg4 * t716 - minus_c_cylinder_leg4 * (t1055 / t656);
+        let t1060 = t694 * t694;
+        let t1061 = t690 * t690;
+        let t1062 = t1060 - t1061;
+        let t1082 = t826 * (joints[14] / t766);
+        let t1084 = s_cylinder_leg5 * t824 - minus_c_cylinder_leg5 * t1082;
+        let t1086 = t805 * t805;
+        let t1087 = t801 * t801;
+        let t1088 = t1086 - t1087;
+        let t1110 = t928 * t890 - t918 * t888 - t934 * t886;
+        let rate_cylinder_leg6 = t876 * t1110;
+        let t1112 = rate_cylinder_leg6 * t895;
+        let minus_rate_dot_cross_leg6 = (t912 + 2.0 * (t1110 * t920)) / t874;
+        let t1117 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1119 = t1112 + t1117 + t1112;
+        let t1122 = s_cylinder_leg6 * t1119 + minus_c_cylinder_leg6 * t913;
+        let t1124 = t895 * t895;
+        let t1125 = t920 * t920;
+        let t1126 = t1124 - t1125;
+        let t1148 = t244 * t310 - t354 * t319 - t360 * t329;
+        let t1150 = t1148 + rate_cylinder_leg1 * t344;
+        let t1151 = t245 * t1150;
+        let rate_dot_cylinder_leg1 = t1151 - t300;
+        let t1153 = rate_dot_cylinder_leg1 - t300;
+        let t1155 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t1158 = s_cylinder_leg1 * t1153 - minus_c_cylinder_leg1 * (t1155 - t965);
+        let t1160 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1182 = t401 * t451 + t484 * t456 - t487 * t462;
+        let t1184 = t1182 + rate_cylinder_leg2 * t478;
+        let t1185 = t402 * t1184;
+        let rate_dot_cylinder_leg2 = t1185 - t445;
+        let t1187 = rate_dot_cylinder_leg2 - t445;
+        let t1189 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t1192 = s_cylinder_leg2 * t1187 - minus_c_cylinder_leg2 * (t1189 - t1003);
+        let t1194 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1216 = t562 * t553 + t568 * t551 - t572 * t556;
+        let t1218 = t1216 + rate_cylinder_leg3 * t597;
+        let t1219 = t601 * t1218;
+        let rate_dot_cylinder_leg3 = t1219 - t611;
+        let t1221 = rate_dot_cylinder_leg3 - t611;
+        let t1223 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1226 = s_cylinder_leg3 * t1221 - minus_c_cylinder_leg3 * (t1223 - t1034);
+        let t1228 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1250 = t670 * t661 + t676 * t659 - t680 * t664;
+        let t1252 = t1250 + rate_cylinder_leg4 * t707;
+        let t1253 = t711 * t1252;
+        let rate_dot_cylinder_leg4 = t1253 - t721;
+        let t1255 = rate_dot_cylinder_leg4 - t721;
+        let t1257 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1260 = s_cylinder_leg4 * t1255 - minus_c_cylinder_leg4 * (t1257 - t1060);
+        let t1262 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1284 = t781 * t774 - t787 * t771 - t791 * t769;
+        let t1286 = t1284 + rate_cylinder_leg5 * t816;
+        let t1287 = t1286 / joints[14];
+        let rate_dot_cylinder_leg5 = t1287 - t829;
+        let t1289 = rate_dot_cylinder_leg5 - t829;
+        let t1291 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1294 = s_cylinder_leg5 * t1289 - minus_c_cylinder_leg5 * (t1291 - t1086);
+        let t1296 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1318 = t928 * t882 - t918 * t879 - t934 * t877;
+        let t1320 = t1318 + rate_cylinder_leg6 * t910;
+        let t1321 = t876 * t1320;
+        let rate_dot_cylinder_leg6 = t1321 - t921;
+        let t1323 = rate_dot_cylinder_leg6 - t921;
+        let t1325 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1328 = s_cylinder_leg6 * t1323 - minus_c_cylinder_leg6 * (t1325 - t1124);
+        let t1330 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1348 = minus_c_cylinder_leg1 * t982;
+        let t1409 = minus_c_cylinder_leg6 * t1119;
+        let t1426 = s_cylinder_leg1 * (t966 - t1155) - minus_c_cylinder_leg1 * t1151;
+        let t1448 = s_cylinder_leg2 * (t1004 - t1189) - minus_c_cylinder_leg2 * t1185;
+        let t1469 = s_cylinder_leg3 * (t1035 - t1223) - minus_c_cylinder_leg3 * t1219;
+        let t1491 = s_cylinder_leg4 * (t1061 - t1257) - minus_c_cylinder_leg4 * t1253;
+        let t1513 = s_cylinder_leg5 * (t1087 - t1291) - minus_c_cylinder_leg5 * t1287;
+        let t1535 = s_cylinder_leg6 * (t1125 - t1325) - minus_c_cylinder_leg6 * t1321;
+        let t1590 = 9.81 * minus_c_cross_leg1;
+        let t1591 = minus_c_cylinder_leg1 * t1590;
+        let t1593 = 9.81 * grod_vz_leg1;
+        let t1611 = 9.81 * minus_c_cross_leg2;
+        let t1612 = minus_c_cylinder_leg2 * t1611;
+        let t1614 = 9.81 * grod_vz_leg2;
+        let t1632 = 9.81 * minus_c_cross_leg3;
+        let t1633 = minus_c_cylinder_leg3 * t1632;
+        let t1635 = 9.81 * grod_vz_leg3;
+        let t1653 = 9.81 * minus_c_cross_leg4;
+        let t1654 = minus_c_cylinder_leg4 * t1653;
+        let t1656 = 9.81 * grod_vz_leg4;
+        let t1674 = 9.81 * minus_c_cross_leg5;
+        let t1675 = minus_c_cylinder_leg5 * t1674;
+        let t1677 = 9.81 * grod_vz_leg5;
+        let t1695 = 9.81 * minus_c_cross_leg6;
+        let t1696 = minus_c_cylinder_leg6 * t1695;
+        let t1698 = 9.81 * grod_vz_leg6;
+        let t1716 = t245 * t1593;
+        let t1719 = s_cylinder_leg1 * t1590;
+        let t1721 = 9.81 * t360;
+        let grod_wz_leg1 = minus_grod_vx_leg1 * t366 - minus_grod_vy_leg1 * t375;
+        let t1734 = t402 * t1614;
+        let t1737 = s_cylinder_leg2 * t1611;
+        let t1739 = 9.81 * t487;
+        let grod_wz_leg2 = minus_grod_vy_leg2 * t524 - minus_grod_vx_leg2 * t515;
+        let t1752 = t601 * t1635;
+        let t1755 = s_cylinder_leg3 * t1632;
+        let t1757 = 9.81 * t572;
+        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t272 + grod_vx_leg3 * t254;
+        let t1770 = t711 * t1656;
+        let t1773 = s_cylinder_leg4 * t1653;
+        let t1775 = 9.81 * t680;
+        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t419 + grod_vx_leg4 * t407;
+        let t1788 = t1677 / joints[14];
+        let t1791 = s_cylinder_leg5 * t1674;
+        let t1793 = 9.81 * t791;
+        let minus_grod_wz_leg5 = grod_vy_leg5 * t279 + minus_grod_vx_leg5 * t259;
+        let t1806 = t876 * t1698;
+        let t1809 = s_cylinder_leg6 * t1695;
+        let t1811 = 9.81 * t934;
+        let grod_wz_leg6 = grod_vy_leg6 * t423 + minus_grod_vx_leg6 * t412;
+        let t1824 = 9.81 * s_cross_leg1;
+        let t1831 = 9.81 * s_cross_leg2;
+        let t1838 = 9.81 * s_cross_leg3;
+        let t1845 = 9.81 * s_cross_leg4;
+        let t1852 = 9.81 * s_cross_leg5;
+        let t1859 = 9.81 * s_cross_leg6;
+        let t1870 = minus_grod_vx_leg1 * t310 + minus_grod_vy_leg1 * t319
+            - grod_vz_leg1 * t329;
+        let t1871 = t1870 - t1593;
+        let t1874 = t1871 - joints[2] * (t966 + t1155);
+        let t1877 = t331 + t1590;
+        let t1879 = t296 * t982 + minus_c_cylinder_leg1 * t1877;
+        let t1883 = gcylinder_vx_leg1 * t1874 - minus_gcross_vx_leg1 * t1879
+            + minus_grod_vx_leg1 * t1153;
+        let t1888 = gcross_vy_leg1 * t1879 - minus_gcylinder_vy_leg1 * t1874
+            + minus_grod_vy_leg1 * t1153;
+        let t1893 = minus_gcross_vz_leg1 * t1879 + minus_gcylinder_vz_leg1 * t1874
+            + grod_vz_leg1 * t1153;
+        let t1907 = minus_grod_vx_leg2 * t451 + minus_grod_vy_leg2 * t456
+            - grod_vz_leg2 * t462;
+        let t1908 = t1907 - t1614;
+        let t1911 = t1908 - joints[5] * (t1004 + t1189);
+        let t1914 = t464 + t1611;
+        let t1916 = t441 * t498 + minus_c_cylinder_leg2 * t1914;
+        let t1920 = gcylinder_vx_leg2 * t1911 - minus_gcross_vx_leg2 * t1916
+            + minus_grod_vx_leg2 * t1187;
+        let t1925 = gcylinder_vy_leg2 * t1911 - minus_gcross_vy_leg2 * t1916
+            + minus_grod_vy_leg2 * t1187;
+        let t1930 = minus_gcross_vz_leg2 * t1916 + minus_gcylinder_vz_leg2 * t1911
+            + grod_vz_leg2 * t1187;
+        let t1941 = t558 + t1632;
+        let t1943 = t548 * t606 + minus_c_cylinder_leg3 * t1941;
+        let t1949 = minus_grod_vy_leg3 * t551 - grod_vx_leg3 * t553
+            - grod_vz_leg3 * t556;
+        let t1950 = t1949 - t1635;
+        let t1953 = t1950 - joints[8] * (t1035 + t1223);
+        let t1957 = gcross_vx_leg3 * t1943 + gcylinder_vx_leg3 * t1953
+            - grod_vx_leg3 * t1221;
+        let t1962 = gcylinder_vy_leg3 * t1953 - minus_gcross_vy_leg3 * t1943
+            + minus_grod_vy_leg3 * t1221;
+        let t1967 = minus_gcross_vz_leg3 * t1943 + minus_gcylinder_vz_leg3 * t1953
+            + grod_vz_leg3 * t1221;
+        let t1978 = t666 + t1653;
+        let t1980 = t656 * t716 + minus_c_cylinder_leg4 * t1978;
+        let t1986 = minus_grod_vy_leg4 * t659 - grod_vx_leg4 * t661
+            - grod_vz_leg4 * t664;
+        let t1987 = t1986 - t1656;
+        let t1990 = t1987 - joints[11] * (t1061 + t1257);
+        let t1994 = gcross_vx_leg4 * t1980 + gcylinder_vx_leg4 * t1990
+            - grod_vx_leg4 * t1255;
+        let t1999 = gcylinder_vy_leg4 * t1990 - minus_gcross_vy_leg4 * t1980
+            + minus_grod_vy_leg4 * t1255;
+        let t2004 = minus_gcross_vz_leg4 * t1980 + minus_gcylinder_vz_leg4 * t1990
+            + grod_vz_leg4 * t1255;
+        let t2015 = t777 + t1674;
+        let t2017 = t766 * t824 + minus_c_cylinder_leg5 * t2015;
+        let t2023 = minus_grod_vx_leg5 * t771 - grod_vy_leg5 * t774
+            - grod_vz_leg5 * t769;
+        let t2024 = t2023 - t1677;
+        let t2027 = t2024 - joints[14] * (t1087 + t1291);
+        let t2031 = gcross_vx_leg5 * t2017 - minus_gcylinder_vx_leg5 * t2027
+            + minus_grod_vx_leg5 * t1289;
+        let t2036 = gcross_vy_leg5 * t2017 + gcylinder_vy_leg5 * t2027
+            - grod_vy_leg5 * t1289;
+        let t2041 = minus_gcross_vz_leg5 * t2017 + minus_gcylinder_vz_leg5 * t2027
+            + grod_vz_leg5 * t1289;
+        let t2052 = t885 + t1695;
+        let t2054 = t874 * t1119 + minus_c_cylinder_leg6 * t2052;
+        let t2060 = minus_grod_vx_leg6 * t879 - grod_vy_leg6 * t882
+            - grod_vz_leg6 * t877;
+        let t2061 = t2060 - t1698;
+        let t2064 = t2061 - joints[17] * (t1125 + t1325);
+        let t2068 = gcross_vx_leg6 * t2054 - minus_gcylinder_vx_leg6 * t2064
+            + minus_grod_vx_leg6 * t1323;
+        let t2073 = gcross_vy_leg6 * t2054 + gcylinder_vy_leg6 * t2064
+            - grod_vy_leg6 * t1323;
+        let t2078 = minus_gcross_vz_leg6 * t2054 + minus_gcylinder_vz_leg6 * t2064
+            + grod_vz_leg6 * t1323;
+        let t2090 = t1148 - t1721;
+        let t2093 = t295 * minus_rate_cross_leg1
+            - (s_cylinder_leg1 * t1871 + minus_c_cylinder_leg1 * t2090);
+        let t2095 = t978 * minus_gcross_vz_leg1;
+        let t2097 = 0.9781476007338057 * t2095 - minus_gcross_vx_leg1 * t2093;
+        let t2100 = gcross_vy_leg1 * t2093 - 0.20791169081775931 * t2095;
+        let t2103 = minus_gcross_vz_leg1 * t2093
             + s_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2147 = t1206 - t1774;
-        let t2150 = t1207 - (s_cylinder_leg2 * t1943 + minus_c_cylinder_leg2 * t2147);
-        let t2153 = t414 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t2150;
-        let t2156 = t466 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t2150;
-        let t2159 = minus_gcross_vz_leg2 * t2150
+        let t2115 = t1182 - t1739;
+        let t2118 = t440 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t1908 + minus_c_cylinder_leg2 * t2115);
+        let t2121 = t398 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t2118;
+        let t2124 = t469 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t2118;
+        let t2127 = minus_gcross_vz_leg2 * t2118
             + s_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2171 = t1241 - t1792;
-        let t2174 = t591 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1985 + minus_c_cylinder_leg3 * t2171);
-        let t2177 = gcross_vx_leg3 * t2174 - t569 * minus_rate_dot_cross_leg3;
-        let t2180 = t574 * minus_rate_dot_cross_leg3 - minus_gcross_vy_leg3 * t2174;
-        let t2183 = minus_gcross_vz_leg3 * t2174
+        let t2139 = t1216 - t1757;
+        let t2142 = t580 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1950 + minus_c_cylinder_leg3 * t2139);
+        let t2144 = t599 * minus_gcross_vz_leg3;
+        let t2146 = gcross_vx_leg3 * t2142 - 0.30901699437494734 * t2144;
+        let t2149 = 0.9510565162951536 * t2144 - minus_gcross_vy_leg3 * t2142;
+        let t2152 = minus_gcross_vz_leg3 * t2142
             + s_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2195 = t1275 - t1810;
-        let t2198 = t701 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t2022 + minus_c_cylinder_leg4 * t2195);
-        let t2201 = gcross_vx_leg4 * t2198 - t679 * minus_rate_dot_cross_leg4;
-        let t2204 = t684 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t2198;
-        let t2207 = minus_gcross_vz_leg4 * t2198
+        let t2164 = t1250 - t1775;
+        let t2167 = t688 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1987 + minus_c_cylinder_leg4 * t2164);
+        let t2170 = gcross_vx_leg4 * t2167 - t668 * minus_rate_dot_cross_leg4;
+        let t2173 = t673 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t2167;
+        let t2176 = minus_gcross_vz_leg4 * t2167
             + s_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2219 = t1309 - t1828;
-        let t2222 = t811 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2059 + minus_c_cylinder_leg5 * t2219);
-        let t2225 = gcross_vx_leg5 * t2222 - t794 * minus_rate_dot_cross_leg5;
-        let t2228 = gcross_vy_leg5 * t2222 - t789 * minus_rate_dot_cross_leg5;
-        let t2231 = minus_gcross_vz_leg5 * t2222
+        let t2188 = t1284 - t1793;
+        let t2191 = t799 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2024 + minus_c_cylinder_leg5 * t2188);
+        let t2193 = minus_c_cross_leg5 * minus_rate_dot_cross_leg5;
+        let t2195 = gcross_vx_leg5 * t2191 - 0.6691306063588579 * t2193;
+        let t2198 = gcross_vy_leg5 * t2191 - 0.7431448254773945 * t2193;
+        let t2201 = minus_gcross_vz_leg5 * t2191
             + s_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2243 = t1343 - t1846;
-        let t2246 = t921 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2096 + minus_c_cylinder_leg6 * t2243);
-        let t2249 = gcross_vx_leg6 * t2246 - t904 * minus_rate_dot_cross_leg6;
-        let t2252 = gcross_vy_leg6 * t2246 - t899 * minus_rate_dot_cross_leg6;
-        let t2255 = minus_gcross_vz_leg6 * t2246
+        let t2213 = t1318 - t1811;
+        let t2216 = t893 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2061 + minus_c_cylinder_leg6 * t2213);
+        let t2219 = gcross_vx_leg6 * t2216 - t897 * minus_rate_dot_cross_leg6;
+        let t2222 = gcross_vy_leg6 * t2216 - t901 * minus_rate_dot_cross_leg6;
+        let t2225 = minus_gcross_vz_leg6 * t2216
             + s_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2266 = joints[2] * t1454 + t2124;
-        let t2270 = t247 * t366 - s_cylinder_leg1 * t1912;
-        let t2273 = t999 + t1180;
-        let t2275 = gcylinder_vx_leg1 * t2266 - minus_gcross_vx_leg1 * t2270
-            + minus_grod_vx_leg1 * t2273;
-        let t2280 = gcross_vy_leg1 * t2270 - minus_gcylinder_vy_leg1 * t2266
-            + minus_grod_vy_leg1 * t2273;
-        let t2285 = minus_gcross_vz_leg1 * t2270 + minus_gcylinder_vz_leg1 * t2266
-            + grod_vz_leg1 * t2273;
-        let t2296 = joints[5] * t1477 + t2147;
-        let t2300 = t420 * t515 - s_cylinder_leg2 * t1949;
-        let t2303 = t1027 + t1215;
-        let t2305 = gcylinder_vx_leg2 * t2296 - minus_gcross_vx_leg2 * t2300
-            + minus_grod_vx_leg2 * t2303;
-        let t2310 = gcylinder_vy_leg2 * t2296 - minus_gcross_vy_leg2 * t2300
-            + minus_grod_vy_leg2 * t2303;
-        let t2315 = minus_gcross_vz_leg2 * t2300 + minus_gcylinder_vz_leg2 * t2296
-            + grod_vz_leg2 * t2303;
-        let t2327 = t564 * t625 - s_cylinder_leg3 * t1976;
-        let t2330 = joints[8] * t1499 + t2171;
-        let t2333 = t1063 + t1249;
-        let t2335 = gcross_vx_leg3 * t2327 + gcylinder_vx_leg3 * t2330
-            - grod_vx_leg3 * t2333;
-        let t2340 = gcylinder_vy_leg3 * t2330 - minus_gcross_vy_leg3 * t2327
-            + minus_grod_vy_leg3 * t2333;
-        let t2345 = minus_gcross_vz_leg3 * t2327 + minus_gcylinder_vz_leg3 * t2330
-            + grod_vz_leg3 * t2333;
-        let t2357 = t674 * t735 - s_cylinder_leg4 * t2013;
-        let t2360 = joints[11] * t1522 + t2195;
-        let t2363 = t1091 + t1283;
-        let t2365 = gcross_vx_leg4 * t2357 + gcylinder_vx_leg4 * t2360
-            - grod_vx_leg4 * t2363;
-        let t2370 = gcylinder_vy_leg4 * t2360 - minus_gcross_vy_leg4 * t2357
-            + minus_grod_vy_leg4 * t2363;
-        let t2375 = minus_gcross_vz_leg4 * t2357 + minus_gcylinder_vz_leg4 * t2360
-            + grod_vz_leg4 * t2363;
-        let t2387 = t784 * t845 - s_cylinder_leg5 * t2050;
-        let t2390 = joints[14] * t1545 + t2219;
-        let t2393 = t1119 + t1317;
-        let t2395 = gcross_vx_leg5 * t2387 - minus_gcylinder_vx_leg5 * t2390
-            + minus_grod_vx_leg5 * t2393;
-        let t2400 = gcross_vy_leg5 * t2387 + gcylinder_vy_leg5 * t2390
-            - grod_vy_leg5 * t2393;
-        let t2405 = minus_gcross_vz_leg5 * t2387 + minus_gcylinder_vz_leg5 * t2390
-            + grod_vz_leg5 * t2393;
-        let t2417 = t894 * t955 - s_cylinder_leg6 * t2087;
-        let t2420 = joints[17] * t1568 + t2243;
-        let t2423 = t1147 + t1351;
-        let t2425 = gcross_vx_leg6 * t2417 - minus_gcylinder_vx_leg6 * t2420
-            + minus_grod_vx_leg6 * t2423;
-        let t2430 = gcross_vy_leg6 * t2417 + gcylinder_vy_leg6 * t2420
-            - grod_vy_leg6 * t2423;
-        let t2435 = minus_gcross_vz_leg6 * t2417 + minus_gcylinder_vz_leg6 * t2420
-            + grod_vz_leg6 * t2423;
-        let minus_rate_dot_rod_leg1 = t1905 - joints[2] * t2273;
-        let grod_wx_leg1 = grod_vz_leg1 * t382 + minus_grod_vy_leg1 * t380;
-        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t380 + grod_vz_leg1 * t391;
-        let minus_rate_dot_rod_leg2 = t1942 - joints[5] * t2303;
-        let minus_grod_wx_leg2 = grod_vz_leg2 * t531 + minus_grod_vy_leg2 * t529;
-        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t529 + grod_vz_leg2 * t540;
-        let minus_rate_dot_rod_leg3 = t1984 - joints[8] * t2333;
-        let grod_wx_leg3 = grod_vz_leg3 * t256 + minus_grod_vy_leg3 * t252;
-        let grod_wy_leg3 = grod_vx_leg3 * t252 - grod_vz_leg3 * t274;
-        let minus_rate_dot_rod_leg4 = t2021 - joints[11] * t2363;
-        let grod_wx_leg4 = grod_vz_leg4 * t425 + minus_grod_vy_leg4 * t423;
-        let grod_wy_leg4 = grod_vx_leg4 * t423 - grod_vz_leg4 * t437;
-        let minus_rate_dot_rod_leg5 = t2058 - joints[14] * t2393;
-        let grod_wx_leg5 = grod_vy_leg5 * t265 - grod_vz_leg5 * t261;
-        let grod_wy_leg5 = minus_grod_vx_leg5 * t265 + grod_vz_leg5 * t281;
-        let minus_rate_dot_rod_leg6 = t2095 - joints[17] * t2423;
-        let grod_wx_leg6 = grod_vz_leg6 * t430 - grod_vy_leg6 * t428;
-        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t428 + grod_vz_leg6 * t441;
+        let t2235 = t1150 + t2090;
+        let t2238 = s_cylinder_leg1 * (t1877 + t346);
+        let t2241 = t965 + t1155;
+        let t2243 = gcylinder_vx_leg1 * t2235 + minus_gcross_vx_leg1 * t2238
+            + minus_grod_vx_leg1 * t2241;
+        let t2248 = minus_grod_vy_leg1 * t2241
+            - (gcross_vy_leg1 * t2238 + minus_gcylinder_vy_leg1 * t2235);
+        let t2253 = minus_gcylinder_vz_leg1 * t2235 - minus_gcross_vz_leg1 * t2238
+            + grod_vz_leg1 * t2241;
+        let t2263 = t1184 + t2115;
+        let t2266 = s_cylinder_leg2 * (t1914 + t480);
+        let t2269 = t1003 + t1189;
+        let t2271 = gcylinder_vx_leg2 * t2263 + minus_gcross_vx_leg2 * t2266
+            + minus_grod_vx_leg2 * t2269;
+        let t2276 = gcylinder_vy_leg2 * t2263 + minus_gcross_vy_leg2 * t2266
+            + minus_grod_vy_leg2 * t2269;
+        let t2281 = minus_gcylinder_vz_leg2 * t2263 - minus_gcross_vz_leg2 * t2266
+            + grod_vz_leg2 * t2269;
+        let t2292 = t1029 - s_cylinder_leg3 * t1941;
+        let t2294 = t1218 + t2139;
+        let t2297 = t1034 + t1223;
+        let t2299 = gcross_vx_leg3 * t2292 + gcylinder_vx_leg3 * t2294
+            - grod_vx_leg3 * t2297;
+        let t2304 = gcylinder_vy_leg3 * t2294 - minus_gcross_vy_leg3 * t2292
+            + minus_grod_vy_leg3 * t2297;
+        let t2309 = minus_gcross_vz_leg3 * t2292 + minus_gcylinder_vz_leg3 * t2294
+            + grod_vz_leg3 * t2297;
+        let t2320 = t1055 - s_cylinder_leg4 * t1978;
+        let t2322 = t1252 + t2164;
+        let t2325 = t1060 + t1257;
+        let t2327 = gcross_vx_leg4 * t2320 + gcylinder_vx_leg4 * t2322
+            - grod_vx_leg4 * t2325;
+        let t2332 = gcylinder_vy_leg4 * t2322 - minus_gcross_vy_leg4 * t2320
+            + minus_grod_vy_leg4 * t2325;
+        let t2337 = minus_gcross_vz_leg4 * t2320 + minus_gcylinder_vz_leg4 * t2322
+            + grod_vz_leg4 * t2325;
+        let t2349 = t766 * t1082 - s_cylinder_leg5 * t2015;
+        let t2351 = t1286 + t2188;
+        let t2354 = t1086 + t1291;
+        let t2356 = gcross_vx_leg5 * t2349 - minus_gcylinder_vx_leg5 * t2351
+            + minus_grod_vx_leg5 * t2354;
+        let t2361 = gcross_vy_leg5 * t2349 + gcylinder_vy_leg5 * t2351
+            - grod_vy_leg5 * t2354;
+        let t2366 = minus_gcross_vz_leg5 * t2349 + minus_gcylinder_vz_leg5 * t2351
+            + grod_vz_leg5 * t2354;
+        let t2377 = s_cylinder_leg6 * (t2052 + t912);
+        let t2379 = t1320 + t2213;
+        let t2382 = t1124 + t1325;
+        let t2384 = minus_grod_vx_leg6 * t2382
+            - (gcross_vx_leg6 * t2377 + minus_gcylinder_vx_leg6 * t2379);
+        let t2389 = gcylinder_vy_leg6 * t2379 - gcross_vy_leg6 * t2377
+            - grod_vy_leg6 * t2382;
+        let t2394 = minus_gcylinder_vz_leg6 * t2379 - minus_gcross_vz_leg6 * t2377
+            + grod_vz_leg6 * t2382;
+        let minus_rate_dot_rod_leg1 = t1870 - joints[2] * t2241;
+        let grod_wx_leg1 = grod_vz_leg1 * t366 + minus_grod_vy_leg1 * t364;
+        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t364 + grod_vz_leg1 * t375;
+        let minus_rate_dot_rod_leg2 = t1907 - joints[5] * t2269;
+        let minus_grod_wx_leg2 = grod_vz_leg2 * t515 + minus_grod_vy_leg2 * t513;
+        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t513 + grod_vz_leg2 * t524;
+        let minus_rate_dot_rod_leg3 = t1949 - joints[8] * t2297;
+        let grod_wx_leg3 = grod_vz_leg3 * t254 + minus_grod_vy_leg3 * t250;
+        let grod_wy_leg3 = grod_vx_leg3 * t250 - grod_vz_leg3 * t272;
+        let minus_rate_dot_rod_leg4 = t1986 - joints[11] * t2325;
+        let grod_wx_leg4 = grod_vz_leg4 * t407 + minus_grod_vy_leg4 * t405;
+        let grod_wy_leg4 = grod_vx_leg4 * t405 - grod_vz_leg4 * t419;
+        let minus_rate_dot_rod_leg5 = t2023 - joints[14] * t2354;
+        let grod_wx_leg5 = grod_vy_leg5 * t263 - grod_vz_leg5 * t259;
+        let grod_wy_leg5 = minus_grod_vx_leg5 * t263 + grod_vz_leg5 * t279;
+        let minus_rate_dot_rod_leg6 = t2060 - joints[17] * t2382;
+        let grod_wx_leg6 = grod_vz_leg6 * t412 - grod_vy_leg6 * t410;
+        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t410 + grod_vz_leg6 * t423;
         Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
-                acceleration[0], t302 - minus_gcross_vx_leg1 * t367,
-                t463 - minus_gcross_vx_leg2 * t516, gcross_vx_leg3 * t626 + t630,
-                gcross_vx_leg4 * t736 + t740, gcross_vx_leg5 * t846 - t850,
-                gcross_vx_leg6 * t956 - t960,
-                gcylinder_vx_leg1 * t1001 - minus_gcross_vx_leg1 * t1009,
-                gcylinder_vx_leg2 * t1029 - minus_gcross_vx_leg2 * t1037,
-                gcross_vx_leg3 * t1061 + gcylinder_vx_leg3 * t1065,
-                gcross_vx_leg4 * t1089 + gcylinder_vx_leg4 * t1093,
-                gcross_vx_leg5 * t1117 - minus_gcylinder_vx_leg5 * t1121,
-                gcross_vx_leg6 * t1145 - minus_gcylinder_vx_leg6 * t1149,
-                -(minus_gcross_vx_leg1 * t1183 + gcylinder_vx_leg1 * t364),
-                -(minus_gcross_vx_leg2 * t1218 + gcylinder_vx_leg2 * t513),
-                gcross_vx_leg3 * t1252 - gcylinder_vx_leg3 * t623,
-                gcross_vx_leg4 * t1286 - gcylinder_vx_leg4 * t733,
-                gcross_vx_leg5 * t1320 + minus_gcylinder_vx_leg5 * t843,
-                gcross_vx_leg6 * t1354 + minus_gcylinder_vx_leg6 * t953,
-                minus_gcross_vx_leg1 * t1373 - t302, minus_gcross_vx_leg2 * t1386 - t463,
-                -(gcross_vx_leg3 * t1399 + t630), -(gcross_vx_leg4 * t1412 + t740),
-                t850 - gcross_vx_leg5 * t1425, t960 - gcross_vx_leg6 * t1438,
-                gcylinder_vx_leg1 * t1004 - minus_gcross_vx_leg1 * t1456,
-                gcylinder_vx_leg2 * t1032 - minus_gcross_vx_leg2 * t1479,
-                gcross_vx_leg3 * t1501 + gcylinder_vx_leg3 * t1056,
-                gcross_vx_leg4 * t1524 + gcylinder_vx_leg4 * t1084,
-                gcross_vx_leg5 * t1547 - minus_gcylinder_vx_leg5 * t1112,
-                gcross_vx_leg6 * t1570 - minus_gcylinder_vx_leg6 * t1140,
+                acceleration[0], t301 + minus_gcross_vx_leg1 * t348,
+                t446 - minus_gcross_vx_leg2 * t500, gcross_vx_leg3 * t608 + t612,
+                gcross_vx_leg4 * t718 + t722, gcross_vx_leg5 * t826 - t830,
+                -(gcross_vx_leg6 * t914 + t922),
+                gcylinder_vx_leg1 * t967 - minus_gcross_vx_leg1 * t985,
+                gcylinder_vx_leg2 * t1005 - minus_gcross_vx_leg2 * t1010,
+                gcross_vx_leg3 * t1032 + gcylinder_vx_leg3 * t1036,
+                gcross_vx_leg4 * t1058 + gcylinder_vx_leg4 * t1062,
+                gcross_vx_leg5 * t1084 - minus_gcylinder_vx_leg5 * t1088,
+                gcross_vx_leg6 * t1122 - minus_gcylinder_vx_leg6 * t1126,
+                -(minus_gcross_vx_leg1 * t1158 + gcylinder_vx_leg1 * t1160),
+                -(minus_gcross_vx_leg2 * t1192 + gcylinder_vx_leg2 * t1194),
+                gcross_vx_leg3 * t1226 - gcylinder_vx_leg3 * t1228,
+                gcross_vx_leg4 * t1260 - gcylinder_vx_leg4 * t1262,
+                gcross_vx_leg5 * t1294 + minus_gcylinder_vx_leg5 * t1296,
+                gcross_vx_leg6 * t1328 + minus_gcylinder_vx_leg6 * t1330,
+                minus_gcross_vx_leg1 * t1348 - t301, minus_gcross_vx_leg2 * t499 - t446,
+                -(gcross_vx_leg3 * t607 + t612), -(gcross_vx_leg4 * t717 + t722),
+                t830 - gcross_vx_leg5 * t825, t922 - gcross_vx_leg6 * t1409,
+                gcylinder_vx_leg1 * t980 - minus_gcross_vx_leg1 * t1426,
+                gcylinder_vx_leg2 * t496 - minus_gcross_vx_leg2 * t1448,
+                gcross_vx_leg3 * t1469 + gcylinder_vx_leg3 * t604,
+                gcross_vx_leg4 * t1491 + gcylinder_vx_leg4 * t714,
+                gcross_vx_leg5 * t1513 - minus_gcylinder_vx_leg5 * t822,
+                gcross_vx_leg6 * t1535 - minus_gcylinder_vx_leg6 * t1117,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t1626 + gcylinder_vx_leg1 * t1628),
-                -(minus_gcross_vx_leg2 * t1647 + gcylinder_vx_leg2 * t1649),
-                gcross_vx_leg3 * t1668 - gcylinder_vx_leg3 * t1670,
-                gcross_vx_leg4 * t1689 - gcylinder_vx_leg4 * t1691,
-                gcross_vx_leg5 * t1710 + minus_gcylinder_vx_leg5 * t1712,
-                gcross_vx_leg6 * t1731 + minus_gcylinder_vx_leg6 * t1733,
-                -(minus_grod_vx_leg1 * t1751), -(minus_grod_vx_leg2 * t1769), grod_vx_leg3 * t1787,
-                grod_vx_leg4 * t1805, -(minus_grod_vx_leg5 * t1823), -(minus_grod_vx_leg6 * t1841),
-                -(minus_gcross_vx_leg1 * t1859), -(minus_gcross_vx_leg2 * t1866),
-                gcross_vx_leg3 * t1873, gcross_vx_leg4 * t1880, gcross_vx_leg5 * t1887,
-                gcross_vx_leg6 * t1894, t1918, t1955, t1992, t2029, t2066, t2103, t2130, t2153,
-                t2177, t2201, t2225, t2249, t2275, t2305, t2335, t2365, t2395, t2425,
+                -(minus_gcross_vx_leg1 * t1591 + gcylinder_vx_leg1 * t1593),
+                -(minus_gcross_vx_leg2 * t1612 + gcylinder_vx_leg2 * t1614),
+                gcross_vx_leg3 * t1633 - gcylinder_vx_leg3 * t1635,
+                gcross_vx_leg4 * t1654 - gcylinder_vx_leg4 * t1656,
+                gcross_vx_leg5 * t1675 + minus_gcylinder_vx_leg5 * t1677,
+                gcross_vx_leg6 * t1696 + minus_gcylinder_vx_leg6 * t1698,
+                -(minus_grod_vx_leg1 * t1716), -(minus_grod_vx_leg2 * t1734), grod_vx_leg3 * t1752,
+                grod_vx_leg4 * t1770, -(minus_grod_vx_leg5 * t1788), -(minus_grod_vx_leg6 * t1806),
+                -(minus_gcross_vx_leg1 * t1824), -(minus_gcross_vx_leg2 * t1831),
+                gcross_vx_leg3 * t1838, gcross_vx_leg4 * t1845, gcross_vx_leg5 * t1852,
+                gcross_vx_leg6 * t1859, t1883, t1920, t1957, t1994, t2031, t2068, t2097, t2121,
+                t2146, t2170, t2195, t2219, t2243, t2271, t2299, t2327, t2356, t2384,
                 minus_grod_vx_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
                 -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
@@ -15536,49 +15519,50 @@ impl Hexapod {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t170, t198, t25 * t161 - t29 * t164 + t34 * t168,
-                acceleration[1], gcross_vy_leg1 * t367 - t373, t520 - minus_gcross_vy_leg2 * t516,
-                t633 - minus_gcross_vy_leg3 * t626, t743 - minus_gcross_vy_leg4 * t736,
-                gcross_vy_leg5 * t846 + t855, gcross_vy_leg6 * t956 + t965,
-                gcross_vy_leg1 * t1009 - minus_gcylinder_vy_leg1 * t1001,
-                gcylinder_vy_leg2 * t1029 - minus_gcross_vy_leg2 * t1037,
-                gcylinder_vy_leg3 * t1065 - minus_gcross_vy_leg3 * t1061,
-                gcylinder_vy_leg4 * t1093 - minus_gcross_vy_leg4 * t1089,
-                gcross_vy_leg5 * t1117 + gcylinder_vy_leg5 * t1121,
-                gcross_vy_leg6 * t1145 + gcylinder_vy_leg6 * t1149,
-                gcross_vy_leg1 * t1183 + minus_gcylinder_vy_leg1 * t364,
-                -(minus_gcross_vy_leg2 * t1218 + gcylinder_vy_leg2 * t513),
-                -(minus_gcross_vy_leg3 * t1252 + gcylinder_vy_leg3 * t623),
-                -(minus_gcross_vy_leg4 * t1286 + gcylinder_vy_leg4 * t733),
-                gcross_vy_leg5 * t1320 - gcylinder_vy_leg5 * t843,
-                gcross_vy_leg6 * t1354 - gcylinder_vy_leg6 * t953, t373 - gcross_vy_leg1 * t1373,
-                minus_gcross_vy_leg2 * t1386 - t520, minus_gcross_vy_leg3 * t1399 - t633,
-                minus_gcross_vy_leg4 * t1412 - t743, -(gcross_vy_leg5 * t1425 + t855),
-                -(gcross_vy_leg6 * t1438 + t965),
-                gcross_vy_leg1 * t1456 - minus_gcylinder_vy_leg1 * t1004,
-                gcylinder_vy_leg2 * t1032 - minus_gcross_vy_leg2 * t1479,
-                gcylinder_vy_leg3 * t1056 - minus_gcross_vy_leg3 * t1501,
-                gcylinder_vy_leg4 * t1084 - minus_gcross_vy_leg4 * t1524,
-                gcross_vy_leg5 * t1547 + gcylinder_vy_leg5 * t1112,
-                gcross_vy_leg6 * t1570 + gcylinder_vy_leg6 * t1140,
+                acceleration[1], -(gcross_vy_leg1 * t348 + t356),
+                t504 - minus_gcross_vy_leg2 * t500, t615 - minus_gcross_vy_leg3 * t608,
+                t725 - minus_gcross_vy_leg4 * t718, gcross_vy_leg5 * t826 + t835,
+                t930 - gcross_vy_leg6 * t914,
+                gcross_vy_leg1 * t985 - minus_gcylinder_vy_leg1 * t967,
+                gcylinder_vy_leg2 * t1005 - minus_gcross_vy_leg2 * t1010,
+                gcylinder_vy_leg3 * t1036 - minus_gcross_vy_leg3 * t1032,
+                gcylinder_vy_leg4 * t1062 - minus_gcross_vy_leg4 * t1058,
+                gcross_vy_leg5 * t1084 + gcylinder_vy_leg5 * t1088,
+                gcross_vy_leg6 * t1122 + gcylinder_vy_leg6 * t1126,
+                gcross_vy_leg1 * t1158 + minus_gcylinder_vy_leg1 * t1160,
+                -(minus_gcross_vy_leg2 * t1192 + gcylinder_vy_leg2 * t1194),
+                -(minus_gcross_vy_leg3 * t1226 + gcylinder_vy_leg3 * t1228),
+                -(minus_gcross_vy_leg4 * t1260 + gcylinder_vy_leg4 * t1262),
+                gcross_vy_leg5 * t1294 - gcylinder_vy_leg5 * t1296,
+                gcross_vy_leg6 * t1328 - gcylinder_vy_leg6 * t1330, t356 - gcross_vy_leg1 * t1348,
+                minus_gcross_vy_leg2 * t499 - t504, minus_gcross_vy_leg3 * t607 - t615,
+                minus_gcross_vy_leg4 * t717 - t725, -(gcross_vy_leg5 * t825 + t835),
+                -(gcross_vy_leg6 * t1409 + t930),
+                gcross_vy_leg1 * t1426 - minus_gcylinder_vy_leg1 * t980,
+                gcylinder_vy_leg2 * t496 - minus_gcross_vy_leg2 * t1448,
+                gcylinder_vy_leg3 * t604 - minus_gcross_vy_leg3 * t1469,
+                gcylinder_vy_leg4 * t714 - minus_gcross_vy_leg4 * t1491,
+                gcross_vy_leg5 * t1513 + gcylinder_vy_leg5 * t822,
+                gcross_vy_leg6 * t1535 + gcylinder_vy_leg6 * t1117,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 gcylinder_vy_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t1626 + minus_gcylinder_vy_leg1 * t1628,
-                -(minus_gcross_vy_leg2 * t1647 + gcylinder_vy_leg2 * t1649),
-                -(minus_gcross_vy_leg3 * t1668 + gcylinder_vy_leg3 * t1670),
-                -(minus_gcross_vy_leg4 * t1689 + gcylinder_vy_leg4 * t1691),
-                gcross_vy_leg5 * t1710 - gcylinder_vy_leg5 * t1712,
-                gcross_vy_leg6 * t1731 - gcylinder_vy_leg6 * t1733, -(minus_grod_vy_leg1 * t1751),
-                -(minus_grod_vy_leg2 * t1769), -(minus_grod_vy_leg3 * t1787),
-                -(minus_grod_vy_leg4 * t1805), grod_vy_leg5 * t1823, grod_vy_leg6 * t1841,
-                gcross_vy_leg1 * t1859, -(minus_gcross_vy_leg2 * t1866),
-                -(minus_gcross_vy_leg3 * t1873), -(minus_gcross_vy_leg4 * t1880),
-                gcross_vy_leg5 * t1887, gcross_vy_leg6 * t1894, t1923, t1960, t1997, t2034, t2071,
-                t2108, t2133, t2156, t2180, t2204, t2228, t2252, t2280, t2310, t2340, t2370, t2400,
-                t2430, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
+                gcross_vy_leg1 * t1591 + minus_gcylinder_vy_leg1 * t1593,
+                -(minus_gcross_vy_leg2 * t1612 + gcylinder_vy_leg2 * t1614),
+                -(minus_gcross_vy_leg3 * t1633 + gcylinder_vy_leg3 * t1635),
+                -(minus_gcross_vy_leg4 * t1654 + gcylinder_vy_leg4 * t1656),
+                gcross_vy_leg5 * t1675 - gcylinder_vy_leg5 * t1677,
+                gcross_vy_leg6 * t1696 - gcylinder_vy_leg6 * t1698, -(minus_grod_vy_leg1 * t1716),
+                -(minus_grod_vy_leg2 * t1734), -(minus_grod_vy_leg3 * t1752),
+                -(minus_grod_vy_leg4 * t1770), grod_vy_leg5 * t1788, grod_vy_leg6 * t1806,
+                gcross_vy_leg1 * t1824, -(minus_gcross_vy_leg2 * t1831),
+                -(minus_gcross_vy_leg3 * t1838), -(minus_gcross_vy_leg4 * t1845),
+                gcross_vy_leg5 * t1852, gcross_vy_leg6 * t1859, t1888, t1925, t1962, t1999, t2036,
+                t2073, t2100, t2124, t2149, t2173, t2198, t2222, t2248, t2276, t2304, t2332, t2361,
+                t2389, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_vy_leg4 * minus_rate_dot_rod_leg4,
@@ -15598,53 +15582,53 @@ impl Hexapod {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t178, t203, t25 * t171 + t29 * t173 - t34 * t176,
-                t179, -(minus_gcross_vz_leg1 * t367 + t378), -(minus_gcross_vz_leg2 * t516 + t527),
-                -(minus_gcross_vz_leg3 * t626 + t640), -(minus_gcross_vz_leg4 * t736 + t750),
-                -(minus_gcross_vz_leg5 * t846 + t860), -(minus_gcross_vz_leg6 * t956 + t970),
-                -(minus_gcross_vz_leg1 * t1009 + minus_gcylinder_vz_leg1 * t1001),
-                -(minus_gcross_vz_leg2 * t1037 + minus_gcylinder_vz_leg2 * t1029),
-                -(minus_gcross_vz_leg3 * t1061 + minus_gcylinder_vz_leg3 * t1065),
-                -(minus_gcross_vz_leg4 * t1089 + minus_gcylinder_vz_leg4 * t1093),
-                -(minus_gcross_vz_leg5 * t1117 + minus_gcylinder_vz_leg5 * t1121),
-                -(minus_gcross_vz_leg6 * t1145 + minus_gcylinder_vz_leg6 * t1149),
-                minus_gcylinder_vz_leg1 * t364 - minus_gcross_vz_leg1 * t1183,
-                minus_gcylinder_vz_leg2 * t513 - minus_gcross_vz_leg2 * t1218,
-                minus_gcylinder_vz_leg3 * t623 - minus_gcross_vz_leg3 * t1252,
-                minus_gcylinder_vz_leg4 * t733 - minus_gcross_vz_leg4 * t1286,
-                minus_gcylinder_vz_leg5 * t843 - minus_gcross_vz_leg5 * t1320,
-                minus_gcylinder_vz_leg6 * t953 - minus_gcross_vz_leg6 * t1354,
-                minus_gcross_vz_leg1 * t1373 + t378, minus_gcross_vz_leg2 * t1386 + t527,
-                minus_gcross_vz_leg3 * t1399 + t640, minus_gcross_vz_leg4 * t1412 + t750,
-                minus_gcross_vz_leg5 * t1425 + t860, minus_gcross_vz_leg6 * t1438 + t970,
-                -(minus_gcross_vz_leg1 * t1456 + minus_gcylinder_vz_leg1 * t1004),
-                -(minus_gcross_vz_leg2 * t1479 + minus_gcylinder_vz_leg2 * t1032),
-                -(minus_gcross_vz_leg3 * t1501 + minus_gcylinder_vz_leg3 * t1056),
-                -(minus_gcross_vz_leg4 * t1524 + minus_gcylinder_vz_leg4 * t1084),
-                -(minus_gcross_vz_leg5 * t1547 + minus_gcylinder_vz_leg5 * t1112),
-                -(minus_gcross_vz_leg6 * t1570 + minus_gcylinder_vz_leg6 * t1140),
+                t179, -(t362 - minus_gcross_vz_leg1 * t348), -(minus_gcross_vz_leg2 * t500 + t511),
+                -(minus_gcross_vz_leg3 * t608 + t622), -(minus_gcross_vz_leg4 * t718 + t732),
+                -(minus_gcross_vz_leg5 * t826 + t840), -(t936 - minus_gcross_vz_leg6 * t914),
+                -(minus_gcross_vz_leg1 * t985 + minus_gcylinder_vz_leg1 * t967),
+                -(minus_gcross_vz_leg2 * t1010 + minus_gcylinder_vz_leg2 * t1005),
+                -(minus_gcross_vz_leg3 * t1032 + minus_gcylinder_vz_leg3 * t1036),
+                -(minus_gcross_vz_leg4 * t1058 + minus_gcylinder_vz_leg4 * t1062),
+                -(minus_gcross_vz_leg5 * t1084 + minus_gcylinder_vz_leg5 * t1088),
+                -(minus_gcross_vz_leg6 * t1122 + minus_gcylinder_vz_leg6 * t1126),
+                minus_gcylinder_vz_leg1 * t1160 - minus_gcross_vz_leg1 * t1158,
+                minus_gcylinder_vz_leg2 * t1194 - minus_gcross_vz_leg2 * t1192,
+                minus_gcylinder_vz_leg3 * t1228 - minus_gcross_vz_leg3 * t1226,
+                minus_gcylinder_vz_leg4 * t1262 - minus_gcross_vz_leg4 * t1260,
+                minus_gcylinder_vz_leg5 * t1296 - minus_gcross_vz_leg5 * t1294,
+                minus_gcylinder_vz_leg6 * t1330 - minus_gcross_vz_leg6 * t1328,
+                minus_gcross_vz_leg1 * t1348 + t362, minus_gcross_vz_leg2 * t499 + t511,
+                minus_gcross_vz_leg3 * t607 + t622, minus_gcross_vz_leg4 * t717 + t732,
+                minus_gcross_vz_leg5 * t825 + t840, minus_gcross_vz_leg6 * t1409 + t936,
+                -(minus_gcross_vz_leg1 * t1426 + minus_gcylinder_vz_leg1 * t980),
+                -(minus_gcross_vz_leg2 * t1448 + minus_gcylinder_vz_leg2 * t496),
+                -(minus_gcross_vz_leg3 * t1469 + minus_gcylinder_vz_leg3 * t604),
+                -(minus_gcross_vz_leg4 * t1491 + minus_gcylinder_vz_leg4 * t714),
+                -(minus_gcross_vz_leg5 * t1513 + minus_gcylinder_vz_leg5 * t822),
+                -(minus_gcross_vz_leg6 * t1535 + minus_gcylinder_vz_leg6 * t1117),
                 -(minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                minus_gcylinder_vz_leg1 * t1628 - minus_gcross_vz_leg1 * t1626,
-                minus_gcylinder_vz_leg2 * t1649 - minus_gcross_vz_leg2 * t1647,
-                minus_gcylinder_vz_leg3 * t1670 - minus_gcross_vz_leg3 * t1668,
-                minus_gcylinder_vz_leg4 * t1691 - minus_gcross_vz_leg4 * t1689,
-                minus_gcylinder_vz_leg5 * t1712 - minus_gcross_vz_leg5 * t1710,
-                minus_gcylinder_vz_leg6 * t1733 - minus_gcross_vz_leg6 * t1731,
-                -(minus_gcross_vz_leg1 * t1754 + minus_gcylinder_vz_leg1 * t1756),
-                -(minus_gcross_vz_leg2 * t1772 + minus_gcylinder_vz_leg2 * t1774),
-                -(minus_gcross_vz_leg3 * t1790 + minus_gcylinder_vz_leg3 * t1792),
-                -(minus_gcross_vz_leg4 * t1808 + minus_gcylinder_vz_leg4 * t1810),
-                -(minus_gcross_vz_leg5 * t1826 + minus_gcylinder_vz_leg5 * t1828),
-                -(minus_gcross_vz_leg6 * t1844 + minus_gcylinder_vz_leg6 * t1846),
-                -(minus_gcross_vz_leg1 * t1859), -(minus_gcross_vz_leg2 * t1866),
-                -(minus_gcross_vz_leg3 * t1873), -(minus_gcross_vz_leg4 * t1880),
-                -(minus_gcross_vz_leg5 * t1887), -(minus_gcross_vz_leg6 * t1894), -t1928, -t1965,
-                -t2002, -t2039, -t2076, -t2113, -t2136, -t2159, -t2183, -t2207, -t2231, -t2255,
-                -t2285, -t2315, -t2345, -t2375, -t2405, -t2435,
+                minus_gcylinder_vz_leg1 * t1593 - minus_gcross_vz_leg1 * t1591,
+                minus_gcylinder_vz_leg2 * t1614 - minus_gcross_vz_leg2 * t1612,
+                minus_gcylinder_vz_leg3 * t1635 - minus_gcross_vz_leg3 * t1633,
+                minus_gcylinder_vz_leg4 * t1656 - minus_gcross_vz_leg4 * t1654,
+                minus_gcylinder_vz_leg5 * t1677 - minus_gcross_vz_leg5 * t1675,
+                minus_gcylinder_vz_leg6 * t1698 - minus_gcross_vz_leg6 * t1696,
+                -(minus_gcross_vz_leg1 * t1719 + minus_gcylinder_vz_leg1 * t1721),
+                -(minus_gcross_vz_leg2 * t1737 + minus_gcylinder_vz_leg2 * t1739),
+                -(minus_gcross_vz_leg3 * t1755 + minus_gcylinder_vz_leg3 * t1757),
+                -(minus_gcross_vz_leg4 * t1773 + minus_gcylinder_vz_leg4 * t1775),
+                -(minus_gcross_vz_leg5 * t1791 + minus_gcylinder_vz_leg5 * t1793),
+                -(minus_gcross_vz_leg6 * t1809 + minus_gcylinder_vz_leg6 * t1811),
+                -(minus_gcross_vz_leg1 * t1824), -(minus_gcross_vz_leg2 * t1831),
+                -(minus_gcross_vz_leg3 * t1838), -(minus_gcross_vz_leg4 * t1845),
+                -(minus_gcross_vz_leg5 * t1852), -(minus_gcross_vz_leg6 * t1859), -t1893, -t1930,
+                -t1967, -t2004, -t2041, -t2078, -t2103, -t2127, -t2152, -t2176, -t2201, -t2225,
+                -t2253, -t2281, -t2309, -t2337, -t2366, -t2394,
                 -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
@@ -15667,60 +15651,60 @@ impl Hexapod {
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
                 t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
                 t10 * t179 - t15 * acceleration[1], t41 * t179 - t44 * acceleration[1],
-                t29 * t179 - t34 * acceleration[1], 0.0, t385 - minus_gcross_wx_leg1 * t367,
-                gcross_wx_leg2 * t516 + t538, gcross_wx_leg3 * t626 - t649,
-                gcross_wx_leg4 * t736 - t759, gcross_wx_leg5 * t846 + t869,
-                -(minus_gcross_wx_leg6 * t956 + t979),
-                gcylinder_wx_leg1 * t1001 - minus_gcross_wx_leg1 * t1009,
-                gcross_wx_leg2 * t1037 + minus_minus_gcylinder_wx_leg2 * t1029,
-                gcross_wx_leg3 * t1061 - minus_gcylinder_wx_leg3 * t1065,
-                gcross_wx_leg4 * t1089 - minus_gcylinder_wx_leg4 * t1093,
-                gcross_wx_leg5 * t1117 + gcylinder_wx_leg5 * t1121,
-                -(minus_gcross_wx_leg6 * t1145 + minus_gcylinder_wx_leg6 * t1149),
-                -(minus_gcross_wx_leg1 * t1183 + gcylinder_wx_leg1 * t364),
-                gcross_wx_leg2 * t1218 - minus_minus_gcylinder_wx_leg2 * t513,
-                gcross_wx_leg3 * t1252 + minus_gcylinder_wx_leg3 * t623,
-                gcross_wx_leg4 * t1286 + minus_gcylinder_wx_leg4 * t733,
-                gcross_wx_leg5 * t1320 - gcylinder_wx_leg5 * t843,
-                minus_gcylinder_wx_leg6 * t953 - minus_gcross_wx_leg6 * t1354,
-                minus_gcross_wx_leg1 * t1373 - t385, -(t538 + gcross_wx_leg2 * t1386),
-                t649 - gcross_wx_leg3 * t1399, t759 - gcross_wx_leg4 * t1412,
-                -(gcross_wx_leg5 * t1425 + t869), minus_gcross_wx_leg6 * t1438 + t979,
-                gcylinder_wx_leg1 * t1004 - minus_gcross_wx_leg1 * t1456,
-                gcross_wx_leg2 * t1479 + minus_minus_gcylinder_wx_leg2 * t1032,
-                gcross_wx_leg3 * t1501 - minus_gcylinder_wx_leg3 * t1056,
-                gcross_wx_leg4 * t1524 - minus_gcylinder_wx_leg4 * t1084,
-                gcross_wx_leg5 * t1547 + gcylinder_wx_leg5 * t1112,
-                -(minus_gcross_wx_leg6 * t1570 + minus_gcylinder_wx_leg6 * t1140),
+                t29 * t179 - t34 * acceleration[1], 0.0, t369 + minus_gcross_wx_leg1 * t348,
+                gcross_wx_leg2 * t500 + t522, gcross_wx_leg3 * t608 - t631,
+                gcross_wx_leg4 * t718 - t741, gcross_wx_leg5 * t826 + t849,
+                -(t945 - minus_gcross_wx_leg6 * t914),
+                gcylinder_wx_leg1 * t967 - minus_gcross_wx_leg1 * t985,
+                gcross_wx_leg2 * t1010 + minus_minus_gcylinder_wx_leg2 * t1005,
+                gcross_wx_leg3 * t1032 - minus_gcylinder_wx_leg3 * t1036,
+                gcross_wx_leg4 * t1058 - minus_gcylinder_wx_leg4 * t1062,
+                gcross_wx_leg5 * t1084 + gcylinder_wx_leg5 * t1088,
+                -(minus_gcross_wx_leg6 * t1122 + minus_gcylinder_wx_leg6 * t1126),
+                -(minus_gcross_wx_leg1 * t1158 + gcylinder_wx_leg1 * t1160),
+                gcross_wx_leg2 * t1192 - minus_minus_gcylinder_wx_leg2 * t1194,
+                gcross_wx_leg3 * t1226 + minus_gcylinder_wx_leg3 * t1228,
+                gcross_wx_leg4 * t1260 + minus_gcylinder_wx_leg4 * t1262,
+                gcross_wx_leg5 * t1294 - gcylinder_wx_leg5 * t1296,
+                minus_gcylinder_wx_leg6 * t1330 - minus_gcross_wx_leg6 * t1328,
+                minus_gcross_wx_leg1 * t1348 - t369, -(t522 + gcross_wx_leg2 * t499),
+                t631 - gcross_wx_leg3 * t607, t741 - gcross_wx_leg4 * t717,
+                -(gcross_wx_leg5 * t825 + t849), minus_gcross_wx_leg6 * t1409 + t945,
+                gcylinder_wx_leg1 * t980 - minus_gcross_wx_leg1 * t1426,
+                gcross_wx_leg2 * t1448 + minus_minus_gcylinder_wx_leg2 * t496,
+                gcross_wx_leg3 * t1469 - minus_gcylinder_wx_leg3 * t604,
+                gcross_wx_leg4 * t1491 - minus_gcylinder_wx_leg4 * t714,
+                gcross_wx_leg5 * t1513 + gcylinder_wx_leg5 * t822,
+                -(minus_gcross_wx_leg6 * t1535 + minus_gcylinder_wx_leg6 * t1117),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
                 minus_minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_wx_leg1 * t1626 + gcylinder_wx_leg1 * t1628),
-                gcross_wx_leg2 * t1647 - minus_minus_gcylinder_wx_leg2 * t1649,
-                gcross_wx_leg3 * t1668 + minus_gcylinder_wx_leg3 * t1670,
-                gcross_wx_leg4 * t1689 + minus_gcylinder_wx_leg4 * t1691,
-                gcross_wx_leg5 * t1710 - gcylinder_wx_leg5 * t1712,
-                minus_gcylinder_wx_leg6 * t1733 - minus_gcross_wx_leg6 * t1731,
-                gcylinder_wx_leg1 * t1756 - minus_gcross_wx_leg1 * t1754,
-                gcross_wx_leg2 * t1772 + minus_minus_gcylinder_wx_leg2 * t1774,
-                gcross_wx_leg3 * t1790 - minus_gcylinder_wx_leg3 * t1792,
-                gcross_wx_leg4 * t1808 - minus_gcylinder_wx_leg4 * t1810,
-                gcross_wx_leg5 * t1826 + gcylinder_wx_leg5 * t1828,
-                -(minus_gcross_wx_leg6 * t1844 + minus_gcylinder_wx_leg6 * t1846),
-                -(minus_gcross_wx_leg1 * t1859), gcross_wx_leg2 * t1866, gcross_wx_leg3 * t1873,
-                gcross_wx_leg4 * t1880, gcross_wx_leg5 * t1887, -(minus_gcross_wx_leg6 * t1894),
-                -(t382 * t1928 + t380 * t1923), t531 * t1965 + t529 * t1960,
-                -(t256 * t2002 + t252 * t1997), -(t425 * t2039 + t423 * t2034),
-                t261 * t2076 + t265 * t2071, -(t430 * t2113 + t428 * t2108),
-                -(t382 * t2136 + t380 * t2133), t531 * t2159 + t529 * t2156,
-                -(t256 * t2183 + t252 * t2180), -(t425 * t2207 + t423 * t2204),
-                t261 * t2231 + t265 * t2228, -(t430 * t2255 + t428 * t2252),
-                -(t382 * t2285 + t380 * t2280), t531 * t2315 + t529 * t2310,
-                -(t256 * t2345 + t252 * t2340), -(t425 * t2375 + t423 * t2370),
-                t261 * t2405 + t265 * t2400, -(t430 * t2435 + t428 * t2430),
+                -(minus_gcross_wx_leg1 * t1591 + gcylinder_wx_leg1 * t1593),
+                gcross_wx_leg2 * t1612 - minus_minus_gcylinder_wx_leg2 * t1614,
+                gcross_wx_leg3 * t1633 + minus_gcylinder_wx_leg3 * t1635,
+                gcross_wx_leg4 * t1654 + minus_gcylinder_wx_leg4 * t1656,
+                gcross_wx_leg5 * t1675 - gcylinder_wx_leg5 * t1677,
+                minus_gcylinder_wx_leg6 * t1698 - minus_gcross_wx_leg6 * t1696,
+                gcylinder_wx_leg1 * t1721 - minus_gcross_wx_leg1 * t1719,
+                gcross_wx_leg2 * t1737 + minus_minus_gcylinder_wx_leg2 * t1739,
+                gcross_wx_leg3 * t1755 - minus_gcylinder_wx_leg3 * t1757,
+                gcross_wx_leg4 * t1773 - minus_gcylinder_wx_leg4 * t1775,
+                gcross_wx_leg5 * t1791 + gcylinder_wx_leg5 * t1793,
+                -(minus_gcross_wx_leg6 * t1809 + minus_gcylinder_wx_leg6 * t1811),
+                -(minus_gcross_wx_leg1 * t1824), gcross_wx_leg2 * t1831, gcross_wx_leg3 * t1838,
+                gcross_wx_leg4 * t1845, gcross_wx_leg5 * t1852, -(minus_gcross_wx_leg6 * t1859),
+                -(t366 * t1893 + t364 * t1888), t515 * t1930 + t513 * t1925,
+                -(t254 * t1967 + t250 * t1962), -(t407 * t2004 + t405 * t1999),
+                t259 * t2041 + t263 * t2036, -(t412 * t2078 + t410 * t2073),
+                -(t366 * t2103 + t364 * t2100), t515 * t2127 + t513 * t2124,
+                -(t254 * t2152 + t250 * t2149), -(t407 * t2176 + t405 * t2173),
+                t259 * t2201 + t263 * t2198, -(t412 * t2225 + t410 * t2222),
+                -(t366 * t2253 + t364 * t2248), t515 * t2281 + t513 * t2276,
+                -(t254 * t2309 + t250 * t2304), -(t407 * t2337 + t405 * t2332),
+                t259 * t2366 + t263 * t2361, -(t412 * t2394 + t410 * t2389),
                 -(grod_wx_leg1 * minus_rate_dot_rod_leg1),
                 minus_grod_wx_leg2 * minus_rate_dot_rod_leg2,
                 -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
@@ -15743,59 +15727,59 @@ impl Hexapod {
                 t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
                 t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
                 t15 * acceleration[0] - t5 * t179, t44 * acceleration[0] - t19 * t179,
-                t34 * acceleration[0] - t25 * t179, 0.0, gcross_wy_leg1 * t367 + t399,
-                gcross_wy_leg2 * t516 - t548, gcross_wy_leg3 * t626 + t658,
-                gcross_wy_leg4 * t736 + t768, t874 - minus_gcross_wy_leg5 * t846,
-                gcross_wy_leg6 * t956 + t988, gcross_wy_leg1 * t1009 + gcylinder_wy_leg1 * t1001,
-                gcross_wy_leg2 * t1037 - minus_gcylinder_wy_leg2 * t1029,
-                gcross_wy_leg3 * t1061 + gcylinder_wy_leg3 * t1065,
-                gcross_wy_leg4 * t1089 + gcylinder_wy_leg4 * t1093,
-                gcylinder_wy_leg5 * t1121 - minus_gcross_wy_leg5 * t1117,
-                gcross_wy_leg6 * t1145 + gcylinder_wy_leg6 * t1149,
-                gcross_wy_leg1 * t1183 - gcylinder_wy_leg1 * t364,
-                gcross_wy_leg2 * t1218 + minus_gcylinder_wy_leg2 * t513,
-                gcross_wy_leg3 * t1252 - gcylinder_wy_leg3 * t623,
-                gcross_wy_leg4 * t1286 - gcylinder_wy_leg4 * t733,
-                -(minus_gcross_wy_leg5 * t1320 + gcylinder_wy_leg5 * t843),
-                gcross_wy_leg6 * t1354 - gcylinder_wy_leg6 * t953, -(gcross_wy_leg1 * t1373 + t399),
-                -(gcross_wy_leg2 * t1386 - t548), -(gcross_wy_leg3 * t1399 + t658),
-                -(gcross_wy_leg4 * t1412 + t768), minus_gcross_wy_leg5 * t1425 - t874,
-                -(gcross_wy_leg6 * t1438 + t988),
-                gcross_wy_leg1 * t1456 + gcylinder_wy_leg1 * t1004,
-                gcross_wy_leg2 * t1479 - minus_gcylinder_wy_leg2 * t1032,
-                gcross_wy_leg3 * t1501 + gcylinder_wy_leg3 * t1056,
-                gcross_wy_leg4 * t1524 + gcylinder_wy_leg4 * t1084,
-                gcylinder_wy_leg5 * t1112 - minus_gcross_wy_leg5 * t1547,
-                gcross_wy_leg6 * t1570 + gcylinder_wy_leg6 * t1140,
+                t34 * acceleration[0] - t25 * t179, 0.0, t383 - gcross_wy_leg1 * t348,
+                gcross_wy_leg2 * t500 - t532, gcross_wy_leg3 * t608 + t640,
+                gcross_wy_leg4 * t718 + t750, t854 - minus_gcross_wy_leg5 * t826,
+                t954 - gcross_wy_leg6 * t914, gcross_wy_leg1 * t985 + gcylinder_wy_leg1 * t967,
+                gcross_wy_leg2 * t1010 - minus_gcylinder_wy_leg2 * t1005,
+                gcross_wy_leg3 * t1032 + gcylinder_wy_leg3 * t1036,
+                gcross_wy_leg4 * t1058 + gcylinder_wy_leg4 * t1062,
+                gcylinder_wy_leg5 * t1088 - minus_gcross_wy_leg5 * t1084,
+                gcross_wy_leg6 * t1122 + gcylinder_wy_leg6 * t1126,
+                gcross_wy_leg1 * t1158 - gcylinder_wy_leg1 * t1160,
+                gcross_wy_leg2 * t1192 + minus_gcylinder_wy_leg2 * t1194,
+                gcross_wy_leg3 * t1226 - gcylinder_wy_leg3 * t1228,
+                gcross_wy_leg4 * t1260 - gcylinder_wy_leg4 * t1262,
+                -(minus_gcross_wy_leg5 * t1294 + gcylinder_wy_leg5 * t1296),
+                gcross_wy_leg6 * t1328 - gcylinder_wy_leg6 * t1330,
+                -(gcross_wy_leg1 * t1348 + t383), -(gcross_wy_leg2 * t499 - t532),
+                -(gcross_wy_leg3 * t607 + t640), -(gcross_wy_leg4 * t717 + t750),
+                minus_gcross_wy_leg5 * t825 - t854, -(gcross_wy_leg6 * t1409 + t954),
+                gcross_wy_leg1 * t1426 + gcylinder_wy_leg1 * t980,
+                gcross_wy_leg2 * t1448 - minus_gcylinder_wy_leg2 * t496,
+                gcross_wy_leg3 * t1469 + gcylinder_wy_leg3 * t604,
+                gcross_wy_leg4 * t1491 + gcylinder_wy_leg4 * t714,
+                gcylinder_wy_leg5 * t822 - minus_gcross_wy_leg5 * t1513,
+                gcross_wy_leg6 * t1535 + gcylinder_wy_leg6 * t1117,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                gcross_wy_leg1 * t1626 - gcylinder_wy_leg1 * t1628,
-                gcross_wy_leg2 * t1647 + minus_gcylinder_wy_leg2 * t1649,
-                gcross_wy_leg3 * t1668 - gcylinder_wy_leg3 * t1670,
-                gcross_wy_leg4 * t1689 - gcylinder_wy_leg4 * t1691,
-                -(minus_gcross_wy_leg5 * t1710 + gcylinder_wy_leg5 * t1712),
-                gcross_wy_leg6 * t1731 - gcylinder_wy_leg6 * t1733,
-                gcross_wy_leg1 * t1754 + gcylinder_wy_leg1 * t1756,
-                gcross_wy_leg2 * t1772 - minus_gcylinder_wy_leg2 * t1774,
-                gcross_wy_leg3 * t1790 + gcylinder_wy_leg3 * t1792,
-                gcross_wy_leg4 * t1808 + gcylinder_wy_leg4 * t1810,
-                gcylinder_wy_leg5 * t1828 - minus_gcross_wy_leg5 * t1826,
-                gcross_wy_leg6 * t1844 + gcylinder_wy_leg6 * t1846, gcross_wy_leg1 * t1859,
-                gcross_wy_leg2 * t1866, gcross_wy_leg3 * t1873, gcross_wy_leg4 * t1880,
-                -(minus_gcross_wy_leg5 * t1887), gcross_wy_leg6 * t1894,
-                t380 * t1918 + t391 * t1928, -(t529 * t1955 + t540 * t1965),
-                t252 * t1992 + t274 * t2002, t423 * t2029 + t437 * t2039,
-                -(t265 * t2066 + t281 * t2076), t428 * t2103 + t441 * t2113,
-                t380 * t2130 + t391 * t2136, -(t529 * t2153 + t540 * t2159),
-                t252 * t2177 + t274 * t2183, t423 * t2201 + t437 * t2207,
-                -(t265 * t2225 + t281 * t2231), t428 * t2249 + t441 * t2255,
-                t380 * t2275 + t391 * t2285, -(t529 * t2305 + t540 * t2315),
-                t252 * t2335 + t274 * t2345, t423 * t2365 + t437 * t2375,
-                -(t265 * t2395 + t281 * t2405), t428 * t2425 + t441 * t2435,
+                gcross_wy_leg1 * t1591 - gcylinder_wy_leg1 * t1593,
+                gcross_wy_leg2 * t1612 + minus_gcylinder_wy_leg2 * t1614,
+                gcross_wy_leg3 * t1633 - gcylinder_wy_leg3 * t1635,
+                gcross_wy_leg4 * t1654 - gcylinder_wy_leg4 * t1656,
+                -(minus_gcross_wy_leg5 * t1675 + gcylinder_wy_leg5 * t1677),
+                gcross_wy_leg6 * t1696 - gcylinder_wy_leg6 * t1698,
+                gcross_wy_leg1 * t1719 + gcylinder_wy_leg1 * t1721,
+                gcross_wy_leg2 * t1737 - minus_gcylinder_wy_leg2 * t1739,
+                gcross_wy_leg3 * t1755 + gcylinder_wy_leg3 * t1757,
+                gcross_wy_leg4 * t1773 + gcylinder_wy_leg4 * t1775,
+                gcylinder_wy_leg5 * t1793 - minus_gcross_wy_leg5 * t1791,
+                gcross_wy_leg6 * t1809 + gcylinder_wy_leg6 * t1811, gcross_wy_leg1 * t1824,
+                gcross_wy_leg2 * t1831, gcross_wy_leg3 * t1838, gcross_wy_leg4 * t1845,
+                -(minus_gcross_wy_leg5 * t1852), gcross_wy_leg6 * t1859,
+                t364 * t1883 + t375 * t1893, -(t513 * t1920 + t524 * t1930),
+                t250 * t1957 + t272 * t1967, t405 * t1994 + t419 * t2004,
+                -(t263 * t2031 + t279 * t2041), t410 * t2068 + t423 * t2078,
+                t364 * t2097 + t375 * t2103, -(t513 * t2121 + t524 * t2127),
+                t250 * t2146 + t272 * t2152, t405 * t2170 + t419 * t2176,
+                -(t263 * t2195 + t279 * t2201), t410 * t2219 + t423 * t2225,
+                t364 * t2243 + t375 * t2253, -(t513 * t2271 + t524 * t2281),
+                t250 * t2299 + t272 * t2309, t405 * t2327 + t419 * t2337,
+                -(t263 * t2356 + t279 * t2366), t410 * t2384 + t423 * t2394,
                 minus_grod_wy_leg1 * minus_rate_dot_rod_leg1,
                 -(minus_minus_grod_wy_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wy_leg3 * minus_rate_dot_rod_leg3),
@@ -15821,56 +15805,56 @@ impl Hexapod {
                 t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90,
                 t5 * acceleration[1] - t10 * acceleration[0],
                 t19 * acceleration[1] - t41 * acceleration[0],
-                t25 * acceleration[1] - t29 * acceleration[0], 0.0, gcross_wz_leg1 * t367 - t408,
-                gcross_wz_leg2 * t516 + t557, t663 - minus_gcross_wz_leg3 * t626,
-                t773 - minus_gcross_wz_leg4 * t736, gcross_wz_leg5 * t846 - t887,
-                gcross_wz_leg6 * t956 + t997,
-                gcross_wz_leg1 * t1009 - minus_gcylinder_wz_leg1 * t1001,
-                gcross_wz_leg2 * t1037 + gcylinder_wz_leg2 * t1029,
-                gcylinder_wz_leg3 * t1065 - minus_gcross_wz_leg3 * t1061,
-                gcylinder_wz_leg4 * t1093 - minus_gcross_wz_leg4 * t1089,
-                gcross_wz_leg5 * t1117 - minus_gcylinder_wz_leg5 * t1121,
-                gcross_wz_leg6 * t1145 + gcylinder_wz_leg6 * t1149,
-                gcross_wz_leg1 * t1183 + minus_gcylinder_wz_leg1 * t364,
-                gcross_wz_leg2 * t1218 - gcylinder_wz_leg2 * t513,
-                -(minus_gcross_wz_leg3 * t1252 + gcylinder_wz_leg3 * t623),
-                -(minus_gcross_wz_leg4 * t1286 + gcylinder_wz_leg4 * t733),
-                gcross_wz_leg5 * t1320 + minus_gcylinder_wz_leg5 * t843,
-                gcross_wz_leg6 * t1354 - gcylinder_wz_leg6 * t953, t408 - gcross_wz_leg1 * t1373,
-                -(gcross_wz_leg2 * t1386 + t557), minus_gcross_wz_leg3 * t1399 - t663,
-                minus_gcross_wz_leg4 * t1412 - t773, t887 - gcross_wz_leg5 * t1425,
-                -(gcross_wz_leg6 * t1438 + t997),
-                gcross_wz_leg1 * t1456 - minus_gcylinder_wz_leg1 * t1004,
-                gcross_wz_leg2 * t1479 + gcylinder_wz_leg2 * t1032,
-                gcylinder_wz_leg3 * t1056 - minus_gcross_wz_leg3 * t1501,
-                gcylinder_wz_leg4 * t1084 - minus_gcross_wz_leg4 * t1524,
-                gcross_wz_leg5 * t1547 - minus_gcylinder_wz_leg5 * t1112,
-                gcross_wz_leg6 * t1570 + gcylinder_wz_leg6 * t1140,
+                t25 * acceleration[1] - t29 * acceleration[0], 0.0, -(gcross_wz_leg1 * t348 + t392),
+                gcross_wz_leg2 * t500 + t541, t645 - minus_gcross_wz_leg3 * t608,
+                t755 - minus_gcross_wz_leg4 * t718, gcross_wz_leg5 * t826 - t867,
+                t963 - gcross_wz_leg6 * t914,
+                gcross_wz_leg1 * t985 - minus_gcylinder_wz_leg1 * t967,
+                gcross_wz_leg2 * t1010 + gcylinder_wz_leg2 * t1005,
+                gcylinder_wz_leg3 * t1036 - minus_gcross_wz_leg3 * t1032,
+                gcylinder_wz_leg4 * t1062 - minus_gcross_wz_leg4 * t1058,
+                gcross_wz_leg5 * t1084 - minus_gcylinder_wz_leg5 * t1088,
+                gcross_wz_leg6 * t1122 + gcylinder_wz_leg6 * t1126,
+                gcross_wz_leg1 * t1158 + minus_gcylinder_wz_leg1 * t1160,
+                gcross_wz_leg2 * t1192 - gcylinder_wz_leg2 * t1194,
+                -(minus_gcross_wz_leg3 * t1226 + gcylinder_wz_leg3 * t1228),
+                -(minus_gcross_wz_leg4 * t1260 + gcylinder_wz_leg4 * t1262),
+                gcross_wz_leg5 * t1294 + minus_gcylinder_wz_leg5 * t1296,
+                gcross_wz_leg6 * t1328 - gcylinder_wz_leg6 * t1330, t392 - gcross_wz_leg1 * t1348,
+                -(gcross_wz_leg2 * t499 + t541), minus_gcross_wz_leg3 * t607 - t645,
+                minus_gcross_wz_leg4 * t717 - t755, t867 - gcross_wz_leg5 * t825,
+                -(gcross_wz_leg6 * t1409 + t963),
+                gcross_wz_leg1 * t1426 - minus_gcylinder_wz_leg1 * t980,
+                gcross_wz_leg2 * t1448 + gcylinder_wz_leg2 * t496,
+                gcylinder_wz_leg3 * t604 - minus_gcross_wz_leg3 * t1469,
+                gcylinder_wz_leg4 * t714 - minus_gcross_wz_leg4 * t1491,
+                gcross_wz_leg5 * t1513 - minus_gcylinder_wz_leg5 * t822,
+                gcross_wz_leg6 * t1535 + gcylinder_wz_leg6 * t1117,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
                 gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t1626 + minus_gcylinder_wz_leg1 * t1628,
-                gcross_wz_leg2 * t1647 - gcylinder_wz_leg2 * t1649,
-                -(minus_gcross_wz_leg3 * t1668 + gcylinder_wz_leg3 * t1670),
-                -(minus_gcross_wz_leg4 * t1689 + gcylinder_wz_leg4 * t1691),
-                gcross_wz_leg5 * t1710 + minus_gcylinder_wz_leg5 * t1712,
-                gcross_wz_leg6 * t1731 - gcylinder_wz_leg6 * t1733, grod_wz_leg1 * t1751,
-                grod_wz_leg2 * t1769, -(minus_grod_wz_leg3 * t1787), -(minus_grod_wz_leg4 * t1805),
-                -(minus_grod_wz_leg5 * t1823), grod_wz_leg6 * t1841, gcross_wz_leg1 * t1859,
-                gcross_wz_leg2 * t1866, -(minus_gcross_wz_leg3 * t1873),
-                -(minus_gcross_wz_leg4 * t1880), gcross_wz_leg5 * t1887, gcross_wz_leg6 * t1894,
-                t391 * t1923 - t382 * t1918, t531 * t1955 - t540 * t1960,
-                t274 * t1997 - t256 * t1992, t437 * t2034 - t425 * t2029,
-                t261 * t2066 - t281 * t2071, t441 * t2108 - t430 * t2103,
-                t391 * t2133 - t382 * t2130, t531 * t2153 - t540 * t2156,
-                t274 * t2180 - t256 * t2177, t437 * t2204 - t425 * t2201,
-                t261 * t2225 - t281 * t2228, t441 * t2252 - t430 * t2249,
-                t391 * t2280 - t382 * t2275, t531 * t2305 - t540 * t2310,
-                t274 * t2340 - t256 * t2335, t437 * t2370 - t425 * t2365,
-                t261 * t2395 - t281 * t2400, t441 * t2430 - t430 * t2425,
+                gcross_wz_leg1 * t1591 + minus_gcylinder_wz_leg1 * t1593,
+                gcross_wz_leg2 * t1612 - gcylinder_wz_leg2 * t1614,
+                -(minus_gcross_wz_leg3 * t1633 + gcylinder_wz_leg3 * t1635),
+                -(minus_gcross_wz_leg4 * t1654 + gcylinder_wz_leg4 * t1656),
+                gcross_wz_leg5 * t1675 + minus_gcylinder_wz_leg5 * t1677,
+                gcross_wz_leg6 * t1696 - gcylinder_wz_leg6 * t1698, grod_wz_leg1 * t1716,
+                grod_wz_leg2 * t1734, -(minus_grod_wz_leg3 * t1752), -(minus_grod_wz_leg4 * t1770),
+                -(minus_grod_wz_leg5 * t1788), grod_wz_leg6 * t1806, gcross_wz_leg1 * t1824,
+                gcross_wz_leg2 * t1831, -(minus_gcross_wz_leg3 * t1838),
+                -(minus_gcross_wz_leg4 * t1845), gcross_wz_leg5 * t1852, gcross_wz_leg6 * t1859,
+                t375 * t1888 - t366 * t1883, t515 * t1920 - t524 * t1925,
+                t272 * t1962 - t254 * t1957, t419 * t1999 - t407 * t1994,
+                t259 * t2031 - t279 * t2036, t423 * t2073 - t412 * t2068,
+                t375 * t2100 - t366 * t2097, t515 * t2121 - t524 * t2124,
+                t272 * t2149 - t254 * t2146, t419 * t2173 - t407 * t2170,
+                t259 * t2195 - t279 * t2198, t423 * t2222 - t412 * t2219,
+                t375 * t2248 - t366 * t2243, t515 * t2271 - t524 * t2276,
+                t272 * t2304 - t254 * t2299, t419 * t2332 - t407 * t2327,
+                t259 * t2356 - t279 * t2361, t423 * t2389 - t412 * t2384,
                 -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 minus_grod_wz_leg3 * minus_rate_dot_rod_leg3,
@@ -15902,7 +15886,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 3228 operations (1244 additions, 1960 multiplications, 24 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2661 intermediates.
+    /// 3177 operations (1225 additions, 1878 multiplications, 74 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2610 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -15959,1152 +15943,1133 @@ impl Hexapod {
         let t51 = t48 * t48 + t33 * t33;
         let t52 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(t52, 0.5513142860385972, "leg1")?;
-        let t53 = 1.0 / t52;
-        let c_cross_leg1 = t33 * t53;
-        let t57 = 0.20791169081775931 * t43 + 0.9781476007338057 * t46;
-        let t59 = t51 + t57 * t57;
-        ::overact::guard::reach(t59, "leg1")?;
-        let t60 = ::overact::math::sqrt(t59);
-        ::overact::guard::leg(t60, 0.5619721604570214, "leg1")?;
-        let t61 = 1.0 / t60;
-        let c_cylinder_leg1 = t52 * t61;
+        let c_cross_leg1 = t33 / t52;
+        let t56 = 0.20791169081775931 * t43 + 0.9781476007338057 * t46;
+        let t58 = t51 + t56 * t56;
+        ::overact::guard::reach(t58, "leg1")?;
+        let t59 = ::overact::math::sqrt(t58);
+        ::overact::guard::leg(t59, 0.5619721604570214, "leg1")?;
+        let c_cylinder_leg1 = t52 / t59;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let minus_minus_grod_vy_leg1 = t46 * t61;
+        let minus_minus_grod_vy_leg1 = t46 / t59;
         let grod_wx_leg1 = t19 * grod_vz_leg1 - t32 * minus_minus_grod_vy_leg1;
-        let t69 = t17 - t16;
-        let t70 = t10 - t14;
-        let t71 = t69 + t70;
-        let t72 = t30 - t29;
-        let t73 = t23 - t27;
-        let t74 = t72 + t73;
-        let t75 = pose[2] - t74;
-        let t76 = t39 - t38;
-        let t77 = t34 - t36;
-        let t78 = t76 + t77;
-        let t80 = pose[0] - t78 - 0.3912590402935223;
-        let t83 = pose[1] - t71 - 0.08316467632710373;
-        let t85 = 0.9781476007338057 * t80 + 0.20791169081775931 * t83;
-        let t88 = t85 * t85 + t75 * t75;
-        let t89 = ::overact::math::sqrt(t88);
-        ::overact::guard::leg(t89, 0.5513142860385972, "leg2")?;
-        let t90 = 1.0 / t89;
-        let c_cross_leg2 = t75 * t90;
-        let t94 = 0.20791169081775931 * t80 - 0.9781476007338057 * t83;
-        let t96 = t88 + t94 * t94;
-        ::overact::guard::reach(t96, "leg2")?;
-        let t97 = ::overact::math::sqrt(t96);
-        ::overact::guard::leg(t97, 0.5619721604570214, "leg2")?;
-        let t98 = 1.0 / t97;
-        let c_cylinder_leg2 = t89 * t98;
+        let grod_vx_leg1 = t43 / t59;
+        let grod_wy_leg1 = t32 * grod_vx_leg1 - t41 * grod_vz_leg1;
+        let t70 = grod_wy_leg1 * actuator_velocities[0];
+        let t71 = t30 - t29;
+        let t72 = t23 - t27;
+        let t73 = t71 + t72;
+        let t74 = t39 - t38;
+        let t75 = t34 - t36;
+        let t76 = t74 + t75;
+        let t78 = pose[0] - t76 - 0.3912590402935223;
+        let t80 = t17 - t16;
+        let t81 = t10 - t14;
+        let t82 = t80 + t81;
+        let t84 = pose[1] - t82 - 0.08316467632710373;
+        let t86 = 0.9781476007338057 * t78 + 0.20791169081775931 * t84;
+        let t88 = pose[2] - t73;
+        let t90 = t86 * t86 + t88 * t88;
+        let t93 = 0.20791169081775931 * t78 - 0.9781476007338057 * t84;
+        let t95 = t90 + t93 * t93;
+        ::overact::guard::reach(t95, "leg2")?;
+        let t96 = ::overact::math::sqrt(t95);
+        ::overact::guard::leg(t96, 0.5619721604570214, "leg2")?;
+        let grod_vx_leg2 = t78 / t96;
+        let t99 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t99, 0.5513142860385972, "leg2")?;
+        let t100 = 1.0 / t99;
+        let c_cross_leg2 = t88 * t100;
+        let c_cylinder_leg2 = t99 / t96;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let minus_minus_grod_vy_leg2 = t83 * t98;
-        let grod_wx_leg2 = t74 * minus_minus_grod_vy_leg2 - t71 * grod_vz_leg2;
-        let t107 = pose[2] + t28;
-        let t109 = pose[1] + t15 - 0.3804226065180615;
-        let t112 = pose[0] + t37 + 0.12360679774997894;
-        let t114 = 0.9510565162951536 * t109 - 0.30901699437494734 * t112;
-        let t117 = t114 * t114 + t107 * t107;
-        let t118 = ::overact::math::sqrt(t117);
-        ::overact::guard::leg(t118, 0.5513142860385972, "leg3")?;
-        let t119 = 1.0 / t118;
-        let c_cross_leg3 = t107 * t119;
-        let t123 = 0.9510565162951536 * t112 + 0.30901699437494734 * t109;
-        let t125 = t117 + t123 * t123;
-        ::overact::guard::reach(t125, "leg3")?;
-        let t126 = ::overact::math::sqrt(t125);
-        ::overact::guard::leg(t126, 0.5619721604570214, "leg3")?;
-        let t127 = 1.0 / t126;
-        let c_cylinder_leg3 = t118 * t127;
+        let grod_wy_leg2 = t76 * grod_vz_leg2 - t73 * grod_vx_leg2;
+        let t106 = grod_wy_leg2 * actuator_velocities[1];
+        let t109 = pose[0] + t37 + 0.12360679774997894;
+        let t111 = pose[1] + t15 - 0.3804226065180615;
+        let t114 = 0.9510565162951536 * t111 - 0.30901699437494734 * t109;
+        let t116 = pose[2] + t28;
+        let t118 = t114 * t114 + t116 * t116;
+        let t121 = 0.9510565162951536 * t109 + 0.30901699437494734 * t111;
+        let t123 = t118 + t121 * t121;
+        ::overact::guard::reach(t123, "leg3")?;
+        let t124 = ::overact::math::sqrt(t123);
+        ::overact::guard::leg(t124, 0.5619721604570214, "leg3")?;
+        let t125 = 1.0 / t124;
+        let minus_minus_grod_vx_leg3 = t109 * t125;
+        let t128 = ::overact::math::sqrt(t118);
+        ::overact::guard::leg(t128, 0.5513142860385972, "leg3")?;
+        let c_cross_leg3 = t116 / t128;
+        let c_cylinder_leg3 = t128 * t125;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let grod_vy_leg3 = t109 * t127;
-        let grod_wx_leg3 = t15 * grod_vz_leg3 - t28 * grod_vy_leg3;
-        let t136 = pose[2] + t72;
-        let t138 = pose[1] + t69 - 0.2972579301909578;
-        let t141 = pose[0] + t76 + 0.2676522425435432;
-        let t143 = 0.7431448254773945 * t138 - 0.6691306063588579 * t141;
-        let t146 = t143 * t143 + t136 * t136;
-        let t147 = ::overact::math::sqrt(t146);
-        ::overact::guard::leg(t147, 0.5513142860385972, "leg4")?;
-        let t148 = 1.0 / t147;
-        let c_cross_leg4 = t136 * t148;
-        let t152 = 0.7431448254773945 * t141 + 0.6691306063588579 * t138;
-        let t154 = t146 + t152 * t152;
-        ::overact::guard::reach(t154, "leg4")?;
-        let t155 = ::overact::math::sqrt(t154);
-        ::overact::guard::leg(t155, 0.5619721604570214, "leg4")?;
-        let t156 = 1.0 / t155;
-        let c_cylinder_leg4 = t147 * t156;
+        let minus_grod_wy_leg3 = t37 * grod_vz_leg3 - t28 * minus_minus_grod_vx_leg3;
+        let t134 = minus_grod_wy_leg3 * actuator_velocities[2];
+        let t137 = pose[0] + t74 + 0.2676522425435432;
+        let t139 = pose[1] + t80 - 0.2972579301909578;
+        let t142 = 0.7431448254773945 * t139 - 0.6691306063588579 * t137;
+        let t144 = pose[2] + t71;
+        let t146 = t142 * t142 + t144 * t144;
+        let t149 = 0.7431448254773945 * t137 + 0.6691306063588579 * t139;
+        let t151 = t146 + t149 * t149;
+        ::overact::guard::reach(t151, "leg4")?;
+        let t152 = ::overact::math::sqrt(t151);
+        ::overact::guard::leg(t152, 0.5619721604570214, "leg4")?;
+        let t153 = 1.0 / t152;
+        let minus_minus_grod_vx_leg4 = t137 * t153;
+        let t156 = ::overact::math::sqrt(t146);
+        ::overact::guard::leg(t156, 0.5513142860385972, "leg4")?;
+        let t157 = 1.0 / t156;
+        let c_cross_leg4 = t144 * t157;
+        let c_cylinder_leg4 = t156 / t152;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let grod_vy_leg4 = t138 * t156;
-        let grod_wx_leg4 = t69 * grod_vz_leg4 - t72 * grod_vy_leg4;
-        let t166 = pose[1] - t18 + 0.2972579301909578;
-        let t168 = pose[0] - t40 + 0.2676522425435432;
-        let t171 = 0.6691306063588579 * t168 + 0.7431448254773945 * t166;
-        let t175 = 0.6691306063588579 * t166 - 0.7431448254773945 * t168;
-        let t176 = t175 * t175;
-        let t178 = pose[2] - t31;
-        let t180 = t171 * t171 + t176 + t178 * t178;
+        let minus_grod_wy_leg4 = t74 * grod_vz_leg4 - t71 * minus_minus_grod_vx_leg4;
+        let t163 = minus_grod_wy_leg4 * actuator_velocities[3];
+        let t166 = pose[0] - t40 + 0.2676522425435432;
+        let t169 = pose[1] - t18 + 0.2972579301909578;
+        let t171 = 0.6691306063588579 * t166 + 0.7431448254773945 * t169;
+        let t173 = pose[2] - t31;
+        let t175 = t171 * t171 + t173 * t173;
+        let t178 = 0.6691306063588579 * t169 - 0.7431448254773945 * t166;
+        let t180 = t175 + t178 * t178;
         ::overact::guard::reach(t180, "leg5")?;
         let t181 = ::overact::math::sqrt(t180);
         ::overact::guard::leg(t181, 0.5619721604570214, "leg5")?;
-        let t182 = 1.0 / t181;
-        let grod_vy_leg5 = t166 * t182;
-        let t186 = ::overact::math::sqrt(t180 - t176);
-        ::overact::guard::leg(t186, 0.5513142860385972, "leg5")?;
-        let t187 = 1.0 / t186;
-        let c_cross_leg5 = t178 * t187;
-        let c_cylinder_leg5 = t186 * t182;
+        let minus_minus_grod_vx_leg5 = t166 / t181;
+        let t184 = ::overact::math::sqrt(t175);
+        ::overact::guard::leg(t184, 0.5513142860385972, "leg5")?;
+        let t185 = 1.0 / t184;
+        let c_cross_leg5 = t173 * t185;
+        let c_cylinder_leg5 = t184 / t181;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let grod_wx_leg5 = t31 * grod_vy_leg5 - t18 * grod_vz_leg5;
-        let t195 = pose[2] + t73;
-        let t197 = pose[0] + t77 + 0.12360679774997894;
-        let t200 = pose[1] + t70 + 0.3804226065180615;
-        let t202 = 0.30901699437494734 * t197 + 0.9510565162951536 * t200;
-        let t206 = 0.30901699437494734 * t200 - 0.9510565162951536 * t197;
-        let t207 = t206 * t206;
-        let t210 = t202 * t202 + t207 + t195 * t195;
-        ::overact::guard::reach(t210, "leg6")?;
-        let t212 = ::overact::math::sqrt(t210 - t207);
+        let grod_wy_leg5 = t40 * grod_vz_leg5 - t31 * minus_minus_grod_vx_leg5;
+        let t191 = grod_wy_leg5 * actuator_velocities[4];
+        let t194 = pose[0] + t75 + 0.12360679774997894;
+        let t197 = pose[1] + t81 + 0.3804226065180615;
+        let t199 = 0.30901699437494734 * t194 + 0.9510565162951536 * t197;
+        let t201 = pose[2] + t72;
+        let t203 = t199 * t199 + t201 * t201;
+        let t206 = 0.30901699437494734 * t197 - 0.9510565162951536 * t194;
+        let t208 = t203 + t206 * t206;
+        ::overact::guard::reach(t208, "leg6")?;
+        let t209 = ::overact::math::sqrt(t208);
+        ::overact::guard::leg(t209, 0.5619721604570214, "leg6")?;
+        let minus_minus_grod_vx_leg6 = t194 / t209;
+        let t212 = ::overact::math::sqrt(t203);
         ::overact::guard::leg(t212, 0.5513142860385972, "leg6")?;
         let t213 = 1.0 / t212;
-        let c_cross_leg6 = t195 * t213;
-        let t215 = ::overact::math::sqrt(t210);
-        ::overact::guard::leg(t215, 0.5619721604570214, "leg6")?;
-        let t216 = 1.0 / t215;
-        let c_cylinder_leg6 = t212 * t216;
+        let c_cross_leg6 = t201 * t213;
+        let c_cylinder_leg6 = t212 / t209;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let grod_vy_leg6 = t200 * t216;
-        let grod_wx_leg6 = t70 * grod_vz_leg6 - t73 * grod_vy_leg6;
-        let t224 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
-            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
-            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
-        let grod_vx_leg1 = t43 * t61;
-        let grod_vx_leg2 = t80 * t98;
-        let minus_minus_grod_vx_leg3 = t112 * t127;
-        let minus_minus_grod_vx_leg4 = t141 * t156;
-        let minus_minus_grod_vx_leg5 = t168 * t182;
-        let minus_minus_grod_vx_leg6 = t197 * t216;
-        let t241 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
+        let minus_grod_wy_leg6 = t75 * grod_vz_leg6 - t72 * minus_minus_grod_vx_leg6;
+        let t219 = minus_grod_wy_leg6 * actuator_velocities[5];
+        let t221 = grod_vx_leg1 * actuator_velocities[0];
+        let t222 = grod_vx_leg2 * actuator_velocities[1];
+        let t224 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
+        let t226 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
+        let t228 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
+        let t230 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
+        let t231 = t221 + t222 + t224 + t226 + t228 + t230;
+        let t242 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
+            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
+            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
+            + minus_minus_grod_vx_leg5 * grod_wy_leg5
+            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
+        let t245 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
+        let t253 = t245 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
+            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
+            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
+            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
+        ::overact::guard::platform(t253, 0.625174737048712, "actuators")?;
+        ::overact::guard::platform(t253, 0.625174737048712, "actuators")?;
+        let t254 = t242 / t253;
+        let t259 = 1.0 / t96;
+        let minus_minus_grod_vy_leg2 = t84 * t259;
+        let grod_wx_leg2 = t73 * minus_minus_grod_vy_leg2 - t82 * grod_vz_leg2;
+        let grod_vy_leg3 = t111 / t124;
+        let grod_wx_leg3 = t15 * grod_vz_leg3 - t28 * grod_vy_leg3;
+        let grod_vy_leg4 = t139 * t153;
+        let grod_wx_leg4 = t80 * grod_vz_leg4 - t71 * grod_vy_leg4;
+        let t277 = 1.0 / t181;
+        let grod_vy_leg5 = t169 * t277;
+        let grod_wx_leg5 = t31 * grod_vy_leg5 - t18 * grod_vz_leg5;
+        let t285 = 1.0 / t209;
+        let grod_vy_leg6 = t197 * t285;
+        let grod_wx_leg6 = t81 * grod_vz_leg6 - t72 * grod_vy_leg6;
+        let t290 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
             + minus_minus_grod_vx_leg3 * grod_wx_leg3
             + minus_minus_grod_vx_leg4 * grod_wx_leg4
             + minus_minus_grod_vx_leg5 * grod_wx_leg5
             + minus_minus_grod_vx_leg6 * grod_wx_leg6;
-        let t244 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
-        let t252 = t244 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
-            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
-            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
-            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
-        ::overact::guard::platform(t252, 0.625174737048712, "actuators")?;
-        ::overact::guard::platform(t252, 0.625174737048712, "actuators")?;
-        let t253 = 1.0 / t252;
-        let t254 = t241 * t253;
-        let t267 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
-            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
-            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
-        let t278 = grod_vx_leg1 * minus_minus_grod_vy_leg1
+        let grod_wz_leg3 = t37 * grod_vy_leg3 - t15 * minus_minus_grod_vx_leg3;
+        let minus_grod_wz_leg1 = t19 * grod_vx_leg1 - t41 * minus_minus_grod_vy_leg1;
+        let minus_grod_wz_leg2 = t76 * minus_minus_grod_vy_leg2 - t82 * grod_vx_leg2;
+        let grod_wz_leg4 = t74 * grod_vy_leg4 - t80 * minus_minus_grod_vx_leg4;
+        let minus_grod_wz_leg5 = t40 * grod_vy_leg5 - t18 * minus_minus_grod_vx_leg5;
+        let grod_wz_leg6 = t75 * grod_vy_leg6 - t81 * minus_minus_grod_vx_leg6;
+        let t319 = grod_vz_leg3 * grod_wz_leg3
+            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
+            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
+            + grod_vz_leg6 * grod_wz_leg6;
+        let t331 = grod_vx_leg1 * minus_minus_grod_vy_leg1
             + grod_vx_leg2 * minus_minus_grod_vy_leg2
             + minus_minus_grod_vx_leg3 * grod_vy_leg3
             + minus_minus_grod_vx_leg4 * grod_vy_leg4
             + minus_minus_grod_vx_leg5 * grod_vy_leg5
             + minus_minus_grod_vx_leg6 * grod_vy_leg6;
-        let t280 = t267 - t278 * t254;
-        let t283 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
+        let t333 = t290 + t319 + t331 * t254;
+        let t336 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
             + minus_minus_grod_vy_leg2 * minus_minus_grod_vy_leg2;
-        let t292 = t278 * t253;
-        let t294 = t283 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
-            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t278 * t292;
-        ::overact::guard::platform(t294, 0.6251747370487124, "actuators")?;
-        ::overact::guard::platform(t294, 0.6251747370487124, "actuators")?;
-        let t295 = 1.0 / t294;
-        let t296 = t280 * t295;
-        let t309 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
-            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
-            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
-        let t320 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
+        let t345 = t331 / t253;
+        let t347 = t336 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
+            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t331 * t345;
+        ::overact::guard::platform(t347, 0.6251747370487124, "actuators")?;
+        ::overact::guard::platform(t347, 0.6251747370487124, "actuators")?;
+        let t348 = t333 / t347;
+        let t349 = grod_vy_leg3 * actuator_velocities[2];
+        let t350 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
+        let t351 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
+        let t354 = grod_vy_leg4 * actuator_velocities[3];
+        let t356 = grod_vy_leg5 * actuator_velocities[4];
+        let t358 = grod_vy_leg6 * actuator_velocities[5];
+        let t361 = t349 + t350 + t351 + t354 + t356 + t358 - t231 * t345;
+        let t374 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
+            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
+            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
+        let t385 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
             + grod_vz_leg3 * minus_minus_grod_vx_leg3
             + grod_vz_leg4 * minus_minus_grod_vx_leg4
             + grod_vz_leg5 * minus_minus_grod_vx_leg5
             + grod_vz_leg6 * minus_minus_grod_vx_leg6;
-        let t333 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
+        let t398 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
             + grod_vz_leg2 * minus_minus_grod_vy_leg2 + grod_vz_leg4 * grod_vy_leg4
             + grod_vz_leg5 * grod_vy_leg5 + grod_vz_leg6 * grod_vy_leg6;
-        let t334 = t320 * t253;
-        let t336 = t333 - t278 * t334;
-        let t338 = t309 - t320 * t254 - t336 * t296;
-        let t348 = 2.0 - t244 - t283 + grod_vz_leg3 * grod_vz_leg3
+        let t399 = t385 / t253;
+        let t401 = t398 - t331 * t399;
+        let t403 = t374 - t385 * t254 + t401 * t348;
+        let t413 = 2.0 - t245 - t336 + grod_vz_leg3 * grod_vz_leg3
             + grod_vz_leg4 * grod_vz_leg4 + grod_vz_leg5 * grod_vz_leg5
             + grod_vz_leg6 * grod_vz_leg6;
-        let t351 = t336 * t295;
-        let t353 = t348 - t320 * t334 - t336 * t351;
-        ::overact::guard::platform(t353, 4.7496505259025765, "actuators")?;
-        ::overact::guard::platform(t353, 4.7496505259025765, "actuators")?;
-        let t354 = 1.0 / t353;
-        let t355 = t338 * t354;
-        let t357 = t224 - t241 * t254 - t280 * t296 - t338 * t355;
-        ::overact::guard::platform(t357, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t357, 0.06850454637148076, "actuators")?;
-        let t358 = 1.0 / t357;
-        let grod_wy_leg1 = t32 * grod_vx_leg1 - t41 * grod_vz_leg1;
-        let grod_wy_leg2 = t78 * grod_vz_leg2 - t74 * grod_vx_leg2;
-        let minus_grod_wy_leg3 = t37 * grod_vz_leg3 - t28 * minus_minus_grod_vx_leg3;
-        let minus_grod_wy_leg4 = t76 * grod_vz_leg4 - t72 * minus_minus_grod_vx_leg4;
-        let grod_wy_leg5 = t40 * grod_vz_leg5 - t31 * minus_minus_grod_vx_leg5;
-        let minus_grod_wy_leg6 = t77 * grod_vz_leg6 - t73 * minus_minus_grod_vx_leg6;
-        let t387 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
+        let t416 = t401 / t347;
+        let t418 = t413 - t385 * t399 - t401 * t416;
+        ::overact::guard::platform(t418, 4.7496505259025765, "actuators")?;
+        ::overact::guard::platform(t418, 4.7496505259025765, "actuators")?;
+        let t419 = t403 / t418;
+        let t420 = grod_vz_leg1 * actuator_velocities[0];
+        let t421 = grod_vz_leg2 * actuator_velocities[1];
+        let t423 = grod_vz_leg3 * actuator_velocities[2];
+        let t425 = grod_vz_leg4 * actuator_velocities[3];
+        let t427 = grod_vz_leg5 * actuator_velocities[4];
+        let t429 = grod_vz_leg6 * actuator_velocities[5];
+        let t434 = t420 + t421 + t423 + t425 + t427 + t429 - t231 * t399 - t416 * t361;
+        let t436 = t70 + t106 - t134 - t163 + t191 - t219 - t231 * t254 + t348 * t361
+            - t419 * t434;
+        let t447 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
+            - grod_wx_leg3 * minus_grod_wy_leg3 - grod_wx_leg4 * minus_grod_wy_leg4
+            + grod_wx_leg5 * grod_wy_leg5 - grod_wx_leg6 * minus_grod_wy_leg6;
+        let t460 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
+            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
+            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
+        let t461 = t290 / t253;
+        let t463 = t460 - t331 * t461;
+        let t476 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
+            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
+            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
+        let t479 = t463 / t347;
+        let t481 = t476 - t385 * t461 - t401 * t479;
+        let t483 = t447 - t290 * t254 + t463 * t348 - t481 * t419;
+        let t494 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
+            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
+            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
+        let t499 = t481 / t418;
+        let t501 = t494 - t290 * t461 - t463 * t479 - t481 * t499;
+        ::overact::guard::platform(t501, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t501, 0.06850454637148076, "actuators")?;
+        let t502 = t483 / t501;
+        let t503 = grod_wx_leg1 * actuator_velocities[0];
+        let t504 = grod_wx_leg2 * actuator_velocities[1];
+        let t506 = grod_wx_leg3 * actuator_velocities[2];
+        let t508 = grod_wx_leg4 * actuator_velocities[3];
+        let t510 = grod_wx_leg5 * actuator_velocities[4];
+        let t512 = grod_wx_leg6 * actuator_velocities[5];
+        let t519 = t503 + t504 + t506 + t508 + t510 + t512 - t231 * t461 - t479 * t361
+            - t499 * t434;
+        let t521 = t436 - t502 * t519;
+        let t532 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
             + minus_grod_wy_leg3 * minus_grod_wy_leg3
             + minus_grod_wy_leg4 * minus_grod_wy_leg4 + grod_wy_leg5 * grod_wy_leg5
             + minus_grod_wy_leg6 * minus_grod_wy_leg6;
-        let t398 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
-            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
-            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
-            + minus_minus_grod_vx_leg5 * grod_wy_leg5
-            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
-        let t399 = t398 * t253;
-        let grod_wz_leg3 = t37 * grod_vy_leg3 - t15 * minus_minus_grod_vx_leg3;
-        let minus_grod_wz_leg1 = t19 * grod_vx_leg1 - t41 * minus_minus_grod_vy_leg1;
-        let minus_grod_wz_leg2 = t78 * minus_minus_grod_vy_leg2 - t71 * grod_vx_leg2;
-        let grod_wz_leg4 = t76 * grod_vy_leg4 - t69 * minus_minus_grod_vx_leg4;
-        let minus_grod_wz_leg5 = t40 * grod_vy_leg5 - t18 * minus_minus_grod_vx_leg5;
-        let grod_wz_leg6 = t77 * grod_vy_leg6 - t70 * minus_minus_grod_vx_leg6;
-        let t430 = grod_vz_leg3 * grod_wz_leg3
-            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
-            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
-            + grod_vz_leg6 * grod_wz_leg6;
-        let t433 = t241 + t430 + t278 * t399;
-        let t434 = t433 * t295;
-        let t447 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
-            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
-            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
-        let t451 = t447 - t320 * t399 + t336 * t434;
-        let t452 = t451 * t354;
-        let t465 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
-            - grod_wx_leg3 * minus_grod_wy_leg3 - grod_wx_leg4 * minus_grod_wy_leg4
-            + grod_wx_leg5 * grod_wy_leg5 - grod_wx_leg6 * minus_grod_wy_leg6;
-        let t471 = t465 - t241 * t399 + t280 * t434 - t338 * t452;
-        let t472 = t471 * t358;
-        let t474 = t387 - t398 * t399 - t433 * t434 - t451 * t452 - t471 * t472;
-        ::overact::guard::platform(t474, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t474, 0.06850454637148076, "actuators")?;
-        let t475 = 1.0 / t474;
-        let t476 = grod_wy_leg1 * actuator_velocities[0];
-        let t477 = grod_wy_leg2 * actuator_velocities[1];
-        let t479 = minus_grod_wy_leg3 * actuator_velocities[2];
-        let t481 = minus_grod_wy_leg4 * actuator_velocities[3];
-        let t483 = grod_wy_leg5 * actuator_velocities[4];
-        let t485 = minus_grod_wy_leg6 * actuator_velocities[5];
-        let t487 = grod_vx_leg1 * actuator_velocities[0];
-        let t488 = grod_vx_leg2 * actuator_velocities[1];
-        let t490 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
-        let t492 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
-        let t494 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
-        let t496 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
-        let t497 = t487 + t488 + t490 + t492 + t494 + t496;
-        let t500 = grod_vy_leg3 * actuator_velocities[2];
-        let t501 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
-        let t502 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
-        let t505 = grod_vy_leg4 * actuator_velocities[3];
-        let t507 = grod_vy_leg5 * actuator_velocities[4];
-        let t509 = grod_vy_leg6 * actuator_velocities[5];
-        let t512 = t500 + t501 + t502 + t505 + t507 + t509 - t497 * t292;
-        let t515 = grod_vz_leg1 * actuator_velocities[0];
-        let t516 = grod_vz_leg2 * actuator_velocities[1];
-        let t518 = grod_vz_leg3 * actuator_velocities[2];
-        let t520 = grod_vz_leg4 * actuator_velocities[3];
-        let t522 = grod_vz_leg5 * actuator_velocities[4];
-        let t524 = grod_vz_leg6 * actuator_velocities[5];
-        let t529 = t515 + t516 + t518 + t520 + t522 + t524 - t497 * t334 - t351 * t512;
-        let t531 = t476 + t477 - t479 - t481 + t483 - t485 - t497 * t399 + t434 * t512
-            - t452 * t529;
-        let t532 = grod_wx_leg1 * actuator_velocities[0];
-        let t533 = grod_wx_leg2 * actuator_velocities[1];
-        let t535 = grod_wx_leg3 * actuator_velocities[2];
-        let t537 = grod_wx_leg4 * actuator_velocities[3];
-        let t539 = grod_wx_leg5 * actuator_velocities[4];
-        let t541 = grod_wx_leg6 * actuator_velocities[5];
-        let t548 = t532 + t533 + t535 + t537 + t539 + t541 - t497 * t254 - t296 * t512
-            - t355 * t529;
-        let t550 = t531 - t472 * t548;
-        let t562 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
+        let t540 = t532 - t242 * t254 - t333 * t348 - t403 * t419 - t483 * t502;
+        ::overact::guard::platform(t540, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t540, 0.06850454637148076, "actuators")?;
+        let t552 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
             + minus_grod_wy_leg3 * grod_wz_leg3 + minus_grod_wy_leg4 * grod_wz_leg4
             + grod_wy_leg5 * minus_grod_wz_leg5 + minus_grod_wy_leg6 * grod_wz_leg6;
-        let t573 = minus_minus_grod_vx_leg6 * grod_wz_leg6
+        let t563 = minus_minus_grod_vx_leg6 * grod_wz_leg6
             - (minus_minus_grod_vx_leg5 * minus_grod_wz_leg5
                 + grod_vx_leg1 * minus_grod_wz_leg1 + grod_vx_leg2 * minus_grod_wz_leg2
                 - minus_minus_grod_vx_leg3 * grod_wz_leg3
                 - minus_minus_grod_vx_leg4 * grod_wz_leg4);
-        let t574 = t573 * t253;
-        let t587 = grod_vy_leg3 * grod_wz_leg3
+        let t564 = t563 / t253;
+        let t577 = grod_vy_leg3 * grod_wz_leg3
             - (minus_minus_grod_vy_leg1 * minus_grod_wz_leg1
                 + minus_minus_grod_vy_leg2 * minus_grod_wz_leg2)
             + grod_vy_leg4 * grod_wz_leg4 - grod_vy_leg5 * minus_grod_wz_leg5
             + grod_vy_leg6 * grod_wz_leg6;
-        let t589 = t587 - t278 * t574;
-        let t590 = t589 * t295;
-        let t596 = t430 - t320 * t574 - t336 * t590;
-        let t597 = t596 * t354;
-        let t610 = grod_wx_leg3 * grod_wz_leg3
+        let t579 = t577 - t331 * t564;
+        let t580 = t579 / t347;
+        let t586 = t319 - t385 * t564 - t401 * t580;
+        let t587 = t586 / t418;
+        let t600 = grod_wx_leg3 * grod_wz_leg3
             - (grod_wx_leg1 * minus_grod_wz_leg1 + grod_wx_leg2 * minus_grod_wz_leg2)
             + grod_wx_leg4 * grod_wz_leg4 - grod_wx_leg5 * minus_grod_wz_leg5
             + grod_wx_leg6 * grod_wz_leg6;
-        let t616 = t610 - t241 * t574 - t280 * t590 - t338 * t597;
-        let t617 = t616 * t358;
-        let t619 = t562 + t398 * t574 - t433 * t590 + t451 * t597 + t471 * t617;
-        let t620 = t619 * t475;
-        let t631 = minus_grod_wz_leg1 * minus_grod_wz_leg1
+        let t606 = t600 - t290 * t564 - t463 * t580 - t481 * t587;
+        let t607 = t606 / t501;
+        let t609 = t552 + t242 * t564 - t333 * t580 + t403 * t587 + t483 * t607;
+        let t610 = t609 / t540;
+        let t611 = grod_wz_leg3 * actuator_velocities[2];
+        let t612 = minus_grod_wz_leg1 * actuator_velocities[0];
+        let t613 = minus_grod_wz_leg2 * actuator_velocities[1];
+        let t616 = grod_wz_leg4 * actuator_velocities[3];
+        let t618 = minus_grod_wz_leg5 * actuator_velocities[4];
+        let t620 = grod_wz_leg6 * actuator_velocities[5];
+        let t627 = t611 - (t612 + t613) + t616 - t618 + t620 - t231 * t564 - t580 * t361
+            - t587 * t434;
+        let t642 = minus_grod_wz_leg1 * minus_grod_wz_leg1
             + minus_grod_wz_leg2 * minus_grod_wz_leg2 + grod_wz_leg3 * grod_wz_leg3
             + grod_wz_leg4 * grod_wz_leg4 + minus_grod_wz_leg5 * minus_grod_wz_leg5
             + grod_wz_leg6 * grod_wz_leg6;
-        let t641 = t631 - t573 * t574 - t589 * t590 - t596 * t597 - t616 * t617
-            - t619 * t620;
-        ::overact::guard::platform(t641, 0.03606775827473607, "actuators")?;
-        ::overact::guard::platform(t641, 0.03606775827473607, "actuators")?;
-        let t642 = 1.0 / t641;
-        let t643 = grod_wz_leg3 * actuator_velocities[2];
-        let t644 = minus_grod_wz_leg1 * actuator_velocities[0];
-        let t645 = minus_grod_wz_leg2 * actuator_velocities[1];
-        let t648 = grod_wz_leg4 * actuator_velocities[3];
-        let t650 = minus_grod_wz_leg5 * actuator_velocities[4];
-        let t652 = grod_wz_leg6 * actuator_velocities[5];
-        let t659 = t643 - (t644 + t645) + t648 - t650 + t652 - t497 * t574 - t590 * t512
-            - t597 * t529;
-        let t664 = t642 * (t659 - t617 * t548 + t620 * t550);
-        let t666 = t475 * t550 + t620 * t664;
-        let t671 = t358 * t548 - t472 * t666 - t617 * t664;
-        let t672 = t666 * t671;
-        let t674 = t671 * t671;
-        let t675 = t664 * t664;
-        let t676 = t674 + t675;
-        let t677 = t9 * t676;
-        let t679 = t664 * t666;
-        let t681 = t5 * t672 - t677 + t22 * t679;
-        let t682 = 0.05176380902050415 * t681;
-        let t684 = t13 * t676;
-        let t687 = t35 * t672 - t684 + t26 * t679;
-        let t688 = 0.19318516525781368 * t687;
-        let t689 = t682 + t688;
-        let t690 = 0.19318516525781368 * t681;
-        let t691 = 0.05176380902050415 * t687;
-        let t692 = t690 + t691;
-        let t696 = t666 * t666;
-        let t697 = t696 + t675;
-        let t698 = t5 * t697;
-        let t700 = t664 * t671;
-        let t702 = t9 * t672 - t698 + t22 * t700;
-        let t703 = 0.05176380902050415 * t702;
-        let t705 = t35 * t697;
-        let t708 = t13 * t672 - t705 + t26 * t700;
-        let t709 = 0.19318516525781368 * t708;
-        let t710 = t703 + t709;
-        let t711 = 0.19318516525781368 * t702;
-        let t712 = 0.05176380902050415 * t708;
-        let t713 = t711 + t712;
-        let t719 = t5 * t671 + t9 * t666;
-        let t721 = t674 + t696;
-        let t722 = t22 * t721;
-        let t723 = t664 * t719 - t722;
-        let t724 = 0.05176380902050415 * t723;
-        let t727 = t35 * t671 + t13 * t666;
-        let t729 = t26 * t721;
-        let t730 = t664 * t727 - t729;
-        let t731 = 0.19318516525781368 * t730;
-        let t732 = t724 + t731;
-        let t733 = 0.19318516525781368 * t723;
-        let t734 = 0.05176380902050415 * t730;
-        let t735 = t733 + t734;
-        let t739 = 0.9781476007338057 * c_cross_leg1;
-        let t748 = t354 * t529 - t355 * t671 - t452 * t666 - t597 * t664;
-        let t756 = t295 * t512 - t351 * t748 - t296 * t671 + t434 * t666 - t590 * t664;
-        let t766 = t497 * t253 - t292 * t756 - t334 * t748 - t254 * t671 - t399 * t666
-            - t574 * t664;
-        let t769 = t32 * t666 - t19 * t664;
-        let t770 = t766 + t769;
-        let t772 = 0.20791169081775931 * c_cross_leg1;
-        let t775 = t41 * t664 - t32 * t671;
-        let t776 = t756 + t775;
-        let minus_s_cross_leg1 = t48 * t53;
-        let t782 = t19 * t671 - t41 * t666;
-        let t783 = t748 + t782;
-        let t785 = t739 * t770 - t772 * t776 - minus_s_cross_leg1 * t783;
-        let minus_rate_cross_leg1 = t53 * t785;
-        let t787 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t788 = t787 * t787;
-        let minus_s_cylinder_leg1 = t57 / t60;
-        let t790 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
-        let t793 = 0.9781476007338057 * t790 - 0.20791169081775931 * c_cylinder_leg1;
-        let t797 = 0.20791169081775931 * t790 + 0.9781476007338057 * c_cylinder_leg1;
-        let t800 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let rate_cylinder_leg1 = t61 * (t793 * t770 - t797 * t776 + t800 * t783);
-        let t804 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t805 = t788 + t804;
-        let t806 = t60 * t805;
-        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t692 - t689)
-            + grod_vx_leg1 * (t713 - t710) + grod_vz_leg1 * (t735 - t732) + t806;
-        let t808 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
-        let t810 = t691 - t690;
-        let t811 = t682 - t688;
-        let t814 = t712 - t711;
-        let t815 = t703 - t709;
-        let t819 = t734 - t733;
-        let t820 = t724 - t731;
-        let t824 = 0.9781476007338057 * c_cross_leg2;
-        let t827 = t72 * t666 - t69 * t664;
-        let t830 = t73 * t666 - t70 * t664;
-        let t832 = t766 - (t827 + t830);
-        let t834 = 0.20791169081775931 * c_cross_leg2;
-        let t837 = t76 * t664 - t72 * t671;
-        let t840 = t77 * t664 - t73 * t671;
-        let t842 = t756 - (t837 + t840);
-        let minus_s_cross_leg2 = t85 * t90;
-        let t848 = t69 * t671 - t76 * t666;
-        let t851 = t70 * t671 - t77 * t666;
-        let t853 = t748 - (t848 + t851);
-        let t855 = t824 * t832 + t834 * t842 - minus_s_cross_leg2 * t853;
-        let minus_rate_cross_leg2 = t90 * t855;
-        let t857 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t858 = t857 * t857;
-        let s_cylinder_leg2 = t94 / t97;
-        let t861 = minus_s_cross_leg2 * s_cylinder_leg2;
-        let t863 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t861;
-        let t867 = 0.20791169081775931 * t861 + 0.9781476007338057 * c_cylinder_leg2;
-        let t870 = c_cross_leg2 * s_cylinder_leg2;
-        let rate_cylinder_leg2 = t98 * (t863 * t832 - t867 * t842 - t870 * t853);
-        let t874 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t875 = t858 + t874;
-        let t876 = t97 * t875;
-        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t810 + t811)
-            + grod_vx_leg2 * (t814 + t815) + grod_vz_leg2 * (t819 + t820) - t876;
-        let t878 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
-        let t886 = 0.9510565162951536 * c_cross_leg3;
-        let t889 = t31 * t671 - t40 * t664;
-        let t891 = t756 - (t775 + t889);
-        let t893 = 0.30901699437494734 * c_cross_leg3;
-        let t896 = t18 * t664 - t31 * t666;
-        let t898 = t766 - (t769 + t896);
-        let minus_s_cross_leg3 = t114 * t119;
-        let t904 = t40 * t666 - t18 * t671;
-        let t906 = t748 - (t782 + t904);
-        let t908 = t886 * t891 - t893 * t898 - minus_s_cross_leg3 * t906;
-        let minus_rate_cross_leg3 = t119 * t908;
-        let t910 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t911 = t910 * t910;
-        let s_cylinder_leg3 = t123 / t126;
-        let t913 = minus_s_cross_leg3 * s_cylinder_leg3;
-        let t916 = 0.30901699437494734 * t913 + 0.9510565162951536 * c_cylinder_leg3;
-        let t920 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t913;
-        let t923 = c_cross_leg3 * s_cylinder_leg3;
-        let rate_cylinder_leg3 = t127 * (t916 * t898 + t920 * t891 - t923 * t906);
-        let t927 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t928 = t911 + t927;
-        let t929 = t126 * t928;
-        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t710
-            + grod_vy_leg3 * t689 + grod_vz_leg3 * t732 + t929;
-        let t931 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
-        let t939 = 0.7431448254773945 * c_cross_leg4;
-        let t940 = t756 + t837;
-        let t942 = 0.6691306063588579 * c_cross_leg4;
-        let t943 = t766 + t827;
-        let minus_s_cross_leg4 = t143 * t148;
-        let t947 = t748 + t848;
-        let t949 = t939 * t940 - t942 * t943 - minus_s_cross_leg4 * t947;
-        let minus_rate_cross_leg4 = t148 * t949;
-        let t951 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t952 = t951 * t951;
-        let s_cylinder_leg4 = t152 / t155;
-        let t954 = minus_s_cross_leg4 * s_cylinder_leg4;
-        let t957 = 0.6691306063588579 * t954 + 0.7431448254773945 * c_cylinder_leg4;
-        let t961 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t954;
-        let t964 = c_cross_leg4 * s_cylinder_leg4;
-        let rate_cylinder_leg4 = t156 * (t957 * t943 + t961 * t940 - t964 * t947);
-        let t968 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t969 = t952 + t968;
-        let t970 = t155 * t969;
-        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t814
-            + grod_vy_leg4 * t810 + grod_vz_leg4 * t819 + t970;
-        let t972 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
-        let s_cross_leg5 = t171 * t187;
-        let t981 = t748 + t904;
-        let t983 = 0.6691306063588579 * c_cross_leg5;
-        let t984 = t766 + t896;
-        let t986 = 0.7431448254773945 * c_cross_leg5;
-        let t987 = t756 + t889;
-        let t990 = s_cross_leg5 * t981 - (t983 * t984 + t986 * t987);
-        let minus_rate_cross_leg5 = t187 * t990;
-        let t992 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t993 = t992 * t992;
-        let s_cylinder_leg5 = t175 / t181;
-        let t996 = s_cross_leg5 * s_cylinder_leg5;
-        let t998 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t996;
-        let t1002 = 0.6691306063588579 * t996 + 0.7431448254773945 * c_cylinder_leg5;
-        let t1005 = c_cross_leg5 * s_cylinder_leg5;
-        let rate_cylinder_leg5 = t182 * (t998 * t987 - t1002 * t984 - t1005 * t981);
-        let t1009 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1010 = t993 + t1009;
-        let t1011 = t181 * t1010;
-        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t692
-            + minus_minus_grod_vx_leg5 * t713 + grod_vz_leg5 * t735 - t1011;
-        let t1013 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
-        let s_cross_leg6 = t202 * t213;
-        let t1022 = t748 + t851;
-        let t1024 = 0.30901699437494734 * c_cross_leg6;
-        let t1025 = t766 + t830;
-        let t1027 = 0.9510565162951536 * c_cross_leg6;
-        let t1028 = t756 + t840;
-        let t1031 = s_cross_leg6 * t1022 - (t1024 * t1025 + t1027 * t1028);
-        let minus_rate_cross_leg6 = t213 * t1031;
-        let t1033 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1034 = t1033 * t1033;
-        let s_cylinder_leg6 = t206 / t215;
-        let t1037 = s_cross_leg6 * s_cylinder_leg6;
-        let t1039 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1037;
-        let t1043 = 0.30901699437494734 * t1037 + 0.9510565162951536 * c_cylinder_leg6;
-        let t1046 = c_cross_leg6 * s_cylinder_leg6;
-        let rate_cylinder_leg6 = t216 * (t1039 * t1028 - t1043 * t1025 - t1046 * t1022);
-        let t1050 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1051 = t1034 + t1050;
-        let t1052 = t215 * t1051;
-        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t815
-            + grod_vy_leg6 * t811 + grod_vz_leg6 * t820 + t1052;
-        let t1054 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
-        let t1056 = grod_wx_leg1 * t808 + grod_wx_leg2 * t878 + grod_wx_leg3 * t931
-            + grod_wx_leg4 * t972 + grod_wx_leg5 * t1013 + grod_wx_leg6 * t1054;
-        let t1067 = grod_vx_leg1 * t808 + grod_vx_leg2 * t878
-            + minus_minus_grod_vx_leg3 * t931 + minus_minus_grod_vx_leg4 * t972
-            + minus_minus_grod_vx_leg5 * t1013 + minus_minus_grod_vx_leg6 * t1054;
-        let t1080 = grod_vy_leg3 * t931 + minus_minus_grod_vy_leg1 * t808
-            + minus_minus_grod_vy_leg2 * t878 + grod_vy_leg4 * t972
-            + grod_vy_leg5 * t1013 + grod_vy_leg6 * t1054;
-        let t1082 = t1080 - t292 * t1067;
-        let t1095 = grod_vz_leg1 * t808 + grod_vz_leg2 * t878 + grod_vz_leg3 * t931
-            + grod_vz_leg4 * t972 + grod_vz_leg5 * t1013 + grod_vz_leg6 * t1054;
-        let t1099 = t1095 - t334 * t1067 - t351 * t1082;
-        let t1101 = t1056 - t254 * t1067 - t296 * t1082 - t355 * t1099;
-        let t1113 = grod_wy_leg1 * t808 + grod_wy_leg2 * t878 - minus_grod_wy_leg3 * t931
-            - minus_grod_wy_leg4 * t972 + grod_wy_leg5 * t1013
-            - minus_grod_wy_leg6 * t1054;
-        let t1121 = t1113 - t399 * t1067 + t434 * t1082 - t452 * t1099 - t472 * t1101;
-        let t1133 = grod_wz_leg3 * t931
-            - (minus_grod_wz_leg1 * t808 + minus_grod_wz_leg2 * t878)
-            + grod_wz_leg4 * t972 - minus_grod_wz_leg5 * t1013 + grod_wz_leg6 * t1054;
-        let t1143 = t1133 - t574 * t1067 - t590 * t1082 - t597 * t1099 - t617 * t1101
-            + t620 * t1121;
-        let t1144 = t642 * t1143;
-        let t1146 = t475 * t1121 + t620 * t1144;
-        let t1150 = t358 * t1101 - t472 * t1146 - t617 * t1144;
-        let t1155 = t5 * t1150 + t9 * t1146 + t22 * t1144;
-        let t1158 = t719 + t22 * t664;
-        let t1159 = t20 + t21;
-        let t1161 = t24 - t25;
-        let t1164 = t12 - t1;
-        let t1166 = t1159 * t671 + t1161 * t666 + t1164 * t664;
-        let t1167 = t1158 * t1166;
-        let t1168 = t35 * t1167;
-        let t1171 = t727 + t26 * t664;
-        let t1172 = t1158 * t1171;
-        let t1173 = t1159 * t1172;
-        let t1176 = t13 * t1167;
-        let t1178 = t1161 * t1172;
-        let t1181 = t26 * t1167;
-        let t1183 = t1164 * t1172;
-        let t1189 = t35 * t1150 + t13 * t1146 + t26 * t1144;
-        let t1190 = t1189 - t1167;
-        let t1192 = t1171 * t1166;
-        let t1193 = t1155 + t1192;
-        let t1196 = t1158 * t1158;
-        let t1197 = t1171 * t1171;
-        let t1198 = t1196 - t1197;
-        let t1215 = t1159 * t1150 + t1161 * t1146 + t1164 * t1144;
-        let t1216 = t1215 + t1172;
-        let t1218 = t1166 * t1166;
-        let t1219 = t1218 - t1196;
-        let t1222 = t1155 - t1192;
-        let t1236 = t5 * t1192;
-        let t1240 = t9 * t1192;
-        let t1244 = t22 * t1192;
-        let t1247 = t1197 - t1218;
-        let t1249 = t1215 - t1172;
-        let t1252 = t1189 + t1167;
-        let t1274 = t672 - t1144;
-        let t1277 = t700 + t1146;
-        let t1279 = t9 * t1274 - t698 + t22 * t1277;
-        let t1280 = t672 + t1144;
-        let t1283 = t679 - t1150;
-        let t1285 = t5 * t1280 - t677 + t22 * t1283;
-        let t1286 = t700 - t1146;
-        let t1288 = t679 + t1150;
-        let t1291 = t5 * t1286 + t9 * t1288 - t722;
-        let t1298 = t354 * t1099 - t355 * t1150 - t452 * t1146 - t597 * t1144;
-        let t1299 = t1298 + 9.81;
-        let t1309 = t295 * t1082 - t351 * t1298 - t296 * t1150 + t434 * t1146
-            - t590 * t1144;
-        let t1322 = t253 * t1067 - t292 * t1309 - t334 * t1298 - t254 * t1150
-            - t399 * t1146 - t574 * t1144;
-        let t1332 = t13 * t1274 - t705 + t26 * t1277;
-        let t1336 = t35 * t1280 - t684 + t26 * t1283;
-        let t1340 = t35 * t1286 + t13 * t1288 - t729;
-        let minus_gcross_vx_leg1 = t53 * t739;
-        let t1375 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t1376 = rate_cylinder_leg1 * t1375;
-        let t1377 = 0.05176380902050415 * t1279;
-        let t1378 = 0.19318516525781368 * t1332;
+        let t652 = t642 - t563 * t564 - t579 * t580 - t586 * t587 - t606 * t607
+            - t609 * t610;
+        ::overact::guard::platform(t652, 0.03606775827473607, "actuators")?;
+        ::overact::guard::platform(t652, 0.03606775827473607, "actuators")?;
+        let t653 = (t627 - t607 * t519 + t610 * t521) / t652;
+        let t655 = t521 / t540 + t610 * t653;
+        let t660 = t519 / t501 - t502 * t655 - t607 * t653;
+        let t661 = t655 * t660;
+        let t663 = t660 * t660;
+        let t664 = t653 * t653;
+        let t665 = t663 + t664;
+        let t666 = t9 * t665;
+        let t668 = t653 * t655;
+        let t670 = t5 * t661 - t666 + t22 * t668;
+        let t671 = 0.05176380902050415 * t670;
+        let t673 = t13 * t665;
+        let t676 = t35 * t661 - t673 + t26 * t668;
+        let t677 = 0.19318516525781368 * t676;
+        let t678 = t671 + t677;
+        let t679 = 0.19318516525781368 * t670;
+        let t680 = 0.05176380902050415 * t676;
+        let t681 = t679 + t680;
+        let t685 = t655 * t655;
+        let t686 = t685 + t664;
+        let t687 = t5 * t686;
+        let t689 = t653 * t660;
+        let t691 = t9 * t661 - t687 + t22 * t689;
+        let t692 = 0.05176380902050415 * t691;
+        let t694 = t35 * t686;
+        let t697 = t13 * t661 - t694 + t26 * t689;
+        let t698 = 0.19318516525781368 * t697;
+        let t699 = t692 + t698;
+        let t700 = 0.19318516525781368 * t691;
+        let t701 = 0.05176380902050415 * t697;
+        let t702 = t700 + t701;
+        let t708 = t5 * t660 + t9 * t655;
+        let t710 = t663 + t685;
+        let t711 = t22 * t710;
+        let t712 = t653 * t708 - t711;
+        let t713 = 0.05176380902050415 * t712;
+        let t716 = t35 * t660 + t13 * t655;
+        let t718 = t26 * t710;
+        let t719 = t653 * t716 - t718;
+        let t720 = 0.19318516525781368 * t719;
+        let t721 = t713 + t720;
+        let t722 = 0.19318516525781368 * t712;
+        let t723 = 0.05176380902050415 * t719;
+        let t724 = t722 + t723;
+        let t728 = 0.9781476007338057 * c_cross_leg1;
+        let t737 = t434 / t418 - t499 * t660 - t419 * t655 - t587 * t653;
+        let t745 = t361 / t347 - t416 * t737 - t479 * t660 + t348 * t655 - t580 * t653;
+        let t755 = t231 / t253 - t345 * t745 - t399 * t737 - t461 * t660 - t254 * t655
+            - t564 * t653;
+        let t758 = t32 * t655 - t19 * t653;
+        let t759 = t755 + t758;
+        let t761 = 0.20791169081775931 * c_cross_leg1;
+        let t764 = t41 * t653 - t32 * t660;
+        let t765 = t745 + t764;
+        let minus_s_cross_leg1 = t48 / t52;
+        let t771 = t19 * t660 - t41 * t655;
+        let t772 = t737 + t771;
+        let t774 = t728 * t759 - t761 * t765 - minus_s_cross_leg1 * t772;
+        let minus_rate_cross_leg1 = t774 / t52;
+        let t776 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t777 = t776 * t776;
+        let t778 = 1.0 / t59;
+        let minus_s_cylinder_leg1 = t56 / t59;
+        let t780 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
+        let t783 = 0.9781476007338057 * t780 - 0.20791169081775931 * c_cylinder_leg1;
+        let t787 = 0.20791169081775931 * t780 + 0.9781476007338057 * c_cylinder_leg1;
+        let t790 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t792 = t783 * t759 - t787 * t765 + t790 * t772;
+        let rate_cylinder_leg1 = t778 * t792;
+        let t794 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t795 = t777 + t794;
+        let t796 = t59 * t795;
+        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t681 - t678)
+            + grod_vx_leg1 * (t702 - t699) + grod_vz_leg1 * (t724 - t721) + t796;
+        let t798 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
+        let t800 = t680 - t679;
+        let t801 = t671 - t677;
+        let t804 = t701 - t700;
+        let t805 = t692 - t698;
+        let t809 = t723 - t722;
+        let t810 = t713 - t720;
+        let t814 = 0.9781476007338057 * c_cross_leg2;
+        let t817 = t71 * t655 - t80 * t653;
+        let t820 = t72 * t655 - t81 * t653;
+        let t822 = t755 - (t817 + t820);
+        let t824 = 0.20791169081775931 * c_cross_leg2;
+        let t827 = t74 * t653 - t71 * t660;
+        let t830 = t75 * t653 - t72 * t660;
+        let t832 = t745 - (t827 + t830);
+        let minus_s_cross_leg2 = t86 * t100;
+        let t838 = t80 * t660 - t74 * t655;
+        let t841 = t81 * t660 - t75 * t655;
+        let t843 = t737 - (t838 + t841);
+        let t845 = t814 * t822 + t824 * t832 - minus_s_cross_leg2 * t843;
+        let minus_rate_cross_leg2 = t100 * t845;
+        let t847 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t848 = t847 * t847;
+        let s_cylinder_leg2 = t93 / t96;
+        let t851 = minus_s_cross_leg2 * s_cylinder_leg2;
+        let t853 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t851;
+        let t857 = 0.20791169081775931 * t851 + 0.9781476007338057 * c_cylinder_leg2;
+        let t860 = c_cross_leg2 * s_cylinder_leg2;
+        let t862 = t853 * t822 - t857 * t832 - t860 * t843;
+        let rate_cylinder_leg2 = t259 * t862;
+        let t864 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t865 = t848 + t864;
+        let t866 = t96 * t865;
+        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t800 + t801)
+            + grod_vx_leg2 * (t804 + t805) + grod_vz_leg2 * (t809 + t810) - t866;
+        let t868 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
+        let t876 = 0.9510565162951536 * c_cross_leg3;
+        let t879 = t31 * t660 - t40 * t653;
+        let t881 = t745 - (t764 + t879);
+        let t883 = 0.30901699437494734 * c_cross_leg3;
+        let t886 = t18 * t653 - t31 * t655;
+        let t888 = t755 - (t758 + t886);
+        let minus_s_cross_leg3 = t114 / t128;
+        let t894 = t40 * t655 - t18 * t660;
+        let t896 = t737 - (t771 + t894);
+        let t898 = t876 * t881 - t883 * t888 - minus_s_cross_leg3 * t896;
+        let minus_rate_cross_leg3 = t898 / t128;
+        let t900 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t901 = t900 * t900;
+        let s_cylinder_leg3 = t121 / t124;
+        let t903 = minus_s_cross_leg3 * s_cylinder_leg3;
+        let t906 = 0.30901699437494734 * t903 + 0.9510565162951536 * c_cylinder_leg3;
+        let t910 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t903;
+        let t913 = c_cross_leg3 * s_cylinder_leg3;
+        let t915 = t906 * t888 + t910 * t881 - t913 * t896;
+        let rate_cylinder_leg3 = t125 * t915;
+        let t917 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t918 = t901 + t917;
+        let t919 = t124 * t918;
+        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t699
+            + grod_vy_leg3 * t678 + grod_vz_leg3 * t721 + t919;
+        let t921 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
+        let t929 = 0.7431448254773945 * c_cross_leg4;
+        let t930 = t745 + t827;
+        let t932 = 0.6691306063588579 * c_cross_leg4;
+        let t933 = t755 + t817;
+        let minus_s_cross_leg4 = t142 * t157;
+        let t937 = t737 + t838;
+        let t939 = t929 * t930 - t932 * t933 - minus_s_cross_leg4 * t937;
+        let minus_rate_cross_leg4 = t157 * t939;
+        let t941 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t942 = t941 * t941;
+        let s_cylinder_leg4 = t149 / t152;
+        let t944 = minus_s_cross_leg4 * s_cylinder_leg4;
+        let t947 = 0.6691306063588579 * t944 + 0.7431448254773945 * c_cylinder_leg4;
+        let t951 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t944;
+        let t954 = c_cross_leg4 * s_cylinder_leg4;
+        let t956 = t947 * t933 + t951 * t930 - t954 * t937;
+        let rate_cylinder_leg4 = t153 * t956;
+        let t958 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t959 = t942 + t958;
+        let t960 = t152 * t959;
+        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t804
+            + grod_vy_leg4 * t800 + grod_vz_leg4 * t809 + t960;
+        let t962 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
+        let s_cross_leg5 = t171 * t185;
+        let t971 = t737 + t894;
+        let t973 = 0.6691306063588579 * c_cross_leg5;
+        let t974 = t755 + t886;
+        let t976 = 0.7431448254773945 * c_cross_leg5;
+        let t977 = t745 + t879;
+        let t980 = s_cross_leg5 * t971 - (t973 * t974 + t976 * t977);
+        let minus_rate_cross_leg5 = t185 * t980;
+        let t982 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t983 = t982 * t982;
+        let s_cylinder_leg5 = t178 / t181;
+        let t986 = s_cross_leg5 * s_cylinder_leg5;
+        let t988 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t986;
+        let t992 = 0.6691306063588579 * t986 + 0.7431448254773945 * c_cylinder_leg5;
+        let t995 = c_cross_leg5 * s_cylinder_leg5;
+        let t997 = t988 * t977 - t992 * t974 - t995 * t971;
+        let rate_cylinder_leg5 = t277 * t997;
+        let t999 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1000 = t983 + t999;
+        let t1001 = t181 * t1000;
+        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t681
+            + minus_minus_grod_vx_leg5 * t702 + grod_vz_leg5 * t724 - t1001;
+        let t1003 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
+        let s_cross_leg6 = t199 * t213;
+        let t1012 = t737 + t841;
+        let t1014 = 0.30901699437494734 * c_cross_leg6;
+        let t1015 = t755 + t820;
+        let t1017 = 0.9510565162951536 * c_cross_leg6;
+        let t1018 = t745 + t830;
+        let t1021 = s_cross_leg6 * t1012 - (t1014 * t1015 + t1017 * t1018);
+        let minus_rate_cross_leg6 = t213 * t1021;
+        let t1023 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1024 = t1023 * t1023;
+        let s_cylinder_leg6 = t206 / t209;
+        let t1027 = s_cross_leg6 * s_cylinder_leg6;
+        let t1029 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1027;
+        let t1033 = 0.30901699437494734 * t1027 + 0.9510565162951536 * c_cylinder_leg6;
+        let t1036 = c_cross_leg6 * s_cylinder_leg6;
+        let t1038 = t1029 * t1018 - t1033 * t1015 - t1036 * t1012;
+        let rate_cylinder_leg6 = t285 * t1038;
+        let t1040 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1041 = t1024 + t1040;
+        let t1042 = t209 * t1041;
+        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t805
+            + grod_vy_leg6 * t801 + grod_vz_leg6 * t810 + t1042;
+        let t1044 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
+        let t1046 = grod_wx_leg1 * t798 + grod_wx_leg2 * t868 + grod_wx_leg3 * t921
+            + grod_wx_leg4 * t962 + grod_wx_leg5 * t1003 + grod_wx_leg6 * t1044;
+        let t1057 = grod_vx_leg1 * t798 + grod_vx_leg2 * t868
+            + minus_minus_grod_vx_leg3 * t921 + minus_minus_grod_vx_leg4 * t962
+            + minus_minus_grod_vx_leg5 * t1003 + minus_minus_grod_vx_leg6 * t1044;
+        let t1070 = grod_vy_leg3 * t921 + minus_minus_grod_vy_leg1 * t798
+            + minus_minus_grod_vy_leg2 * t868 + grod_vy_leg4 * t962
+            + grod_vy_leg5 * t1003 + grod_vy_leg6 * t1044;
+        let t1072 = t1070 - t345 * t1057;
+        let t1085 = grod_vz_leg1 * t798 + grod_vz_leg2 * t868 + grod_vz_leg3 * t921
+            + grod_vz_leg4 * t962 + grod_vz_leg5 * t1003 + grod_vz_leg6 * t1044;
+        let t1089 = t1085 - t399 * t1057 - t416 * t1072;
+        let t1091 = t1046 - t461 * t1057 - t479 * t1072 - t499 * t1089;
+        let t1103 = grod_wy_leg1 * t798 + grod_wy_leg2 * t868 - minus_grod_wy_leg3 * t921
+            - minus_grod_wy_leg4 * t962 + grod_wy_leg5 * t1003
+            - minus_grod_wy_leg6 * t1044;
+        let t1111 = t1103 - t254 * t1057 + t348 * t1072 - t419 * t1089 - t502 * t1091;
+        let t1123 = grod_wz_leg3 * t921
+            - (minus_grod_wz_leg1 * t798 + minus_grod_wz_leg2 * t868)
+            + grod_wz_leg4 * t962 - minus_grod_wz_leg5 * t1003 + grod_wz_leg6 * t1044;
+        let t1133 = t1123 - t564 * t1057 - t580 * t1072 - t587 * t1089 - t607 * t1091
+            + t610 * t1111;
+        let t1134 = t1133 / t652;
+        let t1136 = t1111 / t540 + t610 * t1134;
+        let t1140 = t1091 / t501 - t502 * t1136 - t607 * t1134;
+        let t1145 = t5 * t1140 + t9 * t1136 + t22 * t1134;
+        let t1148 = t708 + t22 * t653;
+        let t1149 = t20 + t21;
+        let t1151 = t24 - t25;
+        let t1154 = t12 - t1;
+        let t1156 = t1149 * t660 + t1151 * t655 + t1154 * t653;
+        let t1157 = t1148 * t1156;
+        let t1158 = t35 * t1157;
+        let t1161 = t716 + t26 * t653;
+        let t1162 = t1148 * t1161;
+        let t1163 = t1149 * t1162;
+        let t1166 = t13 * t1157;
+        let t1168 = t1151 * t1162;
+        let t1171 = t26 * t1157;
+        let t1173 = t1154 * t1162;
+        let t1179 = t35 * t1140 + t13 * t1136 + t26 * t1134;
+        let t1180 = t1179 - t1157;
+        let t1182 = t1161 * t1156;
+        let t1183 = t1145 + t1182;
+        let t1186 = t1148 * t1148;
+        let t1187 = t1161 * t1161;
+        let t1188 = t1186 - t1187;
+        let t1205 = t1149 * t1140 + t1151 * t1136 + t1154 * t1134;
+        let t1206 = t1205 + t1162;
+        let t1208 = t1156 * t1156;
+        let t1209 = t1208 - t1186;
+        let t1212 = t1145 - t1182;
+        let t1226 = t5 * t1182;
+        let t1230 = t9 * t1182;
+        let t1234 = t22 * t1182;
+        let t1237 = t1187 - t1208;
+        let t1239 = t1205 - t1162;
+        let t1242 = t1179 + t1157;
+        let t1264 = t661 - t1134;
+        let t1267 = t689 + t1136;
+        let t1269 = t9 * t1264 - t687 + t22 * t1267;
+        let t1270 = t661 + t1134;
+        let t1273 = t668 - t1140;
+        let t1275 = t5 * t1270 - t666 + t22 * t1273;
+        let t1276 = t689 - t1136;
+        let t1278 = t668 + t1140;
+        let t1281 = t5 * t1276 + t9 * t1278 - t711;
+        let t1288 = t1089 / t418 - t499 * t1140 - t419 * t1136 - t587 * t1134;
+        let t1289 = t1288 + 9.81;
+        let t1299 = t1072 / t347 - t416 * t1288 - t479 * t1140 + t348 * t1136
+            - t580 * t1134;
+        let t1312 = t1057 / t253 - t345 * t1299 - t399 * t1288 - t461 * t1140
+            - t254 * t1136 - t564 * t1134;
+        let t1322 = t13 * t1264 - t694 + t26 * t1267;
+        let t1326 = t35 * t1270 - t673 + t26 * t1273;
+        let t1330 = t35 * t1276 + t13 * t1278 - t718;
+        let minus_gcross_vx_leg1 = t728 / t52;
+        let t1365 = 0.05176380902050415 * t1269;
+        let t1366 = 0.19318516525781368 * t1322;
+        let t1367 = t1365 + t1366;
+        let t1368 = 0.19318516525781368 * t1269;
+        let t1369 = 0.05176380902050415 * t1322;
+        let t1370 = t1368 + t1369;
+        let t1372 = t1312 + t1370 - t1367;
+        let t1374 = 0.05176380902050415 * t1275;
+        let t1375 = 0.19318516525781368 * t1326;
+        let t1376 = t1374 + t1375;
+        let t1377 = 0.19318516525781368 * t1275;
+        let t1378 = 0.05176380902050415 * t1326;
         let t1379 = t1377 + t1378;
-        let t1380 = 0.19318516525781368 * t1279;
-        let t1381 = 0.05176380902050415 * t1332;
-        let t1382 = t1380 + t1381;
-        let t1384 = t1322 + t1382 - t1379;
-        let t1386 = 0.05176380902050415 * t1285;
-        let t1387 = 0.19318516525781368 * t1336;
-        let t1388 = t1386 + t1387;
-        let t1389 = 0.19318516525781368 * t1285;
-        let t1390 = 0.05176380902050415 * t1336;
-        let t1391 = t1389 + t1390;
-        let t1393 = t1309 + t1391 - t1388;
-        let t1396 = 0.05176380902050415 * t1291;
-        let t1397 = 0.19318516525781368 * t1340;
-        let t1398 = t1396 + t1397;
-        let t1399 = 0.19318516525781368 * t1291;
-        let t1400 = 0.05176380902050415 * t1340;
-        let t1401 = t1399 + t1400;
-        let t1403 = t1298 + t1401 - t1398;
-        let t1405 = t739 * t1384 - t772 * t1393 - minus_s_cross_leg1 * t1403;
-        let t1406 = t60 * t1376;
-        let t1409 = actuator_velocities[0] + actuator_velocities[0];
-        let minus_rate_dot_cross_leg1 = t53 * (t1405 - t1406 - t1406 - t787 * t1409);
-        let t1413 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1415 = t1376 + t1413 + t1376;
-        let t1416 = c_cylinder_leg1 * t1415;
-        let gcylinder_vx_leg1 = t793 * t61;
-        let t1419 = t787 * t1375;
-        let t1420 = gcylinder_vx_leg1 * t1419;
-        let minus_gcylinder_vy_leg1 = t797 * t61;
-        let t1423 = minus_gcylinder_vy_leg1 * t1419;
-        let gcross_vy_leg1 = t53 * t772;
-        let gcross_vz_leg1 = t53 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t800 * t61;
-        let t1430 = gcylinder_vz_leg1 * t1419;
+        let t1381 = t1299 + t1379 - t1376;
+        let t1384 = 0.05176380902050415 * t1281;
+        let t1385 = 0.19318516525781368 * t1330;
+        let t1386 = t1384 + t1385;
+        let t1387 = 0.19318516525781368 * t1281;
+        let t1388 = 0.05176380902050415 * t1330;
+        let t1389 = t1387 + t1388;
+        let t1391 = t1288 + t1389 - t1386;
+        let t1393 = t728 * t1372 - t761 * t1381 - minus_s_cross_leg1 * t1391;
+        let t1394 = 2.0 * actuator_velocities[0];
+        let t1396 = t1393 - t776 * t1394;
+        let t1397 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t1398 = t1397 * t792;
+        let minus_rate_dot_cross_leg1 = (t1396 - (t1398 + t1398)) / t52;
+        let t1402 = rate_cylinder_leg1 * t776;
+        let t1403 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1405 = t1402 + t1402 - t1403;
+        let t1406 = minus_s_cylinder_leg1 * t1405;
+        let t1407 = minus_rate_dot_cross_leg1 + t1406;
+        let gcylinder_vx_leg1 = t783 * t778;
+        let t1410 = t776 * t1397;
+        let t1411 = gcylinder_vx_leg1 * t1410;
+        let minus_gcylinder_vy_leg1 = t787 * t778;
+        let t1414 = minus_gcylinder_vy_leg1 * t1410;
+        let gcross_vy_leg1 = t761 / t52;
+        let gcross_vz_leg1 = minus_s_cross_leg1 / t52;
+        let gcylinder_vz_leg1 = t790 * t778;
+        let t1421 = gcylinder_vz_leg1 * t1410;
         let gcross_wx_leg1 = t19 * gcross_vz_leg1 - t32 * gcross_vy_leg1;
         let gcylinder_wx_leg1 = t19 * gcylinder_vz_leg1 + t32 * minus_gcylinder_vy_leg1;
-        let t1439 = gcylinder_wx_leg1 * t1419;
+        let t1430 = gcylinder_wx_leg1 * t1410;
         let minus_gcross_wy_leg1 = t32 * minus_gcross_vx_leg1 + t41 * gcross_vz_leg1;
         let gcylinder_wy_leg1 = t32 * gcylinder_vx_leg1 - t41 * gcylinder_vz_leg1;
-        let t1448 = gcylinder_wy_leg1 * t1419;
+        let t1439 = gcylinder_wy_leg1 * t1410;
         let minus_gcylinder_wz_leg1 = t41 * minus_gcylinder_vy_leg1
             + t19 * gcylinder_vx_leg1;
-        let t1453 = minus_gcylinder_wz_leg1 * t1419;
+        let t1444 = minus_gcylinder_wz_leg1 * t1410;
         let gcross_wz_leg1 = t41 * gcross_vy_leg1 + t19 * minus_gcross_vx_leg1;
-        let gcylinder_vx_leg2 = t863 * t98;
-        let t1460 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t1461 = t857 * t1460;
-        let t1462 = gcylinder_vx_leg2 * t1461;
-        let minus_gcross_vx_leg2 = t90 * t824;
-        let t1464 = rate_cylinder_leg2 * t1460;
-        let t1465 = t1381 - t1380;
-        let t1466 = t1377 - t1378;
-        let t1468 = t1322 - (t1465 + t1466);
-        let t1470 = t1390 - t1389;
-        let t1471 = t1386 - t1387;
-        let t1473 = t1309 - (t1470 + t1471);
-        let t1476 = t1400 - t1399;
-        let t1477 = t1396 - t1397;
-        let t1479 = t1298 - (t1476 + t1477);
-        let t1481 = t824 * t1468 + t834 * t1473 - minus_s_cross_leg2 * t1479;
-        let t1482 = t97 * t1464;
-        let t1485 = actuator_velocities[1] + actuator_velocities[1];
-        let minus_rate_dot_cross_leg2 = t90 * (t1481 + t1482 + t1482 - t857 * t1485);
-        let t1489 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1491 = t1464 + t1464 - t1489;
-        let t1492 = c_cylinder_leg2 * t1491;
-        let minus_gcross_vy_leg2 = t90 * t834;
-        let minus_gcylinder_vy_leg2 = t867 * t98;
-        let t1498 = minus_gcylinder_vy_leg2 * t1461;
-        let gcross_vz_leg2 = t90 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t870 * t98;
-        let t1503 = minus_gcylinder_vz_leg2 * t1461;
-        let minus_gcross_wx_leg2 = t71 * gcross_vz_leg2 + t74 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t71 * minus_gcylinder_vz_leg2
-            - t74 * minus_gcylinder_vy_leg2;
-        let t1512 = gcylinder_wx_leg2 * t1461;
-        let minus_gcylinder_wy_leg2 = t74 * gcylinder_vx_leg2
-            + t78 * minus_gcylinder_vz_leg2;
-        let t1517 = minus_gcylinder_wy_leg2 * t1461;
-        let minus_minus_gcross_wy_leg2 = t74 * minus_gcross_vx_leg2
-            + t78 * gcross_vz_leg2;
-        let gcross_wz_leg2 = t78 * minus_gcross_vy_leg2 - t71 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t78 * minus_gcylinder_vy_leg2
-            + t71 * gcylinder_vx_leg2;
-        let t1530 = minus_minus_gcylinder_wz_leg2 * t1461;
-        let gcross_vx_leg3 = t119 * t893;
-        let t1533 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1534 = rate_cylinder_leg3 * t1533;
-        let t1535 = t1309 + t1388;
-        let t1537 = t1322 + t1379;
-        let t1540 = t1298 + t1398;
-        let t1542 = t886 * t1535 - t893 * t1537 - minus_s_cross_leg3 * t1540;
-        let t1543 = t126 * t1534;
-        let t1546 = actuator_velocities[2] + actuator_velocities[2];
-        let minus_rate_dot_cross_leg3 = t119 * (t1542 + t1543 + t1543 - t910 * t1546);
-        let t1550 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1552 = t1534 + t1534 - t1550;
-        let t1553 = c_cylinder_leg3 * t1552;
-        let gcylinder_vx_leg3 = t916 * t127;
-        let t1556 = t910 * t1533;
-        let t1557 = gcylinder_vx_leg3 * t1556;
-        let gcylinder_vy_leg3 = t920 * t127;
-        let t1560 = gcylinder_vy_leg3 * t1556;
-        let minus_gcross_vy_leg3 = t119 * t886;
-        let gcross_vz_leg3 = t119 * minus_s_cross_leg3;
-        let minus_gcylinder_vz_leg3 = t923 * t127;
-        let t1567 = minus_gcylinder_vz_leg3 * t1556;
+        let gcylinder_vx_leg2 = t853 * t259;
+        let t1451 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t1452 = t847 * t1451;
+        let t1453 = gcylinder_vx_leg2 * t1452;
+        let minus_gcross_vx_leg2 = t100 * t814;
+        let t1455 = t1369 - t1368;
+        let t1456 = t1365 - t1366;
+        let t1458 = t1312 - (t1455 + t1456);
+        let t1460 = t1378 - t1377;
+        let t1461 = t1374 - t1375;
+        let t1463 = t1299 - (t1460 + t1461);
+        let t1466 = t1388 - t1387;
+        let t1467 = t1384 - t1385;
+        let t1469 = t1288 - (t1466 + t1467);
+        let t1471 = t814 * t1458 + t824 * t1463 - minus_s_cross_leg2 * t1469;
+        let t1472 = actuator_velocities[1] + actuator_velocities[1];
+        let t1474 = t1471 - t847 * t1472;
+        let t1475 = t1451 * t862;
+        let minus_rate_dot_cross_leg2 = t100 * (t1474 + t1475 + t1475);
+        let t1479 = rate_cylinder_leg2 * t847;
+        let t1480 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1482 = t1479 + t1480 + t1479;
+        let t1483 = s_cylinder_leg2 * t1482;
+        let t1484 = t1483 - minus_rate_dot_cross_leg2;
+        let minus_gcross_vy_leg2 = t100 * t824;
+        let minus_gcylinder_vy_leg2 = t857 * t259;
+        let t1490 = minus_gcylinder_vy_leg2 * t1452;
+        let gcross_vz_leg2 = t100 * minus_s_cross_leg2;
+        let minus_gcylinder_vz_leg2 = t860 * t259;
+        let t1495 = minus_gcylinder_vz_leg2 * t1452;
+        let minus_gcross_wx_leg2 = t82 * gcross_vz_leg2 + t73 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t82 * minus_gcylinder_vz_leg2
+            - t73 * minus_gcylinder_vy_leg2;
+        let t1504 = gcylinder_wx_leg2 * t1452;
+        let minus_gcylinder_wy_leg2 = t73 * gcylinder_vx_leg2
+            + t76 * minus_gcylinder_vz_leg2;
+        let t1509 = minus_gcylinder_wy_leg2 * t1452;
+        let minus_minus_gcross_wy_leg2 = t73 * minus_gcross_vx_leg2
+            + t76 * gcross_vz_leg2;
+        let gcross_wz_leg2 = t76 * minus_gcross_vy_leg2 - t82 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t76 * minus_gcylinder_vy_leg2
+            + t82 * gcylinder_vx_leg2;
+        let t1522 = minus_minus_gcylinder_wz_leg2 * t1452;
+        let gcross_vx_leg3 = t883 / t128;
+        let t1525 = t1299 + t1376;
+        let t1527 = t1312 + t1367;
+        let t1530 = t1288 + t1386;
+        let t1532 = t876 * t1525 - t883 * t1527 - minus_s_cross_leg3 * t1530;
+        let t1533 = actuator_velocities[2] + actuator_velocities[2];
+        let t1535 = t1532 - t900 * t1533;
+        let t1536 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1537 = t1536 * t915;
+        let minus_rate_dot_cross_leg3 = (t1535 + t1537 + t1537) / t128;
+        let t1541 = rate_cylinder_leg3 * t900;
+        let t1542 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1544 = t1541 + t1542 + t1541;
+        let t1545 = s_cylinder_leg3 * t1544;
+        let t1546 = t1545 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t906 * t125;
+        let t1549 = t900 * t1536;
+        let t1550 = gcylinder_vx_leg3 * t1549;
+        let gcylinder_vy_leg3 = t910 * t125;
+        let t1553 = gcylinder_vy_leg3 * t1549;
+        let minus_gcross_vy_leg3 = t876 / t128;
+        let gcross_vz_leg3 = minus_s_cross_leg3 / t128;
+        let minus_gcylinder_vz_leg3 = t913 * t125;
+        let t1560 = minus_gcylinder_vz_leg3 * t1549;
         let gcross_wx_leg3 = t15 * gcross_vz_leg3 + t28 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t15 * minus_gcylinder_vz_leg3
             + t28 * gcylinder_vy_leg3;
-        let t1576 = minus_gcylinder_wx_leg3 * t1556;
+        let t1569 = minus_gcylinder_wx_leg3 * t1549;
         let gcross_wy_leg3 = t28 * gcross_vx_leg3 - t37 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t28 * gcylinder_vx_leg3 + t37 * minus_gcylinder_vz_leg3;
-        let t1585 = gcylinder_wy_leg3 * t1556;
+        let t1578 = gcylinder_wy_leg3 * t1549;
         let gcylinder_wz_leg3 = t37 * gcylinder_vy_leg3 - t15 * gcylinder_vx_leg3;
-        let t1590 = gcylinder_wz_leg3 * t1556;
+        let t1583 = gcylinder_wz_leg3 * t1549;
         let minus_gcross_wz_leg3 = t37 * minus_gcross_vy_leg3 + t15 * gcross_vx_leg3;
-        let gcross_vx_leg4 = t148 * t942;
-        let t1597 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t1598 = rate_cylinder_leg4 * t1597;
-        let t1599 = t1309 + t1470;
-        let t1601 = t1322 + t1465;
-        let t1604 = t1298 + t1476;
-        let t1606 = t939 * t1599 - t942 * t1601 - minus_s_cross_leg4 * t1604;
-        let t1607 = t155 * t1598;
-        let t1610 = actuator_velocities[3] + actuator_velocities[3];
-        let minus_rate_dot_cross_leg4 = t148 * (t1606 + t1607 + t1607 - t951 * t1610);
-        let t1614 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1616 = t1598 + t1598 - t1614;
-        let t1617 = c_cylinder_leg4 * t1616;
-        let gcylinder_vx_leg4 = t957 * t156;
-        let t1620 = t951 * t1597;
-        let t1621 = gcylinder_vx_leg4 * t1620;
-        let gcylinder_vy_leg4 = t961 * t156;
-        let t1624 = gcylinder_vy_leg4 * t1620;
-        let minus_gcross_vy_leg4 = t148 * t939;
-        let gcross_vz_leg4 = t148 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t964 * t156;
-        let t1631 = minus_gcylinder_vz_leg4 * t1620;
-        let gcross_wx_leg4 = t69 * gcross_vz_leg4 + t72 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t69 * minus_gcylinder_vz_leg4
-            + t72 * gcylinder_vy_leg4;
-        let t1640 = minus_gcylinder_wx_leg4 * t1620;
-        let gcross_wy_leg4 = t72 * gcross_vx_leg4 - t76 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t72 * gcylinder_vx_leg4 + t76 * minus_gcylinder_vz_leg4;
-        let t1649 = gcylinder_wy_leg4 * t1620;
-        let gcylinder_wz_leg4 = t76 * gcylinder_vy_leg4 - t69 * gcylinder_vx_leg4;
-        let t1654 = gcylinder_wz_leg4 * t1620;
-        let minus_gcross_wz_leg4 = t76 * minus_gcross_vy_leg4 + t69 * gcross_vx_leg4;
-        let gcross_vx_leg5 = t187 * t983;
-        let t1661 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1662 = rate_cylinder_leg5 * t1661;
-        let t1663 = t1298 - t1401;
-        let t1665 = t1322 - t1382;
-        let t1667 = t1309 - t1391;
-        let t1670 = s_cross_leg5 * t1663 - (t983 * t1665 + t986 * t1667);
-        let t1671 = t181 * t1662;
-        let t1674 = actuator_velocities[4] + actuator_velocities[4];
-        let minus_rate_dot_cross_leg5 = t187 * (t1670 + t1671 + t1671 - t992 * t1674);
-        let t1678 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1680 = t1662 + t1662 - t1678;
-        let t1681 = c_cylinder_leg5 * t1680;
-        let minus_gcylinder_vx_leg5 = t1002 * t182;
-        let t1684 = t992 * t1661;
-        let t1685 = minus_gcylinder_vx_leg5 * t1684;
-        let gcross_vy_leg5 = t187 * t986;
-        let gcylinder_vy_leg5 = t998 * t182;
-        let t1690 = gcylinder_vy_leg5 * t1684;
-        let minus_gcross_vz_leg5 = t187 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t1005 * t182;
-        let t1695 = minus_gcylinder_vz_leg5 * t1684;
+        let gcross_vx_leg4 = t157 * t932;
+        let t1590 = t1299 + t1460;
+        let t1592 = t1312 + t1455;
+        let t1595 = t1288 + t1466;
+        let t1597 = t929 * t1590 - t932 * t1592 - minus_s_cross_leg4 * t1595;
+        let t1598 = actuator_velocities[3] + actuator_velocities[3];
+        let t1600 = t1597 - t941 * t1598;
+        let t1601 = t153 * t1600;
+        let t1602 = c_cylinder_leg4 * t1601;
+        let gcylinder_vx_leg4 = t947 * t153;
+        let t1605 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t1606 = t941 * t1605;
+        let t1607 = gcylinder_vx_leg4 * t1606;
+        let gcylinder_vy_leg4 = t951 * t153;
+        let t1610 = gcylinder_vy_leg4 * t1606;
+        let minus_gcross_vy_leg4 = t157 * t929;
+        let gcross_vz_leg4 = t157 * minus_s_cross_leg4;
+        let minus_gcylinder_vz_leg4 = t954 * t153;
+        let t1617 = minus_gcylinder_vz_leg4 * t1606;
+        let gcross_wx_leg4 = t80 * gcross_vz_leg4 + t71 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t80 * minus_gcylinder_vz_leg4
+            + t71 * gcylinder_vy_leg4;
+        let t1626 = minus_gcylinder_wx_leg4 * t1606;
+        let gcross_wy_leg4 = t71 * gcross_vx_leg4 - t74 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t71 * gcylinder_vx_leg4 + t74 * minus_gcylinder_vz_leg4;
+        let t1635 = gcylinder_wy_leg4 * t1606;
+        let gcylinder_wz_leg4 = t74 * gcylinder_vy_leg4 - t80 * gcylinder_vx_leg4;
+        let t1640 = gcylinder_wz_leg4 * t1606;
+        let minus_gcross_wz_leg4 = t74 * minus_gcross_vy_leg4 + t80 * gcross_vx_leg4;
+        let gcross_vx_leg5 = t185 * t973;
+        let t1647 = t1288 - t1389;
+        let t1649 = t1312 - t1370;
+        let t1651 = t1299 - t1379;
+        let t1654 = s_cross_leg5 * t1647 - (t973 * t1649 + t976 * t1651);
+        let t1655 = 2.0 * actuator_velocities[4];
+        let t1657 = t1654 - t982 * t1655;
+        let t1658 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_rate_dot_cross_leg5 = t185 * (t1657 + 2.0 * (t1658 * t997));
+        let t1663 = rate_cylinder_leg5 * t982;
+        let t1664 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1666 = t1663 + t1664 + t1663;
+        let t1667 = s_cylinder_leg5 * t1666;
+        let t1668 = t1667 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t992 * t277;
+        let t1671 = t982 * t1658;
+        let t1672 = minus_gcylinder_vx_leg5 * t1671;
+        let gcross_vy_leg5 = t185 * t976;
+        let gcylinder_vy_leg5 = t988 * t277;
+        let t1677 = gcylinder_vy_leg5 * t1671;
+        let minus_gcross_vz_leg5 = t185 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t995 * t277;
+        let t1682 = minus_gcylinder_vz_leg5 * t1671;
         let gcross_wx_leg5 = t18 * minus_gcross_vz_leg5 + t31 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t18 * minus_gcylinder_vz_leg5 + t31 * gcylinder_vy_leg5;
-        let t1704 = gcylinder_wx_leg5 * t1684;
+        let t1691 = gcylinder_wx_leg5 * t1671;
         let gcylinder_wy_leg5 = t31 * minus_gcylinder_vx_leg5
             - t40 * minus_gcylinder_vz_leg5;
-        let t1709 = gcylinder_wy_leg5 * t1684;
+        let t1696 = gcylinder_wy_leg5 * t1671;
         let minus_gcross_wy_leg5 = t31 * gcross_vx_leg5 + t40 * minus_gcross_vz_leg5;
         let gcross_wz_leg5 = t18 * gcross_vx_leg5 - t40 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t40 * gcylinder_vy_leg5
             + t18 * minus_gcylinder_vx_leg5;
-        let t1722 = minus_gcylinder_wz_leg5 * t1684;
-        let gcross_vx_leg6 = t213 * t1024;
-        let t1725 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1726 = rate_cylinder_leg6 * t1725;
-        let t1727 = t1298 + t1477;
-        let t1729 = t1322 + t1466;
-        let t1731 = t1309 + t1471;
-        let t1734 = s_cross_leg6 * t1727 - (t1024 * t1729 + t1027 * t1731);
-        let t1735 = t215 * t1726;
-        let t1738 = actuator_velocities[5] + actuator_velocities[5];
-        let minus_rate_dot_cross_leg6 = t213 * (t1734 + t1735 + t1735 - t1033 * t1738);
-        let t1742 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1744 = t1726 + t1726 - t1742;
-        let t1745 = c_cylinder_leg6 * t1744;
-        let minus_gcylinder_vx_leg6 = t1043 * t216;
-        let t1748 = t1033 * t1725;
-        let t1749 = minus_gcylinder_vx_leg6 * t1748;
-        let gcross_vy_leg6 = t213 * t1027;
-        let gcylinder_vy_leg6 = t1039 * t216;
-        let t1754 = gcylinder_vy_leg6 * t1748;
+        let t1709 = minus_gcylinder_wz_leg5 * t1671;
+        let gcross_vx_leg6 = t213 * t1014;
+        let t1712 = t1288 + t1467;
+        let t1714 = t1312 + t1456;
+        let t1716 = t1299 + t1461;
+        let t1719 = s_cross_leg6 * t1712 - (t1014 * t1714 + t1017 * t1716);
+        let t1720 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1721 = t1720 * t1038;
+        let t1724 = 2.0 * actuator_velocities[5];
+        let minus_rate_dot_cross_leg6 = t213 * (t1719 + t1721 + t1721 - t1023 * t1724);
+        let t1728 = rate_cylinder_leg6 * t1023;
+        let t1729 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1731 = t1728 + t1729 + t1728;
+        let t1732 = s_cylinder_leg6 * t1731;
+        let t1733 = t1732 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t1033 * t285;
+        let t1736 = t1023 * t1720;
+        let t1737 = minus_gcylinder_vx_leg6 * t1736;
+        let gcross_vy_leg6 = t213 * t1017;
+        let gcylinder_vy_leg6 = t1029 * t285;
+        let t1742 = gcylinder_vy_leg6 * t1736;
         let minus_gcross_vz_leg6 = t213 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t1046 * t216;
-        let t1759 = minus_gcylinder_vz_leg6 * t1748;
-        let minus_gcross_wx_leg6 = t70 * minus_gcross_vz_leg6 + t73 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t70 * minus_gcylinder_vz_leg6
-            + t73 * gcylinder_vy_leg6;
-        let t1768 = minus_gcylinder_wx_leg6 * t1748;
-        let gcross_wy_leg6 = t73 * gcross_vx_leg6 + t77 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t77 * minus_gcylinder_vz_leg6
-            - t73 * minus_gcylinder_vx_leg6;
-        let t1777 = gcylinder_wy_leg6 * t1748;
-        let gcross_wz_leg6 = t77 * gcross_vy_leg6 - t70 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t77 * gcylinder_vy_leg6 + t70 * minus_gcylinder_vx_leg6;
-        let t1786 = gcylinder_wz_leg6 * t1748;
-        let t1788 = t1375 * t1375;
-        let t1789 = t788 - t1788;
-        let t1791 = rate_cylinder_leg1 * t787;
-        let t1792 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1794 = t1791 + t1791 - t1792;
-        let t1797 = c_cylinder_leg1 * t1794 - minus_s_cylinder_leg1 * t1415;
-        let t1815 = t1460 * t1460;
-        let t1816 = t858 - t1815;
-        let t1818 = rate_cylinder_leg2 * t857;
-        let t1819 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1821 = t1818 + t1819 + t1818;
-        let t1824 = c_cylinder_leg2 * t1821 - s_cylinder_leg2 * t1491;
-        let t1842 = rate_cylinder_leg3 * t910;
-        let t1843 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1845 = t1842 + t1843 + t1842;
-        let t1848 = c_cylinder_leg3 * t1845 - s_cylinder_leg3 * t1552;
-        let t1850 = t1533 * t1533;
-        let t1851 = t911 - t1850;
-        let t1869 = rate_cylinder_leg4 * t951;
-        let t1870 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1872 = t1869 + t1870 + t1869;
-        let t1875 = c_cylinder_leg4 * t1872 - s_cylinder_leg4 * t1616;
-        let t1877 = t1597 * t1597;
-        let t1878 = t952 - t1877;
-        let t1896 = rate_cylinder_leg5 * t992;
-        let t1897 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1899 = t1896 + t1897 + t1896;
-        let t1902 = c_cylinder_leg5 * t1899 - s_cylinder_leg5 * t1680;
-        let t1904 = t1661 * t1661;
-        let t1905 = t993 - t1904;
-        let t1923 = rate_cylinder_leg6 * t1033;
-        let t1924 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1926 = t1923 + t1924 + t1923;
-        let t1929 = c_cylinder_leg6 * t1926 - s_cylinder_leg6 * t1744;
-        let t1931 = t1725 * t1725;
-        let t1932 = t1034 - t1931;
-        let t1954 = t793 * t1384 - t797 * t1393 + t800 * t1403;
-        let rate_dot_cylinder_leg1 = t61
-            * (t1954 + t60 * t1419 - rate_cylinder_leg1 * t1409);
-        let t1960 = t1419 + rate_dot_cylinder_leg1;
-        let t1964 = c_cylinder_leg1 * t1960 + minus_s_cylinder_leg1 * (t804 - t788);
-        let t1987 = t863 * t1468 - t867 * t1473 - t870 * t1479;
-        let rate_dot_cylinder_leg2 = t98
-            * (t1987 - t97 * t1461 - rate_cylinder_leg2 * t1485);
-        let t1993 = rate_dot_cylinder_leg2 - t1461;
-        let t1997 = c_cylinder_leg2 * t1993 - s_cylinder_leg2 * (t874 - t858);
-        let t2020 = t916 * t1537 + t920 * t1535 - t923 * t1540;
-        let rate_dot_cylinder_leg3 = t127
-            * (t2020 - t126 * t1556 - rate_cylinder_leg3 * t1546);
-        let t2026 = rate_dot_cylinder_leg3 - t1556;
-        let t2030 = c_cylinder_leg3 * t2026 - s_cylinder_leg3 * (t927 - t911);
-        let t2053 = t957 * t1601 + t961 * t1599 - t964 * t1604;
-        let rate_dot_cylinder_leg4 = t156
-            * (t2053 - t155 * t1620 - rate_cylinder_leg4 * t1610);
-        let t2059 = rate_dot_cylinder_leg4 - t1620;
-        let t2063 = c_cylinder_leg4 * t2059 - s_cylinder_leg4 * (t968 - t952);
-        let t2086 = t998 * t1667 - t1002 * t1665 - t1005 * t1663;
-        let rate_dot_cylinder_leg5 = t182
-            * (t2086 - t181 * t1684 - rate_cylinder_leg5 * t1674);
-        let t2092 = rate_dot_cylinder_leg5 - t1684;
-        let t2096 = c_cylinder_leg5 * t2092 - s_cylinder_leg5 * (t1009 - t993);
-        let t2119 = t1039 * t1731 - t1043 * t1729 - t1046 * t1727;
-        let rate_dot_cylinder_leg6 = t216
-            * (t2119 - t215 * t1748 - rate_cylinder_leg6 * t1738);
-        let t2125 = rate_dot_cylinder_leg6 - t1748;
-        let t2129 = c_cylinder_leg6 * t2125 - s_cylinder_leg6 * (t1050 - t1034);
-        let t2148 = minus_s_cylinder_leg1 * t1794;
-        let t2161 = s_cylinder_leg2 * t1821;
-        let t2174 = s_cylinder_leg3 * t1845;
-        let t2187 = s_cylinder_leg4 * t1872;
-        let t2200 = s_cylinder_leg5 * t1899;
-        let t2213 = s_cylinder_leg6 * t1926;
-        let t2228 = t1419 - rate_dot_cylinder_leg1;
-        let t2230 = c_cylinder_leg1 * (t1788 - t804) - minus_s_cylinder_leg1 * t2228;
-        let t2252 = t1461 + rate_dot_cylinder_leg2;
-        let t2254 = c_cylinder_leg2 * (t1815 - t874) - s_cylinder_leg2 * t2252;
-        let t2274 = t1556 + rate_dot_cylinder_leg3;
-        let t2276 = c_cylinder_leg3 * (t1850 - t927) - s_cylinder_leg3 * t2274;
-        let t2297 = t1620 + rate_dot_cylinder_leg4;
-        let t2299 = c_cylinder_leg4 * (t1877 - t968) - s_cylinder_leg4 * t2297;
-        let t2320 = t1684 + rate_dot_cylinder_leg5;
-        let t2322 = c_cylinder_leg5 * (t1904 - t1009) - s_cylinder_leg5 * t2320;
-        let t2343 = t1748 + rate_dot_cylinder_leg6;
-        let t2345 = c_cylinder_leg6 * (t1931 - t1050) - s_cylinder_leg6 * t2343;
-        let t2400 = 9.81 * t790;
-        let t2402 = 9.81 * grod_vz_leg1;
-        let t2420 = 9.81 * t861;
-        let t2422 = 9.81 * grod_vz_leg2;
-        let t2440 = 9.81 * t913;
-        let t2442 = 9.81 * grod_vz_leg3;
-        let t2460 = 9.81 * t954;
-        let t2462 = 9.81 * grod_vz_leg4;
-        let t2480 = 9.81 * t996;
-        let t2482 = 9.81 * grod_vz_leg5;
-        let t2500 = 9.81 * t1037;
-        let t2502 = 9.81 * grod_vz_leg6;
-        let t2520 = t61 * t2402;
-        let t2523 = 9.81 * minus_s_cross_leg1;
-        let t2524 = c_cylinder_leg1 * t2523;
-        let t2526 = 9.81 * t800;
-        let t2536 = t98 * t2422;
-        let t2539 = 9.81 * minus_s_cross_leg2;
-        let t2540 = c_cylinder_leg2 * t2539;
-        let t2542 = 9.81 * t870;
-        let t2552 = t127 * t2442;
-        let t2555 = 9.81 * minus_s_cross_leg3;
-        let t2556 = c_cylinder_leg3 * t2555;
-        let t2558 = 9.81 * t923;
-        let t2568 = t156 * t2462;
-        let t2571 = 9.81 * minus_s_cross_leg4;
-        let t2572 = c_cylinder_leg4 * t2571;
-        let t2574 = 9.81 * t964;
-        let t2584 = t182 * t2482;
-        let t2587 = 9.81 * s_cross_leg5;
-        let t2588 = c_cylinder_leg5 * t2587;
-        let t2590 = 9.81 * t1005;
-        let t2600 = t216 * t2502;
-        let t2603 = 9.81 * s_cross_leg6;
-        let t2604 = c_cylinder_leg6 * t2603;
-        let t2606 = 9.81 * t1046;
-        let t2616 = 9.81 * c_cross_leg1;
-        let t2623 = 9.81 * c_cross_leg2;
-        let t2630 = 9.81 * c_cross_leg3;
-        let t2637 = 9.81 * c_cross_leg4;
-        let t2644 = 9.81 * c_cross_leg5;
-        let t2651 = 9.81 * c_cross_leg6;
-        let t2659 = t1405 - t2523;
-        let t2661 = t52 * t1794 - minus_s_cylinder_leg1 * t2659;
-        let t2666 = actuator_accelerations[0] - (t806 - t2402);
-        let t2667 = t60 * (t1788 + t804) + t2666;
-        let t2671 = minus_gcross_vx_leg1 * t2661 + gcylinder_vx_leg1 * t2667
-            + grod_vx_leg1 * t1960;
-        let t2676 = gcross_vy_leg1 * t2661 + minus_gcylinder_vy_leg1 * t2667
-            - minus_minus_grod_vy_leg1 * t1960;
-        let t2681 = gcross_vz_leg1 * t2661 - gcylinder_vz_leg1 * t2667
-            - grod_vz_leg1 * t1960;
-        let t2692 = t1481 - t2539;
-        let t2694 = t89 * t1821 + s_cylinder_leg2 * t2692;
-        let t2699 = actuator_accelerations[1] - (t876 - t2422);
-        let t2700 = t97 * (t1815 + t874) + t2699;
-        let t2704 = minus_gcross_vx_leg2 * t2694 + gcylinder_vx_leg2 * t2700
-            + grod_vx_leg2 * t1993;
-        let t2709 = minus_gcylinder_vy_leg2 * t2700 - minus_gcross_vy_leg2 * t2694
-            - minus_minus_grod_vy_leg2 * t1993;
-        let t2714 = gcross_vz_leg2 * t2694 + minus_gcylinder_vz_leg2 * t2700
-            - grod_vz_leg2 * t1993;
-        let t2725 = t1542 - t2555;
-        let t2727 = t118 * t1845 + s_cylinder_leg3 * t2725;
-        let t2732 = actuator_accelerations[2] - (t929 - t2442);
-        let t2733 = t126 * (t1850 + t927) + t2732;
-        let t2737 = gcross_vx_leg3 * t2727 - gcylinder_vx_leg3 * t2733
-            - minus_minus_grod_vx_leg3 * t2026;
-        let t2742 = minus_gcross_vy_leg3 * t2727 + gcylinder_vy_leg3 * t2733
-            + grod_vy_leg3 * t2026;
-        let t2747 = gcross_vz_leg3 * t2727 + minus_gcylinder_vz_leg3 * t2733
-            - grod_vz_leg3 * t2026;
-        let t2758 = t1606 - t2571;
-        let t2760 = t147 * t1872 + s_cylinder_leg4 * t2758;
-        let t2765 = actuator_accelerations[3] - (t970 - t2462);
-        let t2766 = t155 * (t1877 + t968) + t2765;
-        let t2770 = gcross_vx_leg4 * t2760 - gcylinder_vx_leg4 * t2766
-            - minus_minus_grod_vx_leg4 * t2059;
-        let t2775 = minus_gcross_vy_leg4 * t2760 + gcylinder_vy_leg4 * t2766
-            + grod_vy_leg4 * t2059;
-        let t2780 = gcross_vz_leg4 * t2760 + minus_gcylinder_vz_leg4 * t2766
-            - grod_vz_leg4 * t2059;
-        let t2791 = t1670 + t2587;
-        let t2793 = t186 * t1899 + s_cylinder_leg5 * t2791;
-        let t2798 = actuator_accelerations[4] - (t1011 - t2482);
-        let t2799 = t181 * (t1904 + t1009) + t2798;
-        let t2803 = gcross_vx_leg5 * t2793 + minus_gcylinder_vx_leg5 * t2799
-            - minus_minus_grod_vx_leg5 * t2092;
-        let t2808 = gcross_vy_leg5 * t2793 - gcylinder_vy_leg5 * t2799
-            - grod_vy_leg5 * t2092;
-        let t2813 = minus_gcylinder_vz_leg5 * t2799 - minus_gcross_vz_leg5 * t2793
-            - grod_vz_leg5 * t2092;
-        let t2824 = t1734 + t2603;
-        let t2826 = t212 * t1926 + s_cylinder_leg6 * t2824;
-        let t2831 = actuator_accelerations[5] - (t1052 - t2502);
-        let t2832 = t215 * (t1931 + t1050) + t2831;
-        let t2836 = gcross_vx_leg6 * t2826 + minus_gcylinder_vx_leg6 * t2832
-            - minus_minus_grod_vx_leg6 * t2125;
-        let t2841 = gcross_vy_leg6 * t2826 - gcylinder_vy_leg6 * t2832
-            - grod_vy_leg6 * t2125;
-        let t2846 = minus_gcylinder_vz_leg6 * t2832 - minus_gcross_vz_leg6 * t2826
-            - grod_vz_leg6 * t2125;
-        let t2858 = t1954 + t2526;
-        let t2861 = t785 * minus_rate_cross_leg1 + c_cylinder_leg1 * t2666
-            + minus_s_cylinder_leg1 * t2858;
-        let t2863 = t60 * t1792;
-        let t2867 = minus_gcross_vx_leg1 * t2861 + gcylinder_vx_leg1 * t2863
-            + grod_vx_leg1 * t1413;
-        let t2872 = gcross_vy_leg1 * t2861 + minus_gcylinder_vy_leg1 * t2863
-            - minus_minus_grod_vy_leg1 * t1413;
-        let t2875 = gcross_vz_leg1 * t2861 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2885 = t97 * t1819;
-        let t2889 = t1987 - t2542;
-        let t2892 = t855 * minus_rate_cross_leg2 + c_cylinder_leg2 * t2699
-            - s_cylinder_leg2 * t2889;
-        let t2896 = gcylinder_vx_leg2 * t2885 - minus_gcross_vx_leg2 * t2892
-            - grod_vx_leg2 * t1489;
-        let t2901 = minus_minus_grod_vy_leg2 * t1489 + minus_gcross_vy_leg2 * t2892
-            + minus_gcylinder_vy_leg2 * t2885;
-        let t2904 = gcross_vz_leg2 * t2892 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2916 = t2020 - t2558;
-        let t2919 = t908 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2732
-            - s_cylinder_leg3 * t2916;
-        let t2921 = t126 * t1843;
-        let t2925 = gcross_vx_leg3 * t2919 + gcylinder_vx_leg3 * t2921
-            - minus_minus_grod_vx_leg3 * t1550;
-        let t2930 = gcylinder_vy_leg3 * t2921 - minus_gcross_vy_leg3 * t2919
-            - grod_vy_leg3 * t1550;
-        let t2933 = gcross_vz_leg3 * t2919 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2945 = t2053 - t2574;
-        let t2948 = t949 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2765
-            - s_cylinder_leg4 * t2945;
-        let t2950 = t155 * t1870;
-        let t2954 = gcross_vx_leg4 * t2948 + gcylinder_vx_leg4 * t2950
-            - minus_minus_grod_vx_leg4 * t1614;
-        let t2959 = gcylinder_vy_leg4 * t2950 - minus_gcross_vy_leg4 * t2948
-            - grod_vy_leg4 * t1614;
-        let t2962 = gcross_vz_leg4 * t2948 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2974 = t2086 - t2590;
-        let t2977 = t990 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2798
-            - s_cylinder_leg5 * t2974;
-        let t2979 = t181 * t1897;
-        let t2983 = gcross_vx_leg5 * t2977 - minus_gcylinder_vx_leg5 * t2979
-            - minus_minus_grod_vx_leg5 * t1678;
-        let t2988 = gcross_vy_leg5 * t2977 + gcylinder_vy_leg5 * t2979
-            - grod_vy_leg5 * t1678;
-        let t2991 = minus_gcross_vz_leg5 * t2977
+        let minus_gcylinder_vz_leg6 = t1036 * t285;
+        let t1747 = minus_gcylinder_vz_leg6 * t1736;
+        let minus_gcross_wx_leg6 = t81 * minus_gcross_vz_leg6 + t72 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t81 * minus_gcylinder_vz_leg6
+            + t72 * gcylinder_vy_leg6;
+        let t1756 = minus_gcylinder_wx_leg6 * t1736;
+        let gcross_wy_leg6 = t72 * gcross_vx_leg6 + t75 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t75 * minus_gcylinder_vz_leg6
+            - t72 * minus_gcylinder_vx_leg6;
+        let t1765 = gcylinder_wy_leg6 * t1736;
+        let gcross_wz_leg6 = t75 * gcross_vy_leg6 - t81 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t75 * gcylinder_vy_leg6 + t81 * minus_gcylinder_vx_leg6;
+        let t1774 = gcylinder_wz_leg6 * t1736;
+        let t1776 = t1397 * t1397;
+        let t1777 = t777 - t1776;
+        let t1782 = c_cylinder_leg1 * t1405 - t1396 * (minus_s_cylinder_leg1 * t778);
+        let t1800 = t1451 * t1451;
+        let t1801 = t848 - t1800;
+        let t1804 = s_cylinder_leg2 * t259;
+        let t1806 = c_cylinder_leg2 * t1482 + t1474 * t1804;
+        let t1825 = s_cylinder_leg3 * t125;
+        let t1827 = c_cylinder_leg3 * t1544 + t1535 * t1825;
+        let t1829 = t1536 * t1536;
+        let t1830 = t901 - t1829;
+        let t1848 = rate_cylinder_leg4 * t941;
+        let t1849 = t1605 * t956;
+        let minus_rate_dot_cross_leg4 = t157 * (t1600 + t1849 + t1849);
+        let t1853 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1855 = t1848 + t1853 + t1848;
+        let t1858 = c_cylinder_leg4 * t1855 + s_cylinder_leg4 * t1601;
+        let t1860 = t1605 * t1605;
+        let t1861 = t942 - t1860;
+        let t1882 = c_cylinder_leg5 * t1666 + s_cylinder_leg5 * (t277 * t1657);
+        let t1884 = t1658 * t1658;
+        let t1885 = t983 - t1884;
+        let t1906 = c_cylinder_leg6 * t1731 - t1733 * (t206 * t213);
+        let t1908 = t1720 * t1720;
+        let t1909 = t1024 - t1908;
+        let t1931 = t783 * t1372 - t787 * t1381 + t790 * t1391;
+        let t1933 = rate_cylinder_leg1 * t1394 - t1931;
+        let t1934 = t778 * t1933;
+        let rate_dot_cylinder_leg1 = t1410 - t1934;
+        let t1936 = t1410 + rate_dot_cylinder_leg1;
+        let t1940 = c_cylinder_leg1 * t1936 + minus_s_cylinder_leg1 * (t794 - t777);
+        let t1942 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1964 = t853 * t1458 - t857 * t1463 - t860 * t1469;
+        let t1966 = t1964 - rate_cylinder_leg2 * t1472;
+        let rate_dot_cylinder_leg2 = t1966 / t96 - t1452;
+        let t1969 = rate_dot_cylinder_leg2 - t1452;
+        let t1973 = c_cylinder_leg2 * t1969 - s_cylinder_leg2 * (t864 - t848);
+        let t1975 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1997 = t906 * t1527 + t910 * t1525 - t913 * t1530;
+        let t1999 = t1997 - rate_cylinder_leg3 * t1533;
+        let rate_dot_cylinder_leg3 = t125 * t1999 - t1549;
+        let t2002 = rate_dot_cylinder_leg3 - t1549;
+        let t2006 = c_cylinder_leg3 * t2002 - s_cylinder_leg3 * (t917 - t901);
+        let t2008 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t2030 = t947 * t1592 + t951 * t1590 - t954 * t1595;
+        let t2032 = t2030 - rate_cylinder_leg4 * t1598;
+        let t2033 = t153 * t2032;
+        let rate_dot_cylinder_leg4 = t2033 - t1606;
+        let t2035 = rate_dot_cylinder_leg4 - t1606;
+        let t2039 = c_cylinder_leg4 * t2035 - s_cylinder_leg4 * (t958 - t942);
+        let t2041 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2063 = t988 * t1651 - t992 * t1649 - t995 * t1647;
+        let t2065 = t2063 - rate_cylinder_leg5 * t1655;
+        let t2066 = t2065 / t181;
+        let rate_dot_cylinder_leg5 = t2066 - t1671;
+        let t2068 = rate_dot_cylinder_leg5 - t1671;
+        let t2072 = c_cylinder_leg5 * t2068 - s_cylinder_leg5 * (t999 - t983);
+        let t2074 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2096 = t1029 * t1716 - t1033 * t1714 - t1036 * t1712;
+        let t2098 = t2096 - rate_cylinder_leg6 * t1724;
+        let t2099 = t285 * t2098;
+        let rate_dot_cylinder_leg6 = t2099 - t1736;
+        let t2101 = rate_dot_cylinder_leg6 - t1736;
+        let t2105 = c_cylinder_leg6 * t2101 - s_cylinder_leg6 * (t1040 - t1024);
+        let t2107 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2161 = s_cylinder_leg4 * t1855;
+        let t2201 = c_cylinder_leg1 * (t1776 - t794) - minus_s_cylinder_leg1 * t1934;
+        let t2220 = gcylinder_vx_leg2 * t1480;
+        let t2224 = c_cylinder_leg2 * (t1800 - t864) - t1966 * t1804;
+        let t2228 = minus_gcylinder_vy_leg2 * t1480;
+        let t2245 = c_cylinder_leg3 * (t1829 - t917) - t1999 * t1825;
+        let t2267 = c_cylinder_leg4 * (t1860 - t958) - s_cylinder_leg4 * t2033;
+        let t2289 = c_cylinder_leg5 * (t1884 - t999) - s_cylinder_leg5 * t2066;
+        let t2311 = c_cylinder_leg6 * (t1908 - t1040) - s_cylinder_leg6 * t2099;
+        let t2366 = 9.81 * t780;
+        let t2368 = 9.81 * grod_vz_leg1;
+        let t2386 = 9.81 * t851;
+        let t2388 = 9.81 * grod_vz_leg2;
+        let t2406 = 9.81 * t903;
+        let t2408 = 9.81 * grod_vz_leg3;
+        let t2426 = 9.81 * t944;
+        let t2428 = 9.81 * grod_vz_leg4;
+        let t2446 = 9.81 * t986;
+        let t2448 = 9.81 * grod_vz_leg5;
+        let t2466 = 9.81 * t1027;
+        let t2468 = 9.81 * grod_vz_leg6;
+        let t2486 = t778 * t2368;
+        let t2489 = 9.81 * minus_s_cross_leg1;
+        let t2490 = c_cylinder_leg1 * t2489;
+        let t2492 = 9.81 * t790;
+        let t2502 = t2388 / t96;
+        let t2505 = 9.81 * minus_s_cross_leg2;
+        let t2506 = c_cylinder_leg2 * t2505;
+        let t2508 = 9.81 * t860;
+        let t2518 = t2408 / t124;
+        let t2521 = 9.81 * minus_s_cross_leg3;
+        let t2522 = c_cylinder_leg3 * t2521;
+        let t2524 = 9.81 * t913;
+        let t2534 = t2428 / t152;
+        let t2537 = 9.81 * minus_s_cross_leg4;
+        let t2538 = c_cylinder_leg4 * t2537;
+        let t2540 = 9.81 * t954;
+        let t2550 = t2448 / t181;
+        let t2553 = 9.81 * s_cross_leg5;
+        let t2554 = c_cylinder_leg5 * t2553;
+        let t2556 = 9.81 * t995;
+        let t2566 = t285 * t2468;
+        let t2569 = 9.81 * s_cross_leg6;
+        let t2570 = c_cylinder_leg6 * t2569;
+        let t2572 = 9.81 * t1036;
+        let t2582 = 9.81 * c_cross_leg1;
+        let t2589 = 9.81 * c_cross_leg2;
+        let t2596 = 9.81 * c_cross_leg3;
+        let t2603 = 9.81 * c_cross_leg4;
+        let t2610 = 9.81 * c_cross_leg5;
+        let t2617 = 9.81 * c_cross_leg6;
+        let t2625 = t1393 - t2489;
+        let t2627 = t52 * t1405 - minus_s_cylinder_leg1 * t2625;
+        let t2632 = actuator_accelerations[0] - (t796 - t2368);
+        let t2633 = t59 * (t1776 + t794) + t2632;
+        let t2637 = minus_gcross_vx_leg1 * t2627 + gcylinder_vx_leg1 * t2633
+            + grod_vx_leg1 * t1936;
+        let t2642 = gcross_vy_leg1 * t2627 + minus_gcylinder_vy_leg1 * t2633
+            - minus_minus_grod_vy_leg1 * t1936;
+        let t2647 = gcross_vz_leg1 * t2627 - gcylinder_vz_leg1 * t2633
+            - grod_vz_leg1 * t1936;
+        let t2658 = t1471 - t2505;
+        let t2660 = t99 * t1482 + s_cylinder_leg2 * t2658;
+        let t2665 = actuator_accelerations[1] - (t866 - t2388);
+        let t2666 = t96 * (t1800 + t864) + t2665;
+        let t2670 = minus_gcross_vx_leg2 * t2660 + gcylinder_vx_leg2 * t2666
+            + grod_vx_leg2 * t1969;
+        let t2675 = minus_gcylinder_vy_leg2 * t2666 - minus_gcross_vy_leg2 * t2660
+            - minus_minus_grod_vy_leg2 * t1969;
+        let t2680 = gcross_vz_leg2 * t2660 + minus_gcylinder_vz_leg2 * t2666
+            - grod_vz_leg2 * t1969;
+        let t2691 = t1532 - t2521;
+        let t2693 = t128 * t1544 + s_cylinder_leg3 * t2691;
+        let t2698 = actuator_accelerations[2] - (t919 - t2408);
+        let t2699 = t124 * (t1829 + t917) + t2698;
+        let t2703 = gcross_vx_leg3 * t2693 - gcylinder_vx_leg3 * t2699
+            - minus_minus_grod_vx_leg3 * t2002;
+        let t2708 = minus_gcross_vy_leg3 * t2693 + gcylinder_vy_leg3 * t2699
+            + grod_vy_leg3 * t2002;
+        let t2713 = gcross_vz_leg3 * t2693 + minus_gcylinder_vz_leg3 * t2699
+            - grod_vz_leg3 * t2002;
+        let t2724 = t1597 - t2537;
+        let t2726 = t156 * t1855 + s_cylinder_leg4 * t2724;
+        let t2731 = actuator_accelerations[3] - (t960 - t2428);
+        let t2732 = t152 * (t1860 + t958) + t2731;
+        let t2736 = gcross_vx_leg4 * t2726 - gcylinder_vx_leg4 * t2732
+            - minus_minus_grod_vx_leg4 * t2035;
+        let t2741 = minus_gcross_vy_leg4 * t2726 + gcylinder_vy_leg4 * t2732
+            + grod_vy_leg4 * t2035;
+        let t2746 = gcross_vz_leg4 * t2726 + minus_gcylinder_vz_leg4 * t2732
+            - grod_vz_leg4 * t2035;
+        let t2757 = t1654 + t2553;
+        let t2759 = t184 * t1666 + s_cylinder_leg5 * t2757;
+        let t2764 = actuator_accelerations[4] - (t1001 - t2448);
+        let t2765 = t181 * (t1884 + t999) + t2764;
+        let t2769 = gcross_vx_leg5 * t2759 + minus_gcylinder_vx_leg5 * t2765
+            - minus_minus_grod_vx_leg5 * t2068;
+        let t2774 = gcross_vy_leg5 * t2759 - gcylinder_vy_leg5 * t2765
+            - grod_vy_leg5 * t2068;
+        let t2779 = minus_gcylinder_vz_leg5 * t2765 - minus_gcross_vz_leg5 * t2759
+            - grod_vz_leg5 * t2068;
+        let t2790 = t1719 + t2569;
+        let t2792 = t212 * t1731 + s_cylinder_leg6 * t2790;
+        let t2797 = actuator_accelerations[5] - (t1042 - t2468);
+        let t2798 = t209 * (t1908 + t1040) + t2797;
+        let t2802 = gcross_vx_leg6 * t2792 + minus_gcylinder_vx_leg6 * t2798
+            - minus_minus_grod_vx_leg6 * t2101;
+        let t2807 = gcross_vy_leg6 * t2792 - gcylinder_vy_leg6 * t2798
+            - grod_vy_leg6 * t2101;
+        let t2812 = minus_gcylinder_vz_leg6 * t2798 - minus_gcross_vz_leg6 * t2792
+            - grod_vz_leg6 * t2101;
+        let t2824 = t1931 + t2492;
+        let t2827 = t774 * minus_rate_cross_leg1 + c_cylinder_leg1 * t2632
+            + minus_s_cylinder_leg1 * t2824;
+        let t2832 = minus_gcross_vx_leg1 * t2827 + t783 * t1403 + grod_vx_leg1 * t1942;
+        let t2837 = gcross_vy_leg1 * t2827 + t787 * t1403
+            - minus_minus_grod_vy_leg1 * t1942;
+        let t2840 = gcross_vz_leg1 * t2827 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t2853 = t1964 - t2508;
+        let t2856 = t845 * minus_rate_cross_leg2 + c_cylinder_leg2 * t2665
+            - s_cylinder_leg2 * t2853;
+        let t2860 = t96 * t2220 - minus_gcross_vx_leg2 * t2856 - grod_vx_leg2 * t1975;
+        let t2865 = minus_minus_grod_vy_leg2 * t1975 + minus_gcross_vy_leg2 * t2856
+            + t96 * t2228;
+        let t2868 = gcross_vz_leg2 * t2856 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t2880 = t1997 - t2524;
+        let t2883 = t898 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2698
+            - s_cylinder_leg3 * t2880;
+        let t2888 = gcross_vx_leg3 * t2883 + t906 * t1542
+            - minus_minus_grod_vx_leg3 * t2008;
+        let t2893 = t910 * t1542 - minus_gcross_vy_leg3 * t2883 - grod_vy_leg3 * t2008;
+        let t2896 = gcross_vz_leg3 * t2883 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2908 = t2030 - t2540;
+        let t2911 = t939 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2731
+            - s_cylinder_leg4 * t2908;
+        let t2916 = gcross_vx_leg4 * t2911 + t947 * t1853
+            - minus_minus_grod_vx_leg4 * t2041;
+        let t2921 = t951 * t1853 - minus_gcross_vy_leg4 * t2911 - grod_vy_leg4 * t2041;
+        let t2924 = gcross_vz_leg4 * t2911 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2936 = t2063 - t2556;
+        let t2939 = t980 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2764
+            - s_cylinder_leg5 * t2936;
+        let t2944 = gcross_vx_leg5 * t2939 - t992 * t1664
+            - minus_minus_grod_vx_leg5 * t2074;
+        let t2949 = gcross_vy_leg5 * t2939 + t988 * t1664 - grod_vy_leg5 * t2074;
+        let t2952 = minus_gcross_vz_leg5 * t2939
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t3003 = t2119 - t2606;
-        let t3006 = t1031 * minus_rate_cross_leg6 + c_cylinder_leg6 * t2831
-            - s_cylinder_leg6 * t3003;
-        let t3008 = t215 * t1924;
-        let t3012 = gcross_vx_leg6 * t3006 - minus_gcylinder_vx_leg6 * t3008
-            - minus_minus_grod_vx_leg6 * t1742;
-        let t3017 = gcross_vy_leg6 * t3006 + gcylinder_vy_leg6 * t3008
-            - grod_vy_leg6 * t1742;
-        let t3020 = minus_gcross_vz_leg6 * t3006
+        let t2964 = t2096 - t2572;
+        let t2967 = t1021 * minus_rate_cross_leg6 + c_cylinder_leg6 * t2797
+            - s_cylinder_leg6 * t2964;
+        let t2972 = gcross_vx_leg6 * t2967 - t1033 * t1729
+            - minus_minus_grod_vx_leg6 * t2107;
+        let t2977 = gcross_vy_leg6 * t2967 + t1029 * t1729 - grod_vy_leg6 * t2107;
+        let t2980 = minus_gcross_vz_leg6 * t2967
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t3032 = t52 * t1415 + c_cylinder_leg1 * t2659;
-        let t3035 = t2858 - t60 * t2228;
-        let t3039 = minus_gcross_vx_leg1 * t3032 + gcylinder_vx_leg1 * t3035
-            - grod_vx_leg1 * t805;
-        let t3044 = minus_minus_grod_vy_leg1 * t805 + gcross_vy_leg1 * t3032
-            + minus_gcylinder_vy_leg1 * t3035;
-        let t3049 = gcylinder_vz_leg1 * t3035 - gcross_vz_leg1 * t3032
-            - grod_vz_leg1 * t805;
-        let t3060 = t97 * t2252 + t2889;
-        let t3064 = t89 * t1491 - c_cylinder_leg2 * t2692;
-        let t3068 = gcylinder_vx_leg2 * t3060 - minus_gcross_vx_leg2 * t3064
-            - grod_vx_leg2 * t875;
-        let t3073 = minus_minus_grod_vy_leg2 * t875 + minus_gcross_vy_leg2 * t3064
-            + minus_gcylinder_vy_leg2 * t3060;
-        let t3078 = gcross_vz_leg2 * t3064 - minus_gcylinder_vz_leg2 * t3060
-            - grod_vz_leg2 * t875;
-        let t3090 = t118 * t1552 - c_cylinder_leg3 * t2725;
-        let t3093 = t126 * t2274 + t2916;
-        let t3097 = gcross_vx_leg3 * t3090 + gcylinder_vx_leg3 * t3093
-            - minus_minus_grod_vx_leg3 * t928;
-        let t3102 = gcylinder_vy_leg3 * t3093 - minus_gcross_vy_leg3 * t3090
-            - grod_vy_leg3 * t928;
-        let t3107 = gcross_vz_leg3 * t3090 - minus_gcylinder_vz_leg3 * t3093
-            - grod_vz_leg3 * t928;
-        let t3119 = t147 * t1616 - c_cylinder_leg4 * t2758;
-        let t3122 = t155 * t2297 + t2945;
-        let t3126 = gcross_vx_leg4 * t3119 + gcylinder_vx_leg4 * t3122
-            - minus_minus_grod_vx_leg4 * t969;
-        let t3131 = gcylinder_vy_leg4 * t3122 - minus_gcross_vy_leg4 * t3119
-            - grod_vy_leg4 * t969;
-        let t3136 = gcross_vz_leg4 * t3119 - minus_gcylinder_vz_leg4 * t3122
-            - grod_vz_leg4 * t969;
-        let t3148 = t186 * t1680 - c_cylinder_leg5 * t2791;
-        let t3151 = t181 * t2320 + t2974;
-        let t3155 = gcross_vx_leg5 * t3148 - minus_gcylinder_vx_leg5 * t3151
-            - minus_minus_grod_vx_leg5 * t1010;
-        let t3160 = gcross_vy_leg5 * t3148 + gcylinder_vy_leg5 * t3151
-            - grod_vy_leg5 * t1010;
-        let t3165 = minus_gcross_vz_leg5 * t3148 + minus_gcylinder_vz_leg5 * t3151
-            + grod_vz_leg5 * t1010;
-        let t3177 = t212 * t1744 - c_cylinder_leg6 * t2824;
-        let t3180 = t215 * t2343 + t3003;
-        let t3184 = gcross_vx_leg6 * t3177 - minus_gcylinder_vx_leg6 * t3180
-            - minus_minus_grod_vx_leg6 * t1051;
-        let t3189 = gcross_vy_leg6 * t3177 + gcylinder_vy_leg6 * t3180
-            - grod_vy_leg6 * t1051;
-        let t3194 = minus_gcross_vz_leg6 * t3177 + minus_gcylinder_vz_leg6 * t3180
-            + grod_vz_leg6 * t1051;
+        let t2991 = c_cylinder_leg1 * (t2625 + t1396);
+        let t2993 = t2824 - t1933;
+        let t2997 = minus_gcross_vx_leg1 * t2991 + gcylinder_vx_leg1 * t2993
+            - grod_vx_leg1 * t795;
+        let t3002 = minus_minus_grod_vy_leg1 * t795 + gcross_vy_leg1 * t2991
+            + minus_gcylinder_vy_leg1 * t2993;
+        let t3007 = gcylinder_vz_leg1 * t2993 - gcross_vz_leg1 * t2991
+            - grod_vz_leg1 * t795;
+        let t3017 = t1966 + t2853;
+        let t3020 = c_cylinder_leg2 * (t2658 + t1474);
+        let t3024 = gcylinder_vx_leg2 * t3017 + minus_gcross_vx_leg2 * t3020
+            - grod_vx_leg2 * t865;
+        let t3029 = minus_minus_grod_vy_leg2 * t865 + minus_gcylinder_vy_leg2 * t3017
+            - minus_gcross_vy_leg2 * t3020;
+        let t3034 = gcross_vz_leg2 * t3020 + minus_gcylinder_vz_leg2 * t3017
+            + grod_vz_leg2 * t865;
+        let t3045 = c_cylinder_leg3 * (t2691 + t1535);
+        let t3047 = t1999 + t2880;
+        let t3051 = gcylinder_vx_leg3 * t3047 - gcross_vx_leg3 * t3045
+            - minus_minus_grod_vx_leg3 * t918;
+        let t3056 = gcylinder_vy_leg3 * t3047 + minus_gcross_vy_leg3 * t3045
+            - grod_vy_leg3 * t918;
+        let t3061 = gcross_vz_leg3 * t3045 + minus_gcylinder_vz_leg3 * t3047
+            + grod_vz_leg3 * t918;
+        let t3072 = c_cylinder_leg4 * (t2724 + t1600);
+        let t3074 = t2032 + t2908;
+        let t3078 = gcylinder_vx_leg4 * t3074 - gcross_vx_leg4 * t3072
+            - minus_minus_grod_vx_leg4 * t959;
+        let t3083 = gcylinder_vy_leg4 * t3074 + minus_gcross_vy_leg4 * t3072
+            - grod_vy_leg4 * t959;
+        let t3088 = gcross_vz_leg4 * t3072 + minus_gcylinder_vz_leg4 * t3074
+            + grod_vz_leg4 * t959;
+        let t3099 = c_cylinder_leg5 * (t2757 + t1657);
+        let t3101 = t2065 + t2936;
+        let t3105 = gcross_vx_leg5 * t3099 + minus_gcylinder_vx_leg5 * t3101
+            + minus_minus_grod_vx_leg5 * t1000;
+        let t3110 = gcylinder_vy_leg5 * t3101 - gcross_vy_leg5 * t3099
+            - grod_vy_leg5 * t1000;
+        let t3115 = minus_gcylinder_vz_leg5 * t3101 - minus_gcross_vz_leg5 * t3099
+            + grod_vz_leg5 * t1000;
+        let t3127 = t209 * t1733 - c_cylinder_leg6 * t2790;
+        let t3129 = t2098 + t2964;
+        let t3133 = gcross_vx_leg6 * t3127 - minus_gcylinder_vx_leg6 * t3129
+            - minus_minus_grod_vx_leg6 * t1041;
+        let t3138 = gcross_vy_leg6 * t3127 + gcylinder_vy_leg6 * t3129
+            - grod_vy_leg6 * t1041;
+        let t3143 = minus_gcross_vz_leg6 * t3127 + minus_gcylinder_vz_leg6 * t3129
+            + grod_vz_leg6 * t1041;
         Ok([
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1279, t1332,
-                t1161 * t1274 - t1159 * t697 + t1164 * t1277, t1322,
-                minus_gcross_vx_leg1 * t1416 - t1420, t1462 - minus_gcross_vx_leg2 * t1492,
-                gcross_vx_leg3 * t1553 + t1557, gcross_vx_leg4 * t1617 + t1621,
-                gcross_vx_leg5 * t1681 - t1685, gcross_vx_leg6 * t1745 - t1749,
-                gcylinder_vx_leg1 * t1789 - minus_gcross_vx_leg1 * t1797,
-                gcylinder_vx_leg2 * t1816 - minus_gcross_vx_leg2 * t1824,
-                gcross_vx_leg3 * t1848 + gcylinder_vx_leg3 * t1851,
-                gcross_vx_leg4 * t1875 + gcylinder_vx_leg4 * t1878,
-                gcross_vx_leg5 * t1902 - minus_gcylinder_vx_leg5 * t1905,
-                gcross_vx_leg6 * t1929 - minus_gcylinder_vx_leg6 * t1932,
-                -(minus_gcross_vx_leg1 * t1964 + gcylinder_vx_leg1 * t1413),
-                -(minus_gcross_vx_leg2 * t1997 + gcylinder_vx_leg2 * t1489),
-                gcross_vx_leg3 * t2030 - gcylinder_vx_leg3 * t1550,
-                gcross_vx_leg4 * t2063 - gcylinder_vx_leg4 * t1614,
-                gcross_vx_leg5 * t2096 + minus_gcylinder_vx_leg5 * t1678,
-                gcross_vx_leg6 * t2129 + minus_gcylinder_vx_leg6 * t1742,
-                t1420 - minus_gcross_vx_leg1 * t2148, minus_gcross_vx_leg2 * t2161 - t1462,
-                -(gcross_vx_leg3 * t2174 + t1557), -(gcross_vx_leg4 * t2187 + t1621),
-                t1685 - gcross_vx_leg5 * t2200, t1749 - gcross_vx_leg6 * t2213,
-                -(minus_gcross_vx_leg1 * t2230 + gcylinder_vx_leg1 * t1792),
-                gcylinder_vx_leg2 * t1819 - minus_gcross_vx_leg2 * t2254,
-                gcross_vx_leg3 * t2276 + gcylinder_vx_leg3 * t1843,
-                gcross_vx_leg4 * t2299 + gcylinder_vx_leg4 * t1870,
-                gcross_vx_leg5 * t2322 - minus_gcylinder_vx_leg5 * t1897,
-                gcross_vx_leg6 * t2345 - minus_gcylinder_vx_leg6 * t1924,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1269, t1322,
+                t1151 * t1264 - t1149 * t686 + t1154 * t1267, t1312,
+                minus_gcross_vx_leg1 * t1407 - t1411, t1453 - minus_gcross_vx_leg2 * t1484,
+                gcross_vx_leg3 * t1546 + t1550, t1607 - gcross_vx_leg4 * t1602,
+                gcross_vx_leg5 * t1668 - t1672, gcross_vx_leg6 * t1733 - t1737,
+                gcylinder_vx_leg1 * t1777 - minus_gcross_vx_leg1 * t1782,
+                gcylinder_vx_leg2 * t1801 - minus_gcross_vx_leg2 * t1806,
+                gcross_vx_leg3 * t1827 + gcylinder_vx_leg3 * t1830,
+                gcross_vx_leg4 * t1858 + gcylinder_vx_leg4 * t1861,
+                gcross_vx_leg5 * t1882 - minus_gcylinder_vx_leg5 * t1885,
+                gcross_vx_leg6 * t1906 - minus_gcylinder_vx_leg6 * t1909,
+                -(minus_gcross_vx_leg1 * t1940 + gcylinder_vx_leg1 * t1942),
+                -(minus_gcross_vx_leg2 * t1973 + gcylinder_vx_leg2 * t1975),
+                gcross_vx_leg3 * t2006 - gcylinder_vx_leg3 * t2008,
+                gcross_vx_leg4 * t2039 - gcylinder_vx_leg4 * t2041,
+                gcross_vx_leg5 * t2072 + minus_gcylinder_vx_leg5 * t2074,
+                gcross_vx_leg6 * t2105 + minus_gcylinder_vx_leg6 * t2107,
+                t1411 - minus_gcross_vx_leg1 * t1406, minus_gcross_vx_leg2 * t1483 - t1453,
+                -(gcross_vx_leg3 * t1545 + t1550), -(gcross_vx_leg4 * t2161 + t1607),
+                t1672 - gcross_vx_leg5 * t1667, t1737 - gcross_vx_leg6 * t1732,
+                -(minus_gcross_vx_leg1 * t2201 + gcylinder_vx_leg1 * t1403),
+                t2220 - minus_gcross_vx_leg2 * t2224,
+                gcross_vx_leg3 * t2245 + gcylinder_vx_leg3 * t1542,
+                gcross_vx_leg4 * t2267 + gcylinder_vx_leg4 * t1853,
+                gcross_vx_leg5 * t2289 - minus_gcylinder_vx_leg5 * t1664,
+                gcross_vx_leg6 * t2311 - minus_gcylinder_vx_leg6 * t1729,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t2400 + gcylinder_vx_leg1 * t2402),
-                minus_gcross_vx_leg2 * t2420 - gcylinder_vx_leg2 * t2422,
-                -(gcross_vx_leg3 * t2440 + gcylinder_vx_leg3 * t2442),
-                -(gcross_vx_leg4 * t2460 + gcylinder_vx_leg4 * t2462),
-                gcross_vx_leg5 * t2480 + minus_gcylinder_vx_leg5 * t2482,
-                gcross_vx_leg6 * t2500 + minus_gcylinder_vx_leg6 * t2502, grod_vx_leg1 * t2520,
-                grod_vx_leg2 * t2536, minus_minus_grod_vx_leg3 * t2552,
-                minus_minus_grod_vx_leg4 * t2568, minus_minus_grod_vx_leg5 * t2584,
-                minus_minus_grod_vx_leg6 * t2600, -(minus_gcross_vx_leg1 * t2616),
-                -(minus_gcross_vx_leg2 * t2623), gcross_vx_leg3 * t2630, gcross_vx_leg4 * t2637,
-                gcross_vx_leg5 * t2644, gcross_vx_leg6 * t2651, -t2671, -t2704, t2737, t2770, t2803,
-                t2836, -t2867, t2896, t2925, t2954, t2983, t3012, t3039, t3068, t3097, t3126, t3155,
-                t3184, grod_vx_leg1 * actuator_accelerations[0],
+                -(minus_gcross_vx_leg1 * t2366 + gcylinder_vx_leg1 * t2368),
+                minus_gcross_vx_leg2 * t2386 - gcylinder_vx_leg2 * t2388,
+                -(gcross_vx_leg3 * t2406 + gcylinder_vx_leg3 * t2408),
+                -(gcross_vx_leg4 * t2426 + gcylinder_vx_leg4 * t2428),
+                gcross_vx_leg5 * t2446 + minus_gcylinder_vx_leg5 * t2448,
+                gcross_vx_leg6 * t2466 + minus_gcylinder_vx_leg6 * t2468, grod_vx_leg1 * t2486,
+                grod_vx_leg2 * t2502, minus_minus_grod_vx_leg3 * t2518,
+                minus_minus_grod_vx_leg4 * t2534, minus_minus_grod_vx_leg5 * t2550,
+                minus_minus_grod_vx_leg6 * t2566, -(minus_gcross_vx_leg1 * t2582),
+                -(minus_gcross_vx_leg2 * t2589), gcross_vx_leg3 * t2596, gcross_vx_leg4 * t2603,
+                gcross_vx_leg5 * t2610, gcross_vx_leg6 * t2617, -t2637, -t2670, t2703, t2736, t2769,
+                t2802, -t2832, t2860, t2888, t2916, t2944, t2972, t2997, t3024, t3051, t3078,
+                -t3105, t3133, grod_vx_leg1 * actuator_accelerations[0],
                 grod_vx_leg2 * actuator_accelerations[1],
                 minus_minus_grod_vx_leg3 * actuator_accelerations[2],
                 minus_minus_grod_vx_leg4 * actuator_accelerations[3],
                 minus_minus_grod_vx_leg5 * actuator_accelerations[4],
-                minus_minus_grod_vx_leg6 * actuator_accelerations[5], t487, t488, t490, t492, t494,
-                t496, ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]),
+                minus_minus_grod_vx_leg6 * actuator_accelerations[5], t221, t222, t224, t226, t228,
+                t230, ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg3,
@@ -17130,55 +17095,55 @@ impl Hexapod {
                 minus_minus_grod_vx_leg6,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1285, t1336,
-                t1159 * t1280 - t1161 * t676 + t1164 * t1283, t1309, t1423 - gcross_vy_leg1 * t1416,
-                -(minus_gcross_vy_leg2 * t1492 + t1498), t1560 - minus_gcross_vy_leg3 * t1553,
-                t1624 - minus_gcross_vy_leg4 * t1617, gcross_vy_leg5 * t1681 + t1690,
-                gcross_vy_leg6 * t1745 + t1754,
-                gcross_vy_leg1 * t1797 - minus_gcylinder_vy_leg1 * t1789,
-                -(minus_gcross_vy_leg2 * t1824 + minus_gcylinder_vy_leg2 * t1816),
-                gcylinder_vy_leg3 * t1851 - minus_gcross_vy_leg3 * t1848,
-                gcylinder_vy_leg4 * t1878 - minus_gcross_vy_leg4 * t1875,
-                gcross_vy_leg5 * t1902 + gcylinder_vy_leg5 * t1905,
-                gcross_vy_leg6 * t1929 + gcylinder_vy_leg6 * t1932,
-                gcross_vy_leg1 * t1964 + minus_gcylinder_vy_leg1 * t1413,
-                minus_gcylinder_vy_leg2 * t1489 - minus_gcross_vy_leg2 * t1997,
-                -(minus_gcross_vy_leg3 * t2030 + gcylinder_vy_leg3 * t1550),
-                -(minus_gcross_vy_leg4 * t2063 + gcylinder_vy_leg4 * t1614),
-                gcross_vy_leg5 * t2096 - gcylinder_vy_leg5 * t1678,
-                gcross_vy_leg6 * t2129 - gcylinder_vy_leg6 * t1742, gcross_vy_leg1 * t2148 - t1423,
-                minus_gcross_vy_leg2 * t2161 + t1498, minus_gcross_vy_leg3 * t2174 - t1560,
-                minus_gcross_vy_leg4 * t2187 - t1624, -(gcross_vy_leg5 * t2200 + t1690),
-                -(gcross_vy_leg6 * t2213 + t1754),
-                gcross_vy_leg1 * t2230 + minus_gcylinder_vy_leg1 * t1792,
-                -(minus_gcross_vy_leg2 * t2254 + minus_gcylinder_vy_leg2 * t1819),
-                gcylinder_vy_leg3 * t1843 - minus_gcross_vy_leg3 * t2276,
-                gcylinder_vy_leg4 * t1870 - minus_gcross_vy_leg4 * t2299,
-                gcross_vy_leg5 * t2322 + gcylinder_vy_leg5 * t1897,
-                gcross_vy_leg6 * t2345 + gcylinder_vy_leg6 * t1924,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1275, t1326,
+                t1149 * t1270 - t1151 * t665 + t1154 * t1273, t1299, t1414 - gcross_vy_leg1 * t1407,
+                -(minus_gcross_vy_leg2 * t1484 + t1490), t1553 - minus_gcross_vy_leg3 * t1546,
+                t1610 + minus_gcross_vy_leg4 * t1602, gcross_vy_leg5 * t1668 + t1677,
+                gcross_vy_leg6 * t1733 + t1742,
+                gcross_vy_leg1 * t1782 - minus_gcylinder_vy_leg1 * t1777,
+                -(minus_gcross_vy_leg2 * t1806 + minus_gcylinder_vy_leg2 * t1801),
+                gcylinder_vy_leg3 * t1830 - minus_gcross_vy_leg3 * t1827,
+                gcylinder_vy_leg4 * t1861 - minus_gcross_vy_leg4 * t1858,
+                gcross_vy_leg5 * t1882 + gcylinder_vy_leg5 * t1885,
+                gcross_vy_leg6 * t1906 + gcylinder_vy_leg6 * t1909,
+                gcross_vy_leg1 * t1940 + minus_gcylinder_vy_leg1 * t1942,
+                minus_gcylinder_vy_leg2 * t1975 - minus_gcross_vy_leg2 * t1973,
+                -(minus_gcross_vy_leg3 * t2006 + gcylinder_vy_leg3 * t2008),
+                -(minus_gcross_vy_leg4 * t2039 + gcylinder_vy_leg4 * t2041),
+                gcross_vy_leg5 * t2072 - gcylinder_vy_leg5 * t2074,
+                gcross_vy_leg6 * t2105 - gcylinder_vy_leg6 * t2107, gcross_vy_leg1 * t1406 - t1414,
+                minus_gcross_vy_leg2 * t1483 + t1490, minus_gcross_vy_leg3 * t1545 - t1553,
+                minus_gcross_vy_leg4 * t2161 - t1610, -(gcross_vy_leg5 * t1667 + t1677),
+                -(gcross_vy_leg6 * t1732 + t1742),
+                gcross_vy_leg1 * t2201 + minus_gcylinder_vy_leg1 * t1403,
+                -(minus_gcross_vy_leg2 * t2224 + t2228),
+                gcylinder_vy_leg3 * t1542 - minus_gcross_vy_leg3 * t2245,
+                gcylinder_vy_leg4 * t1853 - minus_gcross_vy_leg4 * t2267,
+                gcross_vy_leg5 * t2289 + gcylinder_vy_leg5 * t1664,
+                gcross_vy_leg6 * t2311 + gcylinder_vy_leg6 * t1729,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t2400 + minus_gcylinder_vy_leg1 * t2402,
-                minus_gcross_vy_leg2 * t2420 + minus_gcylinder_vy_leg2 * t2422,
-                minus_gcross_vy_leg3 * t2440 - gcylinder_vy_leg3 * t2442,
-                minus_gcross_vy_leg4 * t2460 - gcylinder_vy_leg4 * t2462,
-                gcross_vy_leg5 * t2480 - gcylinder_vy_leg5 * t2482,
-                gcross_vy_leg6 * t2500 - gcylinder_vy_leg6 * t2502,
-                minus_minus_grod_vy_leg1 * t2520, minus_minus_grod_vy_leg2 * t2536,
-                grod_vy_leg3 * t2552, grod_vy_leg4 * t2568, grod_vy_leg5 * t2584,
-                grod_vy_leg6 * t2600, gcross_vy_leg1 * t2616, -(minus_gcross_vy_leg2 * t2623),
-                -(minus_gcross_vy_leg3 * t2630), -(minus_gcross_vy_leg4 * t2637),
-                gcross_vy_leg5 * t2644, gcross_vy_leg6 * t2651, t2676, t2709, -t2742, -t2775, t2808,
-                t2841, t2872, -t2901, t2930, t2959, t2988, t3017, -t3044, -t3073, t3102, t3131,
-                t3160, t3189, minus_minus_grod_vy_leg1 * actuator_accelerations[0],
+                gcross_vy_leg1 * t2366 + minus_gcylinder_vy_leg1 * t2368,
+                minus_gcross_vy_leg2 * t2386 + minus_gcylinder_vy_leg2 * t2388,
+                minus_gcross_vy_leg3 * t2406 - gcylinder_vy_leg3 * t2408,
+                minus_gcross_vy_leg4 * t2426 - gcylinder_vy_leg4 * t2428,
+                gcross_vy_leg5 * t2446 - gcylinder_vy_leg5 * t2448,
+                gcross_vy_leg6 * t2466 - gcylinder_vy_leg6 * t2468,
+                minus_minus_grod_vy_leg1 * t2486, minus_minus_grod_vy_leg2 * t2502,
+                grod_vy_leg3 * t2518, grod_vy_leg4 * t2534, grod_vy_leg5 * t2550,
+                grod_vy_leg6 * t2566, gcross_vy_leg1 * t2582, -(minus_gcross_vy_leg2 * t2589),
+                -(minus_gcross_vy_leg3 * t2596), -(minus_gcross_vy_leg4 * t2603),
+                gcross_vy_leg5 * t2610, gcross_vy_leg6 * t2617, t2642, t2675, -t2708, -t2741, t2774,
+                t2807, t2837, -t2865, t2893, t2921, t2949, t2977, -t3002, -t3029, t3056, t3083,
+                t3110, t3138, minus_minus_grod_vy_leg1 * actuator_accelerations[0],
                 minus_minus_grod_vy_leg2 * actuator_accelerations[1],
                 grod_vy_leg3 * actuator_accelerations[2], grod_vy_leg4 * actuator_accelerations[3],
                 grod_vy_leg5 * actuator_accelerations[4], grod_vy_leg6 * actuator_accelerations[5],
-                t501, t502, t500, t505, t507, t509,
+                t350, t351, t349, t354, t356, t358,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg1,
                     actuator_velocities[0],
@@ -17199,58 +17164,58 @@ impl Hexapod {
                 grod_vy_leg6,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1291, t1340,
-                t1159 * t1286 + t1161 * t1288 - t1164 * t721, t1299,
-                -(gcross_vz_leg1 * t1416 + t1430), gcross_vz_leg2 * t1492 - t1503,
-                gcross_vz_leg3 * t1553 - t1567, gcross_vz_leg4 * t1617 - t1631,
-                -(minus_gcross_vz_leg5 * t1681 + t1695), -(minus_gcross_vz_leg6 * t1745 + t1759),
-                gcross_vz_leg1 * t1797 + gcylinder_vz_leg1 * t1789,
-                gcross_vz_leg2 * t1824 - minus_gcylinder_vz_leg2 * t1816,
-                gcross_vz_leg3 * t1848 - minus_gcylinder_vz_leg3 * t1851,
-                gcross_vz_leg4 * t1875 - minus_gcylinder_vz_leg4 * t1878,
-                -(minus_gcross_vz_leg5 * t1902 + minus_gcylinder_vz_leg5 * t1905),
-                -(minus_gcross_vz_leg6 * t1929 + minus_gcylinder_vz_leg6 * t1932),
-                gcross_vz_leg1 * t1964 - gcylinder_vz_leg1 * t1413,
-                gcross_vz_leg2 * t1997 + minus_gcylinder_vz_leg2 * t1489,
-                gcross_vz_leg3 * t2030 + minus_gcylinder_vz_leg3 * t1550,
-                gcross_vz_leg4 * t2063 + minus_gcylinder_vz_leg4 * t1614,
-                minus_gcylinder_vz_leg5 * t1678 - minus_gcross_vz_leg5 * t2096,
-                minus_gcylinder_vz_leg6 * t1742 - minus_gcross_vz_leg6 * t2129,
-                gcross_vz_leg1 * t2148 + t1430, t1503 - gcross_vz_leg2 * t2161,
-                t1567 - gcross_vz_leg3 * t2174, t1631 - gcross_vz_leg4 * t2187,
-                minus_gcross_vz_leg5 * t2200 + t1695, minus_gcross_vz_leg6 * t2213 + t1759,
-                gcross_vz_leg1 * t2230 - gcylinder_vz_leg1 * t1792,
-                gcross_vz_leg2 * t2254 - minus_gcylinder_vz_leg2 * t1819,
-                gcross_vz_leg3 * t2276 - minus_gcylinder_vz_leg3 * t1843,
-                gcross_vz_leg4 * t2299 - minus_gcylinder_vz_leg4 * t1870,
-                -(minus_gcross_vz_leg5 * t2322 + minus_gcylinder_vz_leg5 * t1897),
-                -(minus_gcross_vz_leg6 * t2345 + minus_gcylinder_vz_leg6 * t1924),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1281, t1330,
+                t1149 * t1276 + t1151 * t1278 - t1154 * t710, t1289,
+                -(gcross_vz_leg1 * t1407 + t1421), gcross_vz_leg2 * t1484 - t1495,
+                gcross_vz_leg3 * t1546 - t1560, -(gcross_vz_leg4 * t1602 + t1617),
+                -(minus_gcross_vz_leg5 * t1668 + t1682), -(minus_gcross_vz_leg6 * t1733 + t1747),
+                gcross_vz_leg1 * t1782 + gcylinder_vz_leg1 * t1777,
+                gcross_vz_leg2 * t1806 - minus_gcylinder_vz_leg2 * t1801,
+                gcross_vz_leg3 * t1827 - minus_gcylinder_vz_leg3 * t1830,
+                gcross_vz_leg4 * t1858 - minus_gcylinder_vz_leg4 * t1861,
+                -(minus_gcross_vz_leg5 * t1882 + minus_gcylinder_vz_leg5 * t1885),
+                -(minus_gcross_vz_leg6 * t1906 + minus_gcylinder_vz_leg6 * t1909),
+                gcross_vz_leg1 * t1940 - gcylinder_vz_leg1 * t1942,
+                gcross_vz_leg2 * t1973 + minus_gcylinder_vz_leg2 * t1975,
+                gcross_vz_leg3 * t2006 + minus_gcylinder_vz_leg3 * t2008,
+                gcross_vz_leg4 * t2039 + minus_gcylinder_vz_leg4 * t2041,
+                minus_gcylinder_vz_leg5 * t2074 - minus_gcross_vz_leg5 * t2072,
+                minus_gcylinder_vz_leg6 * t2107 - minus_gcross_vz_leg6 * t2105,
+                gcross_vz_leg1 * t1406 + t1421, t1495 - gcross_vz_leg2 * t1483,
+                t1560 - gcross_vz_leg3 * t1545, t1617 - gcross_vz_leg4 * t2161,
+                minus_gcross_vz_leg5 * t1667 + t1682, minus_gcross_vz_leg6 * t1732 + t1747,
+                gcross_vz_leg1 * t2201 - gcylinder_vz_leg1 * t1403,
+                gcross_vz_leg2 * t2224 - minus_gcylinder_vz_leg2 * t1480,
+                gcross_vz_leg3 * t2245 - minus_gcylinder_vz_leg3 * t1542,
+                gcross_vz_leg4 * t2267 - minus_gcylinder_vz_leg4 * t1853,
+                -(minus_gcross_vz_leg5 * t2289 + minus_gcylinder_vz_leg5 * t1664),
+                -(minus_gcross_vz_leg6 * t2311 + minus_gcylinder_vz_leg6 * t1729),
                 gcylinder_vz_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                gcross_vz_leg1 * t2400 - gcylinder_vz_leg1 * t2402,
-                minus_gcylinder_vz_leg2 * t2422 - gcross_vz_leg2 * t2420,
-                minus_gcylinder_vz_leg3 * t2442 - gcross_vz_leg3 * t2440,
-                minus_gcylinder_vz_leg4 * t2462 - gcross_vz_leg4 * t2460,
-                minus_gcylinder_vz_leg5 * t2482 - minus_gcross_vz_leg5 * t2480,
-                minus_gcylinder_vz_leg6 * t2502 - minus_gcross_vz_leg6 * t2500,
-                -(gcross_vz_leg1 * t2524 + gcylinder_vz_leg1 * t2526),
-                -(gcross_vz_leg2 * t2540 + minus_gcylinder_vz_leg2 * t2542),
-                -(gcross_vz_leg3 * t2556 + minus_gcylinder_vz_leg3 * t2558),
-                -(gcross_vz_leg4 * t2572 + minus_gcylinder_vz_leg4 * t2574),
-                -(minus_gcross_vz_leg5 * t2588 + minus_gcylinder_vz_leg5 * t2590),
-                -(minus_gcross_vz_leg6 * t2604 + minus_gcylinder_vz_leg6 * t2606),
-                gcross_vz_leg1 * t2616, gcross_vz_leg2 * t2623, gcross_vz_leg3 * t2630,
-                gcross_vz_leg4 * t2637, -(minus_gcross_vz_leg5 * t2644),
-                -(minus_gcross_vz_leg6 * t2651), t2681, t2714, t2747, t2780, t2813, t2846, t2875,
-                t2904, t2933, t2962, -t2991, -t3020, t3049, t3078, t3107, t3136, -t3165, -t3194,
+                gcross_vz_leg1 * t2366 - gcylinder_vz_leg1 * t2368,
+                minus_gcylinder_vz_leg2 * t2388 - gcross_vz_leg2 * t2386,
+                minus_gcylinder_vz_leg3 * t2408 - gcross_vz_leg3 * t2406,
+                minus_gcylinder_vz_leg4 * t2428 - gcross_vz_leg4 * t2426,
+                minus_gcylinder_vz_leg5 * t2448 - minus_gcross_vz_leg5 * t2446,
+                minus_gcylinder_vz_leg6 * t2468 - minus_gcross_vz_leg6 * t2466,
+                -(gcross_vz_leg1 * t2490 + gcylinder_vz_leg1 * t2492),
+                -(gcross_vz_leg2 * t2506 + minus_gcylinder_vz_leg2 * t2508),
+                -(gcross_vz_leg3 * t2522 + minus_gcylinder_vz_leg3 * t2524),
+                -(gcross_vz_leg4 * t2538 + minus_gcylinder_vz_leg4 * t2540),
+                -(minus_gcross_vz_leg5 * t2554 + minus_gcylinder_vz_leg5 * t2556),
+                -(minus_gcross_vz_leg6 * t2570 + minus_gcylinder_vz_leg6 * t2572),
+                gcross_vz_leg1 * t2582, gcross_vz_leg2 * t2589, gcross_vz_leg3 * t2596,
+                gcross_vz_leg4 * t2603, -(minus_gcross_vz_leg5 * t2610),
+                -(minus_gcross_vz_leg6 * t2617), t2647, t2680, t2713, t2746, t2779, t2812, t2840,
+                t2868, t2896, t2924, -t2952, -t2980, t3007, -t3034, -t3061, -t3088, -t3115, -t3143,
                 grod_vz_leg1 * actuator_accelerations[0], grod_vz_leg2 * actuator_accelerations[1],
                 grod_vz_leg3 * actuator_accelerations[2], grod_vz_leg4 * actuator_accelerations[3],
                 grod_vz_leg5 * actuator_accelerations[4], grod_vz_leg6 * actuator_accelerations[5],
-                t515, t516, t518, t520, t522, t524,
+                t420, t421, t423, t425, t427, t429,
                 ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]),
@@ -17260,64 +17225,64 @@ impl Hexapod {
                 grod_vz_leg2, grod_vz_leg3, grod_vz_leg4, grod_vz_leg5, grod_vz_leg6,
             ],
             [
-                t5 * t1155 + t1168 - t1173, t5 * t1190 + t35 * t1193 + t1159 * t1198,
-                t5 * t1216 + t35 * t1219 + t1159 * t1222, t35 * t1189 - t1236 + t1173,
-                t5 * t1247 + t35 * t1249 + t1159 * t1252, t1236 - t1168 + t1159 * t1215,
-                t9 * t1299 - t22 * t1309, t13 * t1299 - t26 * t1309, t1161 * t1299 - t1164 * t1309,
-                0.0, -(gcross_wx_leg1 * t1416 + t1439), t1512 - minus_gcross_wx_leg2 * t1492,
-                gcross_wx_leg3 * t1553 - t1576, gcross_wx_leg4 * t1617 - t1640,
-                gcross_wx_leg5 * t1681 + t1704, -(minus_gcross_wx_leg6 * t1745 + t1768),
-                gcross_wx_leg1 * t1797 + gcylinder_wx_leg1 * t1789,
-                gcylinder_wx_leg2 * t1816 - minus_gcross_wx_leg2 * t1824,
-                gcross_wx_leg3 * t1848 - minus_gcylinder_wx_leg3 * t1851,
-                gcross_wx_leg4 * t1875 - minus_gcylinder_wx_leg4 * t1878,
-                gcross_wx_leg5 * t1902 + gcylinder_wx_leg5 * t1905,
-                -(minus_gcross_wx_leg6 * t1929 + minus_gcylinder_wx_leg6 * t1932),
-                gcross_wx_leg1 * t1964 - gcylinder_wx_leg1 * t1413,
-                -(minus_gcross_wx_leg2 * t1997 + gcylinder_wx_leg2 * t1489),
-                gcross_wx_leg3 * t2030 + minus_gcylinder_wx_leg3 * t1550,
-                gcross_wx_leg4 * t2063 + minus_gcylinder_wx_leg4 * t1614,
-                gcross_wx_leg5 * t2096 - gcylinder_wx_leg5 * t1678,
-                minus_gcylinder_wx_leg6 * t1742 - minus_gcross_wx_leg6 * t2129,
-                gcross_wx_leg1 * t2148 + t1439, -(t1512 - minus_gcross_wx_leg2 * t2161),
-                t1576 - gcross_wx_leg3 * t2174, t1640 - gcross_wx_leg4 * t2187,
-                -(gcross_wx_leg5 * t2200 + t1704), minus_gcross_wx_leg6 * t2213 + t1768,
-                gcross_wx_leg1 * t2230 - gcylinder_wx_leg1 * t1792,
-                gcylinder_wx_leg2 * t1819 - minus_gcross_wx_leg2 * t2254,
-                gcross_wx_leg3 * t2276 - minus_gcylinder_wx_leg3 * t1843,
-                gcross_wx_leg4 * t2299 - minus_gcylinder_wx_leg4 * t1870,
-                gcross_wx_leg5 * t2322 + gcylinder_wx_leg5 * t1897,
-                -(minus_gcross_wx_leg6 * t2345 + minus_gcylinder_wx_leg6 * t1924),
+                t5 * t1145 + t1158 - t1163, t5 * t1180 + t35 * t1183 + t1149 * t1188,
+                t5 * t1206 + t35 * t1209 + t1149 * t1212, t35 * t1179 - t1226 + t1163,
+                t5 * t1237 + t35 * t1239 + t1149 * t1242, t1226 - t1158 + t1149 * t1205,
+                t9 * t1289 - t22 * t1299, t13 * t1289 - t26 * t1299, t1151 * t1289 - t1154 * t1299,
+                0.0, -(gcross_wx_leg1 * t1407 + t1430), t1504 - minus_gcross_wx_leg2 * t1484,
+                gcross_wx_leg3 * t1546 - t1569, -(gcross_wx_leg4 * t1602 + t1626),
+                gcross_wx_leg5 * t1668 + t1691, -(minus_gcross_wx_leg6 * t1733 + t1756),
+                gcross_wx_leg1 * t1782 + gcylinder_wx_leg1 * t1777,
+                gcylinder_wx_leg2 * t1801 - minus_gcross_wx_leg2 * t1806,
+                gcross_wx_leg3 * t1827 - minus_gcylinder_wx_leg3 * t1830,
+                gcross_wx_leg4 * t1858 - minus_gcylinder_wx_leg4 * t1861,
+                gcross_wx_leg5 * t1882 + gcylinder_wx_leg5 * t1885,
+                -(minus_gcross_wx_leg6 * t1906 + minus_gcylinder_wx_leg6 * t1909),
+                gcross_wx_leg1 * t1940 - gcylinder_wx_leg1 * t1942,
+                -(minus_gcross_wx_leg2 * t1973 + gcylinder_wx_leg2 * t1975),
+                gcross_wx_leg3 * t2006 + minus_gcylinder_wx_leg3 * t2008,
+                gcross_wx_leg4 * t2039 + minus_gcylinder_wx_leg4 * t2041,
+                gcross_wx_leg5 * t2072 - gcylinder_wx_leg5 * t2074,
+                minus_gcylinder_wx_leg6 * t2107 - minus_gcross_wx_leg6 * t2105,
+                gcross_wx_leg1 * t1406 + t1430, -(t1504 - minus_gcross_wx_leg2 * t1483),
+                t1569 - gcross_wx_leg3 * t1545, t1626 - gcross_wx_leg4 * t2161,
+                -(gcross_wx_leg5 * t1667 + t1691), minus_gcross_wx_leg6 * t1732 + t1756,
+                gcross_wx_leg1 * t2201 - gcylinder_wx_leg1 * t1403,
+                gcylinder_wx_leg2 * t1480 - minus_gcross_wx_leg2 * t2224,
+                gcross_wx_leg3 * t2245 - minus_gcylinder_wx_leg3 * t1542,
+                gcross_wx_leg4 * t2267 - minus_gcylinder_wx_leg4 * t1853,
+                gcross_wx_leg5 * t2289 + gcylinder_wx_leg5 * t1664,
+                -(minus_gcross_wx_leg6 * t2311 + minus_gcylinder_wx_leg6 * t1729),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                gcross_wx_leg1 * t2400 - gcylinder_wx_leg1 * t2402,
-                -(gcylinder_wx_leg2 * t2422 - minus_gcross_wx_leg2 * t2420),
-                minus_gcylinder_wx_leg3 * t2442 - gcross_wx_leg3 * t2440,
-                minus_gcylinder_wx_leg4 * t2462 - gcross_wx_leg4 * t2460,
-                gcross_wx_leg5 * t2480 - gcylinder_wx_leg5 * t2482,
-                minus_gcylinder_wx_leg6 * t2502 - minus_gcross_wx_leg6 * t2500,
-                -(gcross_wx_leg1 * t2524 + gcylinder_wx_leg1 * t2526),
-                gcylinder_wx_leg2 * t2542 + minus_gcross_wx_leg2 * t2540,
-                -(gcross_wx_leg3 * t2556 + minus_gcylinder_wx_leg3 * t2558),
-                -(gcross_wx_leg4 * t2572 + minus_gcylinder_wx_leg4 * t2574),
-                gcross_wx_leg5 * t2588 + gcylinder_wx_leg5 * t2590,
-                -(minus_gcross_wx_leg6 * t2604 + minus_gcylinder_wx_leg6 * t2606),
-                gcross_wx_leg1 * t2616, -(minus_gcross_wx_leg2 * t2623), gcross_wx_leg3 * t2630,
-                gcross_wx_leg4 * t2637, gcross_wx_leg5 * t2644, -(minus_gcross_wx_leg6 * t2651),
-                t19 * t2681 - t32 * t2676, t74 * t2709 - t71 * t2714, t15 * t2747 + t28 * t2742,
-                t69 * t2780 + t72 * t2775, t31 * t2808 - t18 * t2813, t70 * t2846 - t73 * t2841,
-                t19 * t2875 - t32 * t2872, -(t71 * t2904 + t74 * t2901), t15 * t2933 - t28 * t2930,
-                t69 * t2962 - t72 * t2959, t18 * t2991 + t31 * t2988, -(t70 * t3020 + t73 * t3017),
-                t19 * t3049 + t32 * t3044, -(t71 * t3078 + t74 * t3073), t15 * t3107 - t28 * t3102,
-                t69 * t3136 - t72 * t3131, t18 * t3165 + t31 * t3160, -(t70 * t3194 + t73 * t3189),
-                grod_wx_leg1 * actuator_accelerations[0], grod_wx_leg2 * actuator_accelerations[1],
-                grod_wx_leg3 * actuator_accelerations[2], grod_wx_leg4 * actuator_accelerations[3],
-                grod_wx_leg5 * actuator_accelerations[4], grod_wx_leg6 * actuator_accelerations[5],
-                t532, t533, t535, t537, t539, t541,
+                gcross_wx_leg1 * t2366 - gcylinder_wx_leg1 * t2368,
+                -(gcylinder_wx_leg2 * t2388 - minus_gcross_wx_leg2 * t2386),
+                minus_gcylinder_wx_leg3 * t2408 - gcross_wx_leg3 * t2406,
+                minus_gcylinder_wx_leg4 * t2428 - gcross_wx_leg4 * t2426,
+                gcross_wx_leg5 * t2446 - gcylinder_wx_leg5 * t2448,
+                minus_gcylinder_wx_leg6 * t2468 - minus_gcross_wx_leg6 * t2466,
+                -(gcross_wx_leg1 * t2490 + gcylinder_wx_leg1 * t2492),
+                gcylinder_wx_leg2 * t2508 + minus_gcross_wx_leg2 * t2506,
+                -(gcross_wx_leg3 * t2522 + minus_gcylinder_wx_leg3 * t2524),
+                -(gcross_wx_leg4 * t2538 + minus_gcylinder_wx_leg4 * t2540),
+                gcross_wx_leg5 * t2554 + gcylinder_wx_leg5 * t2556,
+                -(minus_gcross_wx_leg6 * t2570 + minus_gcylinder_wx_leg6 * t2572),
+                gcross_wx_leg1 * t2582, -(minus_gcross_wx_leg2 * t2589), gcross_wx_leg3 * t2596,
+                gcross_wx_leg4 * t2603, gcross_wx_leg5 * t2610, -(minus_gcross_wx_leg6 * t2617),
+                t19 * t2647 - t32 * t2642, t73 * t2675 - t82 * t2680, t15 * t2713 + t28 * t2708,
+                t80 * t2746 + t71 * t2741, t31 * t2774 - t18 * t2779, t81 * t2812 - t72 * t2807,
+                t19 * t2840 - t32 * t2837, -(t82 * t2868 + t73 * t2865), t15 * t2896 - t28 * t2893,
+                t80 * t2924 - t71 * t2921, t18 * t2952 + t31 * t2949, -(t81 * t2980 + t72 * t2977),
+                t19 * t3007 + t32 * t3002, t82 * t3034 - t73 * t3029, -(t15 * t3061 + t28 * t3056),
+                -(t80 * t3088 + t71 * t3083), t18 * t3115 + t31 * t3110,
+                -(t81 * t3143 + t72 * t3138), grod_wx_leg1 * actuator_accelerations[0],
+                grod_wx_leg2 * actuator_accelerations[1], grod_wx_leg3 * actuator_accelerations[2],
+                grod_wx_leg4 * actuator_accelerations[3], grod_wx_leg5 * actuator_accelerations[4],
+                grod_wx_leg6 * actuator_accelerations[5], t503, t504, t506, t508, t510, t512,
                 ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]),
@@ -17327,67 +17292,67 @@ impl Hexapod {
                 grod_wx_leg2, grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
             ],
             [
-                t9 * t1155 + t1176 - t1178, t9 * t1190 + t13 * t1193 + t1161 * t1198,
-                t9 * t1216 + t13 * t1219 + t1161 * t1222, t13 * t1189 - t1240 + t1178,
-                t9 * t1247 + t13 * t1249 + t1161 * t1252, t1240 - t1176 + t1161 * t1215,
-                t22 * t1322 - t5 * t1299, t26 * t1322 - t35 * t1299, t1164 * t1322 - t1159 * t1299,
-                0.0, minus_gcross_wy_leg1 * t1416 - t1448,
-                minus_minus_gcross_wy_leg2 * t1492 - t1517, gcross_wy_leg3 * t1553 + t1585,
-                gcross_wy_leg4 * t1617 + t1649, t1709 - minus_gcross_wy_leg5 * t1681,
-                gcross_wy_leg6 * t1745 + t1777,
-                gcylinder_wy_leg1 * t1789 - minus_gcross_wy_leg1 * t1797,
-                minus_minus_gcross_wy_leg2 * t1824 - minus_gcylinder_wy_leg2 * t1816,
-                gcross_wy_leg3 * t1848 + gcylinder_wy_leg3 * t1851,
-                gcross_wy_leg4 * t1875 + gcylinder_wy_leg4 * t1878,
-                gcylinder_wy_leg5 * t1905 - minus_gcross_wy_leg5 * t1902,
-                gcross_wy_leg6 * t1929 + gcylinder_wy_leg6 * t1932,
-                -(minus_gcross_wy_leg1 * t1964 + gcylinder_wy_leg1 * t1413),
-                minus_minus_gcross_wy_leg2 * t1997 + minus_gcylinder_wy_leg2 * t1489,
-                gcross_wy_leg3 * t2030 - gcylinder_wy_leg3 * t1550,
-                gcross_wy_leg4 * t2063 - gcylinder_wy_leg4 * t1614,
-                -(minus_gcross_wy_leg5 * t2096 + gcylinder_wy_leg5 * t1678),
-                gcross_wy_leg6 * t2129 - gcylinder_wy_leg6 * t1742,
-                t1448 - minus_gcross_wy_leg1 * t2148, t1517 - minus_minus_gcross_wy_leg2 * t2161,
-                -(gcross_wy_leg3 * t2174 + t1585), -(gcross_wy_leg4 * t2187 + t1649),
-                minus_gcross_wy_leg5 * t2200 - t1709, -(gcross_wy_leg6 * t2213 + t1777),
-                -(minus_gcross_wy_leg1 * t2230 + gcylinder_wy_leg1 * t1792),
-                minus_minus_gcross_wy_leg2 * t2254 - minus_gcylinder_wy_leg2 * t1819,
-                gcross_wy_leg3 * t2276 + gcylinder_wy_leg3 * t1843,
-                gcross_wy_leg4 * t2299 + gcylinder_wy_leg4 * t1870,
-                gcylinder_wy_leg5 * t1897 - minus_gcross_wy_leg5 * t2322,
-                gcross_wy_leg6 * t2345 + gcylinder_wy_leg6 * t1924,
+                t9 * t1145 + t1166 - t1168, t9 * t1180 + t13 * t1183 + t1151 * t1188,
+                t9 * t1206 + t13 * t1209 + t1151 * t1212, t13 * t1179 - t1230 + t1168,
+                t9 * t1237 + t13 * t1239 + t1151 * t1242, t1230 - t1166 + t1151 * t1205,
+                t22 * t1312 - t5 * t1289, t26 * t1312 - t35 * t1289, t1154 * t1312 - t1149 * t1289,
+                0.0, minus_gcross_wy_leg1 * t1407 - t1439,
+                minus_minus_gcross_wy_leg2 * t1484 - t1509, gcross_wy_leg3 * t1546 + t1578,
+                t1635 - gcross_wy_leg4 * t1602, t1696 - minus_gcross_wy_leg5 * t1668,
+                gcross_wy_leg6 * t1733 + t1765,
+                gcylinder_wy_leg1 * t1777 - minus_gcross_wy_leg1 * t1782,
+                minus_minus_gcross_wy_leg2 * t1806 - minus_gcylinder_wy_leg2 * t1801,
+                gcross_wy_leg3 * t1827 + gcylinder_wy_leg3 * t1830,
+                gcross_wy_leg4 * t1858 + gcylinder_wy_leg4 * t1861,
+                gcylinder_wy_leg5 * t1885 - minus_gcross_wy_leg5 * t1882,
+                gcross_wy_leg6 * t1906 + gcylinder_wy_leg6 * t1909,
+                -(minus_gcross_wy_leg1 * t1940 + gcylinder_wy_leg1 * t1942),
+                minus_minus_gcross_wy_leg2 * t1973 + minus_gcylinder_wy_leg2 * t1975,
+                gcross_wy_leg3 * t2006 - gcylinder_wy_leg3 * t2008,
+                gcross_wy_leg4 * t2039 - gcylinder_wy_leg4 * t2041,
+                -(minus_gcross_wy_leg5 * t2072 + gcylinder_wy_leg5 * t2074),
+                gcross_wy_leg6 * t2105 - gcylinder_wy_leg6 * t2107,
+                t1439 - minus_gcross_wy_leg1 * t1406, t1509 - minus_minus_gcross_wy_leg2 * t1483,
+                -(gcross_wy_leg3 * t1545 + t1578), -(gcross_wy_leg4 * t2161 + t1635),
+                minus_gcross_wy_leg5 * t1667 - t1696, -(gcross_wy_leg6 * t1732 + t1765),
+                -(minus_gcross_wy_leg1 * t2201 + gcylinder_wy_leg1 * t1403),
+                minus_minus_gcross_wy_leg2 * t2224 - minus_gcylinder_wy_leg2 * t1480,
+                gcross_wy_leg3 * t2245 + gcylinder_wy_leg3 * t1542,
+                gcross_wy_leg4 * t2267 + gcylinder_wy_leg4 * t1853,
+                gcylinder_wy_leg5 * t1664 - minus_gcross_wy_leg5 * t2289,
+                gcross_wy_leg6 * t2311 + gcylinder_wy_leg6 * t1729,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                -(minus_gcross_wy_leg1 * t2400 + gcylinder_wy_leg1 * t2402),
-                minus_gcylinder_wy_leg2 * t2422 - minus_minus_gcross_wy_leg2 * t2420,
-                -(gcross_wy_leg3 * t2440 + gcylinder_wy_leg3 * t2442),
-                -(gcross_wy_leg4 * t2460 + gcylinder_wy_leg4 * t2462),
-                -(minus_gcross_wy_leg5 * t2480 + gcylinder_wy_leg5 * t2482),
-                gcross_wy_leg6 * t2500 - gcylinder_wy_leg6 * t2502,
-                minus_gcross_wy_leg1 * t2524 - gcylinder_wy_leg1 * t2526,
-                -(minus_minus_gcross_wy_leg2 * t2540 + minus_gcylinder_wy_leg2 * t2542),
-                gcylinder_wy_leg3 * t2558 - gcross_wy_leg3 * t2556,
-                gcylinder_wy_leg4 * t2574 - gcross_wy_leg4 * t2572,
-                gcylinder_wy_leg5 * t2590 - minus_gcross_wy_leg5 * t2588,
-                gcross_wy_leg6 * t2604 + gcylinder_wy_leg6 * t2606, -(minus_gcross_wy_leg1 * t2616),
-                minus_minus_gcross_wy_leg2 * t2623, gcross_wy_leg3 * t2630, gcross_wy_leg4 * t2637,
-                -(minus_gcross_wy_leg5 * t2644), gcross_wy_leg6 * t2651,
-                -(t32 * t2671 + t41 * t2681), t74 * t2704 + t78 * t2714, t28 * t2737 - t37 * t2747,
-                t72 * t2770 - t76 * t2780, t40 * t2813 - t31 * t2803, t73 * t2836 - t77 * t2846,
-                -(t32 * t2867 + t41 * t2875), t78 * t2904 - t74 * t2896, t28 * t2925 - t37 * t2933,
-                t72 * t2954 - t76 * t2962, -(t31 * t2983 + t40 * t2991), t73 * t3012 + t77 * t3020,
-                t32 * t3039 - t41 * t3049, t78 * t3078 - t74 * t3068, t28 * t3097 - t37 * t3107,
-                t72 * t3126 - t76 * t3136, -(t31 * t3155 + t40 * t3165), t73 * t3184 + t77 * t3194,
+                -(minus_gcross_wy_leg1 * t2366 + gcylinder_wy_leg1 * t2368),
+                minus_gcylinder_wy_leg2 * t2388 - minus_minus_gcross_wy_leg2 * t2386,
+                -(gcross_wy_leg3 * t2406 + gcylinder_wy_leg3 * t2408),
+                -(gcross_wy_leg4 * t2426 + gcylinder_wy_leg4 * t2428),
+                -(minus_gcross_wy_leg5 * t2446 + gcylinder_wy_leg5 * t2448),
+                gcross_wy_leg6 * t2466 - gcylinder_wy_leg6 * t2468,
+                minus_gcross_wy_leg1 * t2490 - gcylinder_wy_leg1 * t2492,
+                -(minus_minus_gcross_wy_leg2 * t2506 + minus_gcylinder_wy_leg2 * t2508),
+                gcylinder_wy_leg3 * t2524 - gcross_wy_leg3 * t2522,
+                gcylinder_wy_leg4 * t2540 - gcross_wy_leg4 * t2538,
+                gcylinder_wy_leg5 * t2556 - minus_gcross_wy_leg5 * t2554,
+                gcross_wy_leg6 * t2570 + gcylinder_wy_leg6 * t2572, -(minus_gcross_wy_leg1 * t2582),
+                minus_minus_gcross_wy_leg2 * t2589, gcross_wy_leg3 * t2596, gcross_wy_leg4 * t2603,
+                -(minus_gcross_wy_leg5 * t2610), gcross_wy_leg6 * t2617,
+                -(t32 * t2637 + t41 * t2647), t73 * t2670 + t76 * t2680, t28 * t2703 - t37 * t2713,
+                t71 * t2736 - t74 * t2746, t40 * t2779 - t31 * t2769, t72 * t2802 - t75 * t2812,
+                -(t32 * t2832 + t41 * t2840), t76 * t2868 - t73 * t2860, t28 * t2888 - t37 * t2896,
+                t71 * t2916 - t74 * t2924, -(t31 * t2944 + t40 * t2952), t72 * t2972 + t75 * t2980,
+                t32 * t2997 - t41 * t3007, -(t73 * t3024 + t76 * t3034), t28 * t3051 + t37 * t3061,
+                t71 * t3078 + t74 * t3088, -(t40 * t3115 - t31 * t3105), t72 * t3133 + t75 * t3143,
                 grod_wy_leg1 * actuator_accelerations[0], grod_wy_leg2 * actuator_accelerations[1],
                 -(minus_grod_wy_leg3 * actuator_accelerations[2]),
                 -(minus_grod_wy_leg4 * actuator_accelerations[3]),
                 grod_wy_leg5 * actuator_accelerations[4],
-                -(minus_grod_wy_leg6 * actuator_accelerations[5]), t476, t477, -t479, -t481, t483,
-                -t485, ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]),
+                -(minus_grod_wy_leg6 * actuator_accelerations[5]), t70, t106, -t134, -t163, t191,
+                -t219, ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_grod_wy_leg3, actuator_velocities[2]),
                 -::overact::math::signed(minus_grod_wy_leg4, actuator_velocities[3]),
@@ -17397,62 +17362,62 @@ impl Hexapod {
                 -minus_grod_wy_leg6,
             ],
             [
-                t22 * t1155 + t1181 - t1183, t22 * t1190 + t26 * t1193 + t1164 * t1198,
-                t22 * t1216 + t26 * t1219 + t1164 * t1222, t26 * t1189 - t1244 + t1183,
-                t22 * t1247 + t26 * t1249 + t1164 * t1252, t1244 - t1181 + t1164 * t1215,
-                t5 * t1309 - t9 * t1322, t35 * t1309 - t13 * t1322, t1159 * t1309 - t1161 * t1322,
-                0.0, t1453 - gcross_wz_leg1 * t1416, gcross_wz_leg2 * t1492 + t1530,
-                t1590 - minus_gcross_wz_leg3 * t1553, t1654 - minus_gcross_wz_leg4 * t1617,
-                gcross_wz_leg5 * t1681 - t1722, gcross_wz_leg6 * t1745 + t1786,
-                gcross_wz_leg1 * t1797 - minus_gcylinder_wz_leg1 * t1789,
-                gcross_wz_leg2 * t1824 + minus_minus_gcylinder_wz_leg2 * t1816,
-                gcylinder_wz_leg3 * t1851 - minus_gcross_wz_leg3 * t1848,
-                gcylinder_wz_leg4 * t1878 - minus_gcross_wz_leg4 * t1875,
-                gcross_wz_leg5 * t1902 - minus_gcylinder_wz_leg5 * t1905,
-                gcross_wz_leg6 * t1929 + gcylinder_wz_leg6 * t1932,
-                gcross_wz_leg1 * t1964 + minus_gcylinder_wz_leg1 * t1413,
-                gcross_wz_leg2 * t1997 - minus_minus_gcylinder_wz_leg2 * t1489,
-                -(minus_gcross_wz_leg3 * t2030 + gcylinder_wz_leg3 * t1550),
-                -(minus_gcross_wz_leg4 * t2063 + gcylinder_wz_leg4 * t1614),
-                gcross_wz_leg5 * t2096 + minus_gcylinder_wz_leg5 * t1678,
-                gcross_wz_leg6 * t2129 - gcylinder_wz_leg6 * t1742, gcross_wz_leg1 * t2148 - t1453,
-                -(t1530 + gcross_wz_leg2 * t2161), minus_gcross_wz_leg3 * t2174 - t1590,
-                minus_gcross_wz_leg4 * t2187 - t1654, t1722 - gcross_wz_leg5 * t2200,
-                -(gcross_wz_leg6 * t2213 + t1786),
-                gcross_wz_leg1 * t2230 + minus_gcylinder_wz_leg1 * t1792,
-                gcross_wz_leg2 * t2254 + minus_minus_gcylinder_wz_leg2 * t1819,
-                gcylinder_wz_leg3 * t1843 - minus_gcross_wz_leg3 * t2276,
-                gcylinder_wz_leg4 * t1870 - minus_gcross_wz_leg4 * t2299,
-                gcross_wz_leg5 * t2322 - minus_gcylinder_wz_leg5 * t1897,
-                gcross_wz_leg6 * t2345 + gcylinder_wz_leg6 * t1924,
+                t22 * t1145 + t1171 - t1173, t22 * t1180 + t26 * t1183 + t1154 * t1188,
+                t22 * t1206 + t26 * t1209 + t1154 * t1212, t26 * t1179 - t1234 + t1173,
+                t22 * t1237 + t26 * t1239 + t1154 * t1242, t1234 - t1171 + t1154 * t1205,
+                t5 * t1299 - t9 * t1312, t35 * t1299 - t13 * t1312, t1149 * t1299 - t1151 * t1312,
+                0.0, t1444 - gcross_wz_leg1 * t1407, gcross_wz_leg2 * t1484 + t1522,
+                t1583 - minus_gcross_wz_leg3 * t1546, t1640 + minus_gcross_wz_leg4 * t1602,
+                gcross_wz_leg5 * t1668 - t1709, gcross_wz_leg6 * t1733 + t1774,
+                gcross_wz_leg1 * t1782 - minus_gcylinder_wz_leg1 * t1777,
+                gcross_wz_leg2 * t1806 + minus_minus_gcylinder_wz_leg2 * t1801,
+                gcylinder_wz_leg3 * t1830 - minus_gcross_wz_leg3 * t1827,
+                gcylinder_wz_leg4 * t1861 - minus_gcross_wz_leg4 * t1858,
+                gcross_wz_leg5 * t1882 - minus_gcylinder_wz_leg5 * t1885,
+                gcross_wz_leg6 * t1906 + gcylinder_wz_leg6 * t1909,
+                gcross_wz_leg1 * t1940 + minus_gcylinder_wz_leg1 * t1942,
+                gcross_wz_leg2 * t1973 - minus_minus_gcylinder_wz_leg2 * t1975,
+                -(minus_gcross_wz_leg3 * t2006 + gcylinder_wz_leg3 * t2008),
+                -(minus_gcross_wz_leg4 * t2039 + gcylinder_wz_leg4 * t2041),
+                gcross_wz_leg5 * t2072 + minus_gcylinder_wz_leg5 * t2074,
+                gcross_wz_leg6 * t2105 - gcylinder_wz_leg6 * t2107, gcross_wz_leg1 * t1406 - t1444,
+                -(t1522 + gcross_wz_leg2 * t1483), minus_gcross_wz_leg3 * t1545 - t1583,
+                minus_gcross_wz_leg4 * t2161 - t1640, t1709 - gcross_wz_leg5 * t1667,
+                -(gcross_wz_leg6 * t1732 + t1774),
+                gcross_wz_leg1 * t2201 + minus_gcylinder_wz_leg1 * t1403,
+                gcross_wz_leg2 * t2224 + minus_minus_gcylinder_wz_leg2 * t1480,
+                gcylinder_wz_leg3 * t1542 - minus_gcross_wz_leg3 * t2245,
+                gcylinder_wz_leg4 * t1853 - minus_gcross_wz_leg4 * t2267,
+                gcross_wz_leg5 * t2289 - minus_gcylinder_wz_leg5 * t1664,
+                gcross_wz_leg6 * t2311 + gcylinder_wz_leg6 * t1729,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
                 minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t2400 + minus_gcylinder_wz_leg1 * t2402,
-                -(minus_minus_gcylinder_wz_leg2 * t2422 + gcross_wz_leg2 * t2420),
-                minus_gcross_wz_leg3 * t2440 - gcylinder_wz_leg3 * t2442,
-                minus_gcross_wz_leg4 * t2460 - gcylinder_wz_leg4 * t2462,
-                gcross_wz_leg5 * t2480 + minus_gcylinder_wz_leg5 * t2482,
-                gcross_wz_leg6 * t2500 - gcylinder_wz_leg6 * t2502, -(minus_grod_wz_leg1 * t2520),
-                -(minus_grod_wz_leg2 * t2536), grod_wz_leg3 * t2552, grod_wz_leg4 * t2568,
-                -(minus_grod_wz_leg5 * t2584), grod_wz_leg6 * t2600, gcross_wz_leg1 * t2616,
-                gcross_wz_leg2 * t2623, -(minus_gcross_wz_leg3 * t2630),
-                -(minus_gcross_wz_leg4 * t2637), gcross_wz_leg5 * t2644, gcross_wz_leg6 * t2651,
-                t41 * t2676 + t19 * t2671, -(t78 * t2709 + t71 * t2704),
-                -(t37 * t2742 + t15 * t2737), -(t76 * t2775 + t69 * t2770),
-                t18 * t2803 - t40 * t2808, t77 * t2841 - t70 * t2836, t41 * t2872 + t19 * t2867,
-                t78 * t2901 + t71 * t2896, t37 * t2930 - t15 * t2925, t76 * t2959 - t69 * t2954,
-                t18 * t2983 - t40 * t2988, t77 * t3017 - t70 * t3012, -(t41 * t3044 + t19 * t3039),
-                t78 * t3073 + t71 * t3068, t37 * t3102 - t15 * t3097, t76 * t3131 - t69 * t3126,
-                t18 * t3155 - t40 * t3160, t77 * t3189 - t70 * t3184,
+                gcross_wz_leg1 * t2366 + minus_gcylinder_wz_leg1 * t2368,
+                -(minus_minus_gcylinder_wz_leg2 * t2388 + gcross_wz_leg2 * t2386),
+                minus_gcross_wz_leg3 * t2406 - gcylinder_wz_leg3 * t2408,
+                minus_gcross_wz_leg4 * t2426 - gcylinder_wz_leg4 * t2428,
+                gcross_wz_leg5 * t2446 + minus_gcylinder_wz_leg5 * t2448,
+                gcross_wz_leg6 * t2466 - gcylinder_wz_leg6 * t2468, -(minus_grod_wz_leg1 * t2486),
+                -(minus_grod_wz_leg2 * t2502), grod_wz_leg3 * t2518, grod_wz_leg4 * t2534,
+                -(minus_grod_wz_leg5 * t2550), grod_wz_leg6 * t2566, gcross_wz_leg1 * t2582,
+                gcross_wz_leg2 * t2589, -(minus_gcross_wz_leg3 * t2596),
+                -(minus_gcross_wz_leg4 * t2603), gcross_wz_leg5 * t2610, gcross_wz_leg6 * t2617,
+                t41 * t2642 + t19 * t2637, -(t76 * t2675 + t82 * t2670),
+                -(t37 * t2708 + t15 * t2703), -(t74 * t2741 + t80 * t2736),
+                t18 * t2769 - t40 * t2774, t75 * t2807 - t81 * t2802, t41 * t2837 + t19 * t2832,
+                t76 * t2865 + t82 * t2860, t37 * t2893 - t15 * t2888, t74 * t2921 - t80 * t2916,
+                t18 * t2944 - t40 * t2949, t75 * t2977 - t81 * t2972, -(t41 * t3002 + t19 * t2997),
+                t76 * t3029 + t82 * t3024, t37 * t3056 - t15 * t3051, t74 * t3083 - t80 * t3078,
+                -(t18 * t3105 + t40 * t3110), t75 * t3138 - t81 * t3133,
                 -(minus_grod_wz_leg1 * actuator_accelerations[0]),
                 -(minus_grod_wz_leg2 * actuator_accelerations[1]),
                 grod_wz_leg3 * actuator_accelerations[2], grod_wz_leg4 * actuator_accelerations[3],
                 -(minus_grod_wz_leg5 * actuator_accelerations[4]),
-                grod_wz_leg6 * actuator_accelerations[5], -t644, -t645, t643, t648, -t650, t652,
+                grod_wz_leg6 * actuator_accelerations[5], -t612, -t613, t611, t616, -t618, t620,
                 -::overact::math::signed(minus_grod_wz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_grod_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]),

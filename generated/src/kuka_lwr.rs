@@ -390,7 +390,7 @@ impl KukaLwr {
     /// Output: 7 x 87.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1083 operations (467 additions, 616 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 877 intermediates.
+    /// 1070 operations (464 additions, 606 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 864 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 7],
@@ -401,438 +401,432 @@ impl KukaLwr {
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
         ]);
-        let t3 = c2_arm * joint_velocities[0];
+        let t3 = s2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = s2_arm * joint_accelerations[0];
-        let t6 = t5 + t4;
-        let t7 = t4 + t6;
-        let t8 = s2_arm * t7;
-        let t9 = s2_arm * joint_velocities[0];
-        let t10 = t9 * t3;
-        let t12 = joint_velocities[1] * t9;
-        let t13 = c2_arm * joint_accelerations[0];
-        let t14 = t13 - t12;
-        let t18 = t9 * t9;
+        let t5 = c2_arm * joint_accelerations[0];
+        let t6 = t5 - t4;
+        let t7 = t4 - t6;
+        let t8 = c2_arm * t7;
+        let t9 = joint_accelerations[0] + t8;
+        let t10 = c2_arm * joint_velocities[0];
+        let t11 = t3 * t10;
+        let t12 = joint_velocities[1] * t10;
+        let t13 = s2_arm * joint_accelerations[0];
+        let t14 = t13 + t12;
+        let t15 = t12 + t14;
         let t19 = t3 * t3;
-        let t23 = joint_velocities[1] * joint_velocities[1];
-        let t30 = t10 - joint_accelerations[1];
+        let t20 = t10 * t10;
+        let t24 = joint_velocities[1] * joint_velocities[1];
+        let t30 = t11 - joint_accelerations[1];
         let t33 = 9.81 * c2_arm;
         let t34 = 9.81 * s2_arm;
         let t38 = s2_arm * c3_arm;
-        let t44 = s3_arm * t9 + c3_arm * joint_velocities[1];
-        let t46 = c3_arm * t6 - s3_arm * joint_accelerations[1]
+        let t44 = s3_arm * t3 + c3_arm * joint_velocities[1];
+        let t46 = c3_arm * t14 - s3_arm * joint_accelerations[1]
             - joint_velocities[2] * t44;
         let t48 = s2_arm * s3_arm;
-        let t51 = c3_arm * t9 - s3_arm * joint_velocities[1];
-        let t52 = t3 + joint_velocities[2];
+        let t51 = c3_arm * t3 - s3_arm * joint_velocities[1];
+        let t52 = t10 + joint_velocities[2];
         let t53 = t51 * t52;
         let t54 = t48 * t53;
         let t56 = t51 * t44;
         let t58 = t38 * t46 - t54 + c2_arm * t56;
-        let t61 = s3_arm * t46 + c3_arm * t53;
-        let t62 = t51 * t51;
-        let t63 = t44 * t44;
-        let t64 = t62 - t63;
-        let t66 = t61 - t30;
-        let t74 = s3_arm * t6 + c3_arm * joint_accelerations[1]
+        let t59 = t3 * t52;
+        let t60 = t44 * t52;
+        let t61 = t46 - t60;
+        let t62 = s3_arm * t61;
+        let t63 = t59 + t62;
+        let t64 = t51 * t51;
+        let t65 = t44 * t44;
+        let t66 = t64 - t65;
+        let t68 = t63 - t30;
+        let t76 = s3_arm * t14 + c3_arm * joint_accelerations[1]
             + joint_velocities[2] * t51;
-        let t77 = t44 * t52;
-        let t81 = t14 + joint_accelerations[2];
+        let t81 = t6 + joint_accelerations[2];
         let t82 = t81 - t56;
         let t84 = t52 * t52;
-        let t85 = t84 - t62;
-        let t88 = t77 + t46;
+        let t85 = t84 - t64;
+        let t88 = t60 + t46;
         let t90 = t38 * t82 - t48 * t85 + c2_arm * t88;
         let t91 = s3_arm * t82;
-        let t95 = t63 - t84;
+        let t95 = t65 - t84;
         let t97 = t56 + t81;
-        let t100 = t53 - t74;
+        let t100 = t53 - t76;
         let t102 = t38 * t95 - t48 * t97 + c2_arm * t100;
         let t104 = c3_arm * t97;
-        let t109 = t54 - t38 * t77 + c2_arm * t81;
-        let t110 = t9 * t52;
-        let t114 = t33 + t85 * 0.4;
-        let t117 = 0.4 * t30;
-        let t118 = t34 + t117;
-        let t120 = 0.4 * t7;
-        let t122 = s3_arm * t118 + c3_arm * t120;
-        let t123 = 0.4 * t102;
-        let t128 = 0.4 * t104 - s3_arm * (t114 + t64 * 0.4);
-        let t131 = c3_arm * t118 - s3_arm * t120;
-        let t134 = 0.16 * t8;
-        let t135 = 0.4 * t118;
-        let t141 = t38 * c4_arm - c2_arm * s4_arm;
-        let t147 = s4_arm * t51 + c4_arm * t52;
-        let t149 = c4_arm * t46 - s4_arm * t81 - joint_velocities[3] * t147;
-        let t153 = t38 * s4_arm + c2_arm * c4_arm;
-        let t156 = c4_arm * t51 - s4_arm * t52;
-        let t157 = joint_velocities[3] - t44;
-        let t158 = t156 * t157;
-        let t159 = t153 * t158;
-        let t161 = t156 * t147;
-        let t163 = t141 * t149 - t159 - t48 * t161;
-        let t164 = s3_arm * s4_arm;
-        let t165 = t164 * t158;
-        let t166 = s3_arm * c4_arm;
-        let t170 = t165 - t149 * t166 - c3_arm * t161;
-        let t171 = t51 * t157;
-        let t172 = 0.4 * s4_arm;
-        let t173 = t147 * t157;
-        let t174 = t149 - t173;
-        let t175 = t172 * t174;
-        let t176 = 2.5 * t175;
-        let t177 = t171 + t176;
-        let t182 = s4_arm * t46 + c4_arm * t81 + joint_velocities[3] * t156;
-        let t183 = t158 + t182;
+        let t109 = t54 - t38 * t60 + c2_arm * t81;
+        let t113 = t33 + t85 * 0.4;
+        let t116 = 0.4 * t30;
+        let t117 = t34 + t116;
+        let t119 = 0.4 * t15;
+        let t121 = s3_arm * t117 + c3_arm * t119;
+        let t122 = 0.4 * t102;
+        let t127 = 0.4 * t104 - s3_arm * (t113 + t66 * 0.4);
+        let t130 = c3_arm * t117 - s3_arm * t119;
+        let t133 = 0.16 * t9;
+        let t134 = 0.4 * t117;
+        let t140 = t38 * c4_arm - c2_arm * s4_arm;
+        let t146 = s4_arm * t51 + c4_arm * t52;
+        let t148 = c4_arm * t46 - s4_arm * t81 - joint_velocities[3] * t146;
+        let t152 = t38 * s4_arm + c2_arm * c4_arm;
+        let t155 = c4_arm * t51 - s4_arm * t52;
+        let t156 = joint_velocities[3] - t44;
+        let t157 = t155 * t156;
+        let t158 = t152 * t157;
+        let t160 = t155 * t146;
+        let t162 = t140 * t148 - t158 - t48 * t160;
+        let t163 = s3_arm * s4_arm;
+        let t164 = t163 * t157;
+        let t165 = s3_arm * c4_arm;
+        let t169 = t164 - t148 * t165 - c3_arm * t160;
+        let t170 = t51 * t156;
+        let t171 = 0.4 * s4_arm;
+        let t172 = t146 * t156;
+        let t173 = t148 - t172;
+        let t174 = t171 * t173;
+        let t175 = 2.5 * t174;
+        let t176 = t170 + t175;
+        let t181 = s4_arm * t46 + c4_arm * t81 + joint_velocities[3] * t155;
+        let t182 = t157 + t181;
+        let t186 = t146 * t146;
         let t187 = t156 * t156;
-        let t188 = t147 * t147;
-        let t189 = t187 - t188;
-        let t192 = t97 + t177;
-        let t197 = s4_arm * t183;
-        let t198 = c4_arm * t174;
-        let t200 = joint_accelerations[3] - t74;
-        let t201 = t200 - t161;
-        let t203 = t157 * t157;
-        let t204 = t203 - t187;
-        let t207 = t173 + t149;
-        let t215 = s4_arm * t201;
-        let t222 = t188 - t203;
-        let t224 = t161 + t200;
-        let t227 = t158 - t182;
-        let t236 = c4_arm * t224;
-        let t241 = t159 - t141 * t173 - t48 * t200;
-        let t245 = t166 * t173 - t165 - c3_arm * t200;
-        let t249 = t33 - 0.4 * (t18 + t23);
-        let t251 = s4_arm * t131 + c4_arm * t249;
-        let t253 = 0.4 * c4_arm;
-        let t257 = t251 + 0.4 * t215 + t253 * (t188 + t203);
-        let t259 = t253 * t183;
-        let t262 = t122 + 0.4 * t197;
-        let t273 = t122 + 0.4 * t198;
-        let t277 = t187 + t203;
-        let t283 = c4_arm * t131 - s4_arm * t249;
-        let t284 = t172 * t277 - 0.4 * t236 - t283;
-        let t286 = t141 * t273 + t153 * t175 + t48 * t284;
-        let t291 = t166 * t273 + t164 * t175 - c3_arm * t284;
-        let t298 = t141 * c5_arm - t48 * s5_arm;
-        let t304 = c5_arm * t157 - s5_arm * t156;
-        let t306 = c5_arm * t149 + s5_arm * t200 + joint_velocities[4] * t304;
-        let t310 = t141 * s5_arm + t48 * c5_arm;
-        let t313 = c5_arm * t156 + s5_arm * t157;
-        let t314 = t147 + joint_velocities[4];
-        let t315 = t313 * t314;
-        let t316 = t310 * t315;
-        let t318 = t313 * t304;
-        let t320 = t298 * t306 - t316 - t153 * t318;
-        let t323 = s5_arm * t166 - c3_arm * c5_arm;
-        let t324 = t323 * t315;
-        let t327 = c5_arm * t166 + c3_arm * s5_arm;
-        let t331 = t324 - t306 * t327 + t164 * t318;
-        let t332 = 0.39 * s4_arm;
-        let t333 = s5_arm * t332;
-        let t334 = 2.5641025641025643 * t333;
-        let t335 = t334 * t315;
-        let t336 = c5_arm * t332;
-        let t337 = 2.5641025641025643 * t336;
-        let t341 = t335 - t306 * t337 - c4_arm * t318;
-        let t344 = s5_arm * t306 + c5_arm * t315;
-        let t345 = t313 * t313;
-        let t346 = t304 * t304;
-        let t347 = t345 - t346;
-        let t353 = c5_arm * t200 - s5_arm * t149 - joint_velocities[4] * t313;
-        let t354 = t315 - t353;
-        let t356 = t304 * t314;
-        let t357 = t356 + t306;
-        let t366 = t337 * t354;
-        let t367 = t334 * t357;
-        let t374 = t182 + joint_accelerations[4];
-        let t375 = t318 + t374;
-        let t377 = t314 * t314;
-        let t378 = t377 - t345;
-        let t381 = t356 - t306;
-        let t390 = t337 * t375;
-        let t394 = s5_arm * t375;
-        let t397 = t163 + t241;
-        let t399 = t170 + t245;
-        let t403 = t346 - t377;
-        let t405 = t318 - t374;
-        let t408 = t315 + t353;
-        let t418 = t334 * t405;
-        let t422 = c5_arm * t405;
-        let t427 = t298 * t356 + t316 + t153 * t374;
-        let t431 = t327 * t356 + t324 + t164 * t374;
-        let t435 = c4_arm * t374 - (t337 * t356 + t335);
-        let t436 = t156 * t314;
-        let t437 = 1.0256410256410255 * t333;
-        let t439 = t253 + 0.39;
-        let t441 = t437 * t354 - t439 * t375;
-        let t444 = 0.39 * t277 - t251;
-        let t446 = t346 + t377;
-        let t449 = t444 + 0.4 * t366 - t439 * t446;
-        let t455 = 0.39 * t224;
-        let t456 = t283 + t455;
-        let t458 = 0.39 * t174;
-        let t459 = t122 + t458;
-        let t461 = s5_arm * t456 + c5_arm * t459;
-        let t462 = t437 * t446 - 0.4 * t390 - t461;
-        let t476 = 0.39 * c5_arm;
-        let t482 = t345 + t377;
-        let t485 = 0.4 * t367 + t439 * t482 - t444;
-        let t488 = 1.0256410256410255 * t336;
-        let t490 = t439 * t405 + t488 * t357;
-        let t498 = c5_arm * t456 - s5_arm * t459;
-        let t499 = t488 * t482 - 0.4 * t418 - t498;
-        let t501 = t298 * t485 - t310 * t490 + t153 * t499;
-        let t506 = t323 * t490 - t327 * t485 - t164 * t499;
-        let t511 = t334 * t490 - t337 * t485 + c4_arm * t499;
-        let t513 = 0.39 * s5_arm;
-        let t517 = 0.39 * t422 + t513 * t482 - s5_arm * t444;
-        let t529 = 0.16 * (t8 + t397 * 0.950625 + 2.4375 * t286);
-        let t535 = 0.16 * (0.950625 * t399 - 2.5 * t118 - 2.4375 * t291);
-        let t536 = t332 * t459;
-        let t537 = 0.39 * t456;
-        let t543 = t298 * c6_arm + t153 * s6_arm;
-        let t549 = c6_arm * t314 - s6_arm * t313;
-        let t551 = c6_arm * t306 + s6_arm * t374 + joint_velocities[5] * t549;
-        let t555 = t153 * c6_arm - t298 * s6_arm;
-        let t558 = c6_arm * t313 + s6_arm * t314;
-        let t559 = joint_velocities[5] - t304;
-        let t560 = t558 * t559;
-        let t561 = t555 * t560;
-        let t563 = t558 * t549;
-        let t565 = t543 * t551 + t561 - t310 * t563;
-        let t568 = s6_arm * t327 - c6_arm * t164;
-        let t569 = t568 * t560;
-        let t572 = c6_arm * t327 + s6_arm * t164;
-        let t576 = t569 - t551 * t572 + t323 * t563;
-        let t578 = c6_arm * t337;
-        let t579 = c4_arm * s6_arm - t578;
-        let t581 = s6_arm * t337;
-        let t583 = t581 + c4_arm * c6_arm;
-        let t584 = t583 * t560;
-        let t587 = t551 * t579 + t584 + t334 * t563;
-        let t588 = s5_arm * c6_arm;
-        let t590 = s5_arm * s6_arm;
-        let t591 = t590 * t560;
-        let t594 = t551 * t588 - t591 + c5_arm * t563;
-        let t597 = s6_arm * t551 + c6_arm * t560;
-        let t598 = t549 * t559;
-        let t599 = t598 + t551;
-        let t605 = c6_arm * t374 - s6_arm * t306 - joint_velocities[5] * t558;
-        let t606 = t560 - t605;
-        let t609 = t558 * t558;
-        let t610 = t549 * t549;
-        let t611 = t609 - t610;
-        let t624 = t405 + t597;
-        let t632 = joint_accelerations[5] - t353;
-        let t633 = t563 + t632;
-        let t635 = t559 * t559;
-        let t636 = t635 - t609;
-        let t639 = t598 - t551;
-        let t668 = t610 - t635;
-        let t670 = t563 - t632;
-        let t673 = t560 + t605;
-        let t697 = t543 * t598 - t561 + t310 * t632;
-        let t701 = t572 * t598 + t569 + t323 * t632;
-        let t705 = t579 * t598 - t584 - t334 * t632;
-        let t709 = t588 * t598 + t591 - c5_arm * t632;
-        let t710 = t313 * t559;
-        let t713 = 0.4 * t581 + c6_arm * t439;
-        let t716 = t713 * t606 + t437 * t633;
-        let t718 = t610 + t635;
-        let t722 = s6_arm * t439 - 0.4 * t578;
-        let t725 = t437 * t718 - t722 * t606 - t461;
-        let t733 = s6_arm * t498 + c6_arm * t444;
-        let t734 = t722 * t633 + t713 * t718 - t733;
-        let t748 = c6_arm * t476;
-        let t750 = s6_arm * t476;
-        let t760 = t609 + t635;
-        let t763 = t461 + t713 * t599 - t437 * t760;
-        let t767 = t437 * t670 + t722 * t599;
-        let t772 = c6_arm * t498 - s6_arm * t444;
-        let t776 = t772 + t722 * t760 + t713 * t670;
-        let t778 = t543 * t763 - t555 * t767 - t310 * t776;
-        let t783 = t323 * t776 - (t572 * t763 + t568 * t767);
-        let t788 = t579 * t763 - t583 * t767 + t334 * t776;
-        let t797 = t748 * t670 + t750 * t760 + t513 * t599 + t461 * t588 + c5_arm * t772;
-        let t798 = s6_arm * t461;
-        let t804 = t543 * c7_arm - t310 * s7_arm;
-        let t810 = s7_arm * t558 + c7_arm * t559;
-        let t812 = c7_arm * t551 - s7_arm * t632 - joint_velocities[6] * t810;
-        let t816 = t543 * s7_arm + t310 * c7_arm;
-        let t819 = c7_arm * t558 - s7_arm * t559;
-        let t820 = t549 + joint_velocities[6];
-        let t821 = t819 * t820;
-        let t822 = t816 * t821;
-        let t824 = t819 * t810;
-        let t826 = t804 * t812 - t822 + t555 * t824;
-        let t829 = s7_arm * t323 - c7_arm * t572;
-        let t833 = s7_arm * t572 + c7_arm * t323;
-        let t834 = t833 * t821;
-        let t837 = t812 * t829 + t834 + t568 * t824;
-        let t839 = s7_arm * t334;
-        let t840 = c7_arm * t579 + t839;
-        let t842 = c7_arm * t334;
-        let t844 = t842 - s7_arm * t579;
-        let t845 = t844 * t821;
-        let t848 = t812 * t840 + t845 + t583 * t824;
-        let t851 = c7_arm * t588 + c5_arm * s7_arm;
-        let t855 = c5_arm * c7_arm - s7_arm * t588;
-        let t856 = t855 * t821;
-        let t859 = t812 * t851 + t856 - t590 * t824;
-        let t860 = s6_arm * c7_arm;
-        let t862 = s6_arm * s7_arm;
-        let t863 = t862 * t821;
-        let t866 = t812 * t860 - t863 + c6_arm * t824;
-        let t867 = t558 * t820;
-        let t868 = t810 * t820;
-        let t869 = t812 - t868;
-        let t871 = t867 + s7_arm * t869;
-        let t872 = t819 * t819;
-        let t873 = t810 * t810;
-        let t874 = t872 - t873;
-        let t880 = s7_arm * t551 + c7_arm * t632 + joint_velocities[6] * t819;
-        let t881 = t821 + t880;
-        let t902 = t871 - t670;
-        let t909 = t605 + joint_accelerations[6];
-        let t910 = t909 - t824;
-        let t912 = t820 * t820;
-        let t913 = t912 - t872;
-        let t916 = t868 + t812;
-        let t952 = t873 - t912;
-        let t954 = t824 + t909;
-        let t957 = t821 - t880;
-        let t1005 = 0.4 * t842 - s7_arm * t722;
-        let t1008 = t1005 * t881 - t713 * t910;
-        let t1010 = t873 + t912;
-        let t1014 = c7_arm * t722 + 0.4 * t839;
-        let t1017 = t733 - (t713 * t1010 + t1014 * t881);
-        let t1025 = s7_arm * t772 + c7_arm * t461;
-        let t1026 = t1014 * t910 + t1005 * t1010 - t1025;
-        let t1044 = c7_arm * t748 - s7_arm * t513;
-        let t1048 = s7_arm * t748 + c7_arm * t513;
-        let t1059 = t872 + t912;
-        let t1062 = t1005 * t869 + t713 * t1059 - t733;
-        let t1066 = t713 * t954 + t1014 * t869;
-        let t1074 = c7_arm * t772 - s7_arm * t461;
-        let t1075 = t1005 * t954 - t1014 * t1059 - t1074;
+        let t188 = t186 + t187;
+        let t193 = c5_arm * t155 + s5_arm * t156;
+        let t194 = t193 * t193;
+        let t197 = c5_arm * t156 - s5_arm * t155;
+        let t198 = t197 * t197;
+        let t199 = t194 + t198;
+        let t200 = t199 - t188;
+        let t203 = t97 + t176;
+        let t208 = t182 * t171;
+        let t209 = 0.4 * c4_arm;
+        let t210 = t173 * t209;
+        let t213 = joint_accelerations[3] - t76;
+        let t214 = t213 - t160;
+        let t216 = t186 - t187;
+        let t217 = t200 + t216;
+        let t220 = t172 + t148;
+        let t228 = s4_arm * t214;
+        let t235 = t160 + t213;
+        let t238 = t157 - t181;
+        let t247 = c4_arm * t235;
+        let t252 = t158 - t140 * t172 - t48 * t213;
+        let t256 = t165 * t172 - t164 - c3_arm * t213;
+        let t260 = t33 - 0.4 * (t19 + t24);
+        let t262 = s4_arm * t130 + c4_arm * t260;
+        let t266 = t262 + 0.4 * t228 + t209 * t188;
+        let t268 = t209 * t182;
+        let t270 = t121 + t208;
+        let t280 = t121 + t210;
+        let t289 = c4_arm * t130 - s4_arm * t260;
+        let t290 = t171 * t199 - 0.4 * t247 - t289;
+        let t292 = t140 * t280 + t152 * t174 + t48 * t290;
+        let t297 = t165 * t280 + t163 * t174 - c3_arm * t290;
+        let t302 = t140 * c5_arm - t48 * s5_arm;
+        let t307 = c5_arm * t148 + s5_arm * t213 + joint_velocities[4] * t197;
+        let t311 = t140 * s5_arm + t48 * c5_arm;
+        let t312 = t146 + joint_velocities[4];
+        let t313 = t193 * t312;
+        let t314 = t311 * t313;
+        let t316 = t193 * t197;
+        let t318 = t302 * t307 - t314 - t152 * t316;
+        let t321 = s5_arm * t165 - c3_arm * c5_arm;
+        let t322 = t321 * t313;
+        let t325 = c5_arm * t165 + c3_arm * s5_arm;
+        let t329 = t322 - t307 * t325 + t163 * t316;
+        let t330 = s4_arm * s5_arm;
+        let t331 = t330 * t313;
+        let t332 = t171 * c5_arm;
+        let t333 = t332 * 2.5;
+        let t337 = t331 - t307 * t333 - c4_arm * t316;
+        let t338 = t155 * t312;
+        let t339 = t197 * t312;
+        let t340 = t339 + t307;
+        let t341 = s5_arm * t340;
+        let t342 = t338 + t341;
+        let t343 = t194 - t198;
+        let t349 = c5_arm * t213 - s5_arm * t148 - joint_velocities[4] * t193;
+        let t350 = t313 - t349;
+        let t360 = t350 * t332;
+        let t361 = t171 * t341;
+        let t369 = t181 + joint_accelerations[4];
+        let t370 = t316 + t369;
+        let t376 = c6_arm * t312 - s6_arm * t193;
+        let t377 = t376 * t376;
+        let t378 = joint_velocities[5] - t197;
+        let t379 = t378 * t378;
+        let t380 = t377 + t379;
+        let t385 = c6_arm * t193 + s6_arm * t312;
+        let t388 = c7_arm * t385 - s7_arm * t378;
+        let t389 = t388 * t388;
+        let t392 = s7_arm * t385 + c7_arm * t378;
+        let t393 = t392 * t392;
+        let t394 = t389 + t393;
+        let t395 = t394 - t380;
+        let t396 = t377 - t379;
+        let t397 = t395 + t396;
+        let t398 = t397 + t380;
+        let t399 = t199 - t398;
+        let t400 = t343 + t399;
+        let t403 = t339 - t307;
+        let t412 = t333 * t370;
+        let t416 = s5_arm * t370;
+        let t419 = t162 + t252;
+        let t421 = t169 + t256;
+        let t426 = t316 - t369;
+        let t429 = t313 + t349;
+        let t439 = t330 * t426;
+        let t443 = c5_arm * t426;
+        let t448 = t302 * t339 + t314 + t152 * t369;
+        let t452 = t325 * t339 + t322 + t163 * t369;
+        let t456 = c4_arm * t369 - (t333 * t339 + t331);
+        let t457 = 0.4 * t330;
+        let t459 = t209 + 0.39;
+        let t461 = t457 * t350 - t459 * t370;
+        let t464 = 0.39 * t199 - t262;
+        let t465 = t398 - t343;
+        let t468 = t464 + t360 - t459 * t465;
+        let t474 = 0.39 * t235;
+        let t475 = t289 + t474;
+        let t477 = 0.39 * t173;
+        let t478 = t121 + t477;
+        let t480 = s5_arm * t475 + c5_arm * t478;
+        let t481 = t457 * t465 - 0.4 * t412 - t480;
+        let t495 = 0.39 * c5_arm;
+        let t502 = t361 + t459 * t398 - t464;
+        let t506 = t459 * t426 + t332 * t340;
+        let t514 = c5_arm * t475 - s5_arm * t478;
+        let t515 = t332 * t398 - 0.4 * t439 - t514;
+        let t517 = t302 * t502 - t311 * t506 + t152 * t515;
+        let t522 = t321 * t506 - t325 * t502 - t163 * t515;
+        let t527 = t330 * t506 - t333 * t502 + c4_arm * t515;
+        let t529 = 0.39 * s5_arm;
+        let t533 = 0.39 * t443 + t529 * t398 - s5_arm * t464;
+        let t545 = 0.16 * (t9 + t419 * 0.950625 + 2.4375 * t292);
+        let t551 = 0.16 * (0.950625 * t421 - 2.5 * t117 - 2.4375 * t297);
+        let t553 = 0.39 * s4_arm * t478;
+        let t554 = 0.39 * t475;
+        let t558 = t302 * c6_arm + t152 * s6_arm;
+        let t563 = c6_arm * t307 + s6_arm * t369 + joint_velocities[5] * t376;
+        let t567 = t152 * c6_arm - t302 * s6_arm;
+        let t568 = t385 * t378;
+        let t569 = t567 * t568;
+        let t571 = t385 * t376;
+        let t573 = t558 * t563 + t569 - t311 * t571;
+        let t576 = s6_arm * t325 - c6_arm * t163;
+        let t577 = t576 * t568;
+        let t580 = c6_arm * t325 + s6_arm * t163;
+        let t584 = t577 - t563 * t580 + t321 * t571;
+        let t586 = c6_arm * t333;
+        let t587 = c4_arm * s6_arm - t586;
+        let t589 = s6_arm * t333;
+        let t591 = t589 + c4_arm * c6_arm;
+        let t592 = t591 * t568;
+        let t595 = t563 * t587 + t592 + t330 * t571;
+        let t596 = s5_arm * c6_arm;
+        let t598 = s5_arm * s6_arm;
+        let t599 = t598 * t568;
+        let t602 = t563 * t596 - t599 + c5_arm * t571;
+        let t603 = t193 * t378;
+        let t604 = t376 * t378;
+        let t605 = t604 + t563;
+        let t606 = s6_arm * t605;
+        let t607 = t603 + t606;
+        let t613 = c6_arm * t369 - s6_arm * t307 - joint_velocities[5] * t385;
+        let t614 = t568 - t613;
+        let t629 = t426 + t607;
+        let t637 = joint_accelerations[5] - t349;
+        let t638 = t571 + t637;
+        let t642 = t604 - t563;
+        let t671 = t571 - t637;
+        let t674 = t568 + t613;
+        let t698 = t558 * t604 - t569 + t311 * t637;
+        let t702 = t580 * t604 + t577 + t321 * t637;
+        let t706 = t587 * t604 - t592 - t330 * t637;
+        let t710 = t596 * t604 + t599 - c5_arm * t637;
+        let t713 = 0.4 * t589 + c6_arm * t459;
+        let t716 = t713 * t614 + t457 * t638;
+        let t721 = s6_arm * t459 - 0.4 * t586;
+        let t724 = t457 * t380 - t721 * t614 - t480;
+        let t732 = s6_arm * t514 + c6_arm * t464;
+        let t733 = t721 * t638 + t713 * t380 - t732;
+        let t747 = c6_arm * t495;
+        let t749 = s6_arm * t495;
+        let t761 = t480 + t713 * t605 - t457 * t394;
+        let t765 = t457 * t671 + t721 * t605;
+        let t770 = c6_arm * t514 - s6_arm * t464;
+        let t774 = t770 + t721 * t394 + t713 * t671;
+        let t776 = t558 * t761 - t567 * t765 - t311 * t774;
+        let t781 = t321 * t774 - (t580 * t761 + t576 * t765);
+        let t786 = t587 * t761 - t591 * t765 + t330 * t774;
+        let t795 = t747 * t671 + t749 * t394 + t529 * t605 + t480 * t596 + c5_arm * t770;
+        let t796 = s6_arm * t480;
+        let t800 = t558 * c7_arm - t311 * s7_arm;
+        let t805 = c7_arm * t563 - s7_arm * t637 - joint_velocities[6] * t392;
+        let t809 = t558 * s7_arm + t311 * c7_arm;
+        let t810 = t376 + joint_velocities[6];
+        let t811 = t388 * t810;
+        let t812 = t809 * t811;
+        let t814 = t388 * t392;
+        let t816 = t800 * t805 - t812 + t567 * t814;
+        let t819 = s7_arm * t321 - c7_arm * t580;
+        let t823 = s7_arm * t580 + c7_arm * t321;
+        let t824 = t823 * t811;
+        let t827 = t805 * t819 + t824 + t576 * t814;
+        let t829 = s7_arm * t330;
+        let t830 = c7_arm * t587 + t829;
+        let t832 = c7_arm * t330;
+        let t834 = t832 - s7_arm * t587;
+        let t835 = t834 * t811;
+        let t838 = t805 * t830 + t835 + t591 * t814;
+        let t841 = c7_arm * t596 + c5_arm * s7_arm;
+        let t845 = c5_arm * c7_arm - s7_arm * t596;
+        let t846 = t845 * t811;
+        let t849 = t805 * t841 + t846 - t598 * t814;
+        let t850 = s6_arm * c7_arm;
+        let t852 = s6_arm * s7_arm;
+        let t853 = t852 * t811;
+        let t856 = t805 * t850 - t853 + c6_arm * t814;
+        let t857 = t385 * t810;
+        let t858 = t392 * t810;
+        let t859 = t805 - t858;
+        let t861 = t857 + s7_arm * t859;
+        let t862 = t389 - t393;
+        let t868 = s7_arm * t563 + c7_arm * t637 + joint_velocities[6] * t388;
+        let t869 = t811 + t868;
+        let t890 = t861 - t671;
+        let t897 = t613 + joint_accelerations[6];
+        let t898 = t897 - t814;
+        let t900 = t810 * t810;
+        let t901 = t900 - t389;
+        let t904 = t858 + t805;
+        let t939 = t393 - t900;
+        let t941 = t814 + t897;
+        let t944 = t811 - t868;
+        let t992 = 0.4 * t832 - s7_arm * t721;
+        let t995 = t992 * t869 - t713 * t898;
+        let t997 = t393 + t900;
+        let t1001 = c7_arm * t721 + 0.4 * t829;
+        let t1004 = t732 - (t713 * t997 + t1001 * t869);
+        let t1012 = s7_arm * t770 + c7_arm * t480;
+        let t1013 = t1001 * t898 + t992 * t997 - t1012;
+        let t1031 = c7_arm * t747 - s7_arm * t529;
+        let t1035 = s7_arm * t747 + c7_arm * t529;
+        let t1046 = t389 + t900;
+        let t1049 = t992 * t859 + t713 * t1046 - t732;
+        let t1053 = t713 * t941 + t1001 * t859;
+        let t1061 = c7_arm * t770 - s7_arm * t480;
+        let t1062 = t992 * t941 - t1001 * t1046 - t1061;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t8,
-                c2_arm * t7 - s2_arm * (t12 - t14),
-                s2_arm * (t10 + joint_accelerations[1]) + c2_arm * (t23 - t18),
-                joint_accelerations[0] - t8, s2_arm * (t19 - t23) - c2_arm * t30, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t58, c2_arm * t64 - s2_arm * (t61 + t66), t90, t8 - t58, t102,
-                t109, -(0.4 * t90), -t123, 0.8 * t8, t134, 0.0, 0.0, 0.0, 0.0, t163,
-                -(t141 * t183 + t153 * t174 + t48 * t189), t141 * t201 - t153 * t204 - t48 * t207,
-                t58 + t109 - t163, t141 * t222 - t153 * t224 - t48 * t227, t241,
-                t48 * t257 - (t141 * t259 + t153 * t262), -t286, -t123, t134, 0.0, 0.0, 0.0, 0.0,
-                t320, t153 * t347 - (t298 * t354 + t310 * t357),
-                t298 * t375 - t310 * t378 - t153 * t381, t397 - t320,
-                t298 * t403 + t310 * t405 + t153 * t408, t427,
-                t298 * t441 - t310 * t449 + t153 * t462, t501, t286 + t397 * 0.78, t529, 0.0, 0.0,
-                0.0, 0.0, t565, t555 * t599 - t543 * t606 + t310 * t611,
-                t543 * t633 + t555 * t636 - t310 * t639, t320 + t427 - t565,
-                t543 * t668 - t555 * t670 + t310 * t673, t697,
-                t543 * t716 + t555 * t725 + t310 * t734, t778, -t501, t529, 0.0, 0.0, 0.0, 0.0,
-                t826, t555 * t874 - (t804 * t881 + t816 * t869),
-                t804 * t910 - t816 * t913 + t555 * t916, t565 + t697 - t826,
-                t804 * t952 - t816 * t954 + t555 * t957, t822 - t804 * t868 + t555 * t909,
-                t804 * t1008 - t816 * t1017 + t555 * t1026,
-                t804 * t1062 + t816 * t1066 + t555 * t1075, t778, t529, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t9, c2_arm * t15 - s2_arm * t7,
+                s2_arm * (t11 + joint_accelerations[1]) + c2_arm * (t24 - t19), -t8,
+                s2_arm * (t20 - t24) - c2_arm * t30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t58,
+                c2_arm * t66 - s2_arm * (t63 + t68), t90, t9 - t58, t102, t109, -(0.4 * t90), -t122,
+                0.8 * t9, t133, 0.0, 0.0, 0.0, 0.0, t162, -(t140 * t182 + t152 * t173 + t48 * t200),
+                t140 * t214 + t152 * t217 - t48 * t220, t58 + t109 - t162,
+                t140 * t216 - t152 * t235 - t48 * t238, t252,
+                t48 * t266 - (t140 * t268 + t152 * t270), -t292, -t122, t133, 0.0, 0.0, 0.0, 0.0,
+                t318, t152 * t343 - (t302 * t350 + t311 * t340),
+                t302 * t370 + t311 * t400 - t152 * t403, t419 - t318,
+                t302 * t399 + t311 * t426 + t152 * t429, t448,
+                t302 * t461 - t311 * t468 + t152 * t481, t517, t292 + t419 * 0.78, t545, 0.0, 0.0,
+                0.0, 0.0, t573, t567 * t605 - t558 * t614 + t311 * t395,
+                t558 * t638 - t567 * t397 - t311 * t642, t318 + t448 - t573,
+                t558 * t396 - t567 * t671 + t311 * t674, t698,
+                t558 * t716 + t567 * t724 + t311 * t733, t776, -t517, t545, 0.0, 0.0, 0.0, 0.0,
+                t816, t567 * t862 - (t800 * t869 + t809 * t859),
+                t800 * t898 - t809 * t901 + t567 * t904, t573 + t698 - t816,
+                t800 * t939 - t809 * t941 + t567 * t944, t812 - t800 * t858 + t567 * t897,
+                t800 * t995 - t809 * t1004 + t567 * t1013,
+                t800 * t1049 + t809 * t1053 + t567 * t1062, t776, t545, 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t10, t13, joint_accelerations[1], t33,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
                 -t34, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t61,
-                s3_arm * (t53 + t74) - c3_arm * (t46 - t77), -(t91 + c3_arm * t85), t66,
-                -(s3_arm * t95 + t104), t110, 0.4 * t91 + c3_arm * t114, t128, -(t117 + t118),
-                -t135, 0.0, 0.0, 0.0, 0.0, t170, s3_arm * (t177 + t192) - c3_arm * t189,
-                t164 * t204 - t166 * t201 - c3_arm * t207, t110 - t61 - t170,
-                t164 * t224 - t166 * t222 - c3_arm * t227, t245,
-                t166 * t259 + t164 * t262 + c3_arm * t257, t291, t128, -t135, 0.0, 0.0, 0.0, 0.0,
-                t331, t327 * t354 + t323 * t357 - t164 * t347,
-                t323 * t378 - t327 * t375 + t164 * t381, t399 - t331,
-                -(t327 * t403 + t323 * t405 + t164 * t408), -t431,
-                t323 * t449 - t327 * t441 - t164 * t462, t506, 0.78 * t399 - t291, t535, 0.0, 0.0,
-                0.0, 0.0, t576, t572 * t606 + t568 * t599 - t323 * t611,
-                t568 * t636 - t572 * t633 + t323 * t639, t331 - t431 - t576,
-                -(t572 * t668 + t568 * t670 + t323 * t673), -t701,
-                t568 * t725 - t572 * t716 - t323 * t734, t783, -t506, t535, 0.0, 0.0, 0.0, 0.0,
-                t837, t833 * t869 - t829 * t881 + t568 * t874,
-                t829 * t910 + t833 * t913 + t568 * t916, t576 - t701 - t837,
-                t829 * t952 + t833 * t954 + t568 * t957, t568 * t909 - (t829 * t868 + t834),
-                t829 * t1008 + t833 * t1017 + t568 * t1026,
-                t829 * t1062 - t833 * t1066 + t568 * t1075, t783, t535, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t63,
+                s3_arm * (t53 + t76) - c3_arm * t61, -(t91 + c3_arm * t85), t68,
+                -(s3_arm * t95 + t104), t59, 0.4 * t91 + c3_arm * t113, t127, -(t116 + t117), -t134,
+                0.0, 0.0, 0.0, 0.0, t169, s3_arm * (t176 + t203) - c3_arm * t200,
+                -(t163 * t217 + t165 * t214 + c3_arm * t220), -(t62 + t169),
+                t163 * t235 - t165 * t216 - c3_arm * t238, t256,
+                t165 * t268 + t163 * t270 + c3_arm * t266, t297, t127, -t134, 0.0, 0.0, 0.0, 0.0,
+                t329, t325 * t350 + t321 * t340 - t163 * t343,
+                t163 * t403 - (t321 * t400 + t325 * t370), t421 - t329,
+                -(t325 * t399 + t321 * t426 + t163 * t429), -t452,
+                t321 * t468 - t325 * t461 - t163 * t481, t522, 0.78 * t421 - t297, t551, 0.0, 0.0,
+                0.0, 0.0, t584, t580 * t614 + t576 * t605 - t321 * t395,
+                t321 * t642 - (t576 * t397 + t580 * t638), t329 - t452 - t584,
+                -(t580 * t396 + t576 * t671 + t321 * t674), -t702,
+                t576 * t724 - t580 * t716 - t321 * t733, t781, -t522, t551, 0.0, 0.0, 0.0, 0.0,
+                t827, t823 * t859 - t819 * t869 + t576 * t862,
+                t819 * t898 + t823 * t901 + t576 * t904, t584 - t702 - t827,
+                t819 * t939 + t823 * t941 + t576 * t944, t576 * t897 - (t819 * t858 + t824),
+                t819 * t995 + t823 * t1004 + t576 * t1013,
+                t819 * t1049 - t823 * t1053 + t576 * t1062, t781, t551, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t56, t64, t88, -t56, t100, t81, -t122, -t131, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t177,
-                t197 - t198, -(t215 + c4_arm * t204), t192, -(s4_arm * t222 + t236), t171,
-                -(c4_arm * t122), s4_arm * t122, -t131, 0.0, 0.0, 0.0, 0.0, 0.0, t341,
-                t366 + t367 + c4_arm * t347, t334 * t378 - t390 - c4_arm * t381, -(t176 + t341),
-                c4_arm * t408 - (t337 * t403 + t418), t435,
-                t334 * t449 - t337 * t441 + c4_arm * t462, t511, -(s4_arm * (t458 + t459)), -t536,
-                0.0, 0.0, 0.0, 0.0, t587, t583 * t599 - t579 * t606 - t334 * t611,
-                t579 * t633 + t583 * t636 + t334 * t639, t341 + t435 - t587,
-                t579 * t668 - t583 * t670 - t334 * t673, t705,
-                t579 * t716 + t583 * t725 - t334 * t734, t788, -t511, -t536, 0.0, 0.0, 0.0, 0.0,
-                t848, t844 * t869 - t840 * t881 + t583 * t874,
-                t840 * t910 + t844 * t913 + t583 * t916, t587 + t705 - t848,
-                t840 * t952 + t844 * t954 + t583 * t957, t583 * t909 - (t840 * t868 + t845),
-                t840 * t1008 + t844 * t1017 + t583 * t1026,
-                t840 * t1062 - t844 * t1066 + t583 * t1075, t788, -t536, 0.0, 0.0, 0.0, 0.0,
+                t56, t66, t88, -t56, t100, t81, -t121, -t130, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t176,
+                2.5 * (t208 - t210), -(t228 - c4_arm * t217), t203, -(s4_arm * t216 + t247), t170,
+                -(c4_arm * t121), s4_arm * t121, -t130, 0.0, 0.0, 0.0, 0.0, 0.0, t337,
+                2.5 * (t360 + t361) + c4_arm * t343, -(t330 * t400 + t412 + c4_arm * t403),
+                -(t175 + t337), c4_arm * t429 - (t333 * t399 + t439), t456,
+                t330 * t468 - t333 * t461 + c4_arm * t481, t527, -(s4_arm * (t477 + t478)), -t553,
+                0.0, 0.0, 0.0, 0.0, t595, t591 * t605 - t587 * t614 - t330 * t395,
+                t587 * t638 - t591 * t397 + t330 * t642, t337 + t456 - t595,
+                t587 * t396 - t591 * t671 - t330 * t674, t706,
+                t587 * t716 + t591 * t724 - t330 * t733, t786, -t527, -t553, 0.0, 0.0, 0.0, 0.0,
+                t838, t834 * t859 - t830 * t869 + t591 * t862,
+                t830 * t898 + t834 * t901 + t591 * t904, t595 + t706 - t838,
+                t830 * t939 + t834 * t941 + t591 * t944, t591 * t897 - (t830 * t858 + t835),
+                t830 * t995 + t834 * t1004 + t591 * t1013,
+                t830 * t1049 - t834 * t1053 + t591 * t1062, t786, -t553, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t161, t189,
-                t207, -t161, t227, t200, -t251, -t283, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t344,
-                c5_arm * t357 - s5_arm * t354, t394 + c5_arm * t378, t224 - t344,
-                s5_arm * t403 - t422, -t436, c5_arm * t444 - (t476 * t446 + 0.39 * t394), t517,
-                t455 + t456, t537, 0.0, 0.0, 0.0, 0.0, t594,
-                -(s5_arm * (t597 + t624) + c5_arm * t611),
-                t588 * t633 - t590 * t636 + c5_arm * t639, t344 - t436 - t594,
-                t588 * t668 + t590 * t670 - c5_arm * t673, t709,
-                t513 * t606 - (t748 * t718 + t750 * t633) + t461 * t590 + c5_arm * t733, t797,
-                -t517, t537, 0.0, 0.0, 0.0, 0.0, t859, t855 * t869 - t851 * t881 - t590 * t874,
-                t851 * t910 + t855 * t913 - t590 * t916, t594 + t709 - t859,
-                t851 * t952 + t855 * t954 - t590 * t957, -(t851 * t868 + t856 + t590 * t909),
-                t733 * t855 + t590 * t1025
-                    - (t1044 * t1010 + t1048 * t910 + t750 * t881),
-                t1048 * t1059 - t1044 * t954 - t750 * t869 + t590 * t1074 - t733 * t851,
-                t797,
-                t537,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t200,
+                t220, -t160, t238, t213, -t262, -t289, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t342,
+                c5_arm * t340 - s5_arm * t350, t416 - c5_arm * t400, t235 - t342,
+                s5_arm * t399 - t443, -t338, c5_arm * t464 - (t495 * t465 + 0.39 * t416), t533,
+                t474 + t475, t554, 0.0, 0.0, 0.0, 0.0, t602,
+                -(s5_arm * (t607 + t629) + c5_arm * t395),
+                t596 * t638 + t598 * t397 + c5_arm * t642, t341 - t602,
+                t596 * t396 + t598 * t671 - c5_arm * t674, t710,
+                t529 * t614 - (t747 * t380 + t749 * t638) + t480 * t598 + c5_arm * t732, t795,
+                -t533, t554, 0.0, 0.0, 0.0, 0.0, t849, t845 * t859 - t841 * t869 - t598 * t862,
+                t841 * t898 + t845 * t901 - t598 * t904, t602 + t710 - t849,
+                t841 * t939 + t845 * t941 - t598 * t944, -(t841 * t858 + t846 + t598 * t897),
+                t732 * t845 + t598 * t1012 - (t1031 * t997 + t1035 * t898 + t749 * t869),
+                t1035 * t1046 - t1031 * t941 - t749 * t859 + t598 * t1061 - t732 * t841, t795, t554,
+                0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t318, t347, -t381, t318,
-                t408, t374, -t461, -t498, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, t597,
-                c6_arm * t599 - s6_arm * t606, s6_arm * t633 + c6_arm * t636, -t624,
-                s6_arm * t668 - c6_arm * t670, -t710, -(c6_arm * t461), t798, t498, 0.0, 0.0, 0.0,
-                0.0, 0.0, t866, c6_arm * t874 - s6_arm * (t871 + t902),
-                t860 * t910 - t862 * t913 + c6_arm * t916, t597 - t710 - t866,
-                t860 * t952 - t862 * t954 + c6_arm * t957, t863 - t860 * t868 + c6_arm * t909,
-                -(t733 * t862 + c6_arm * t1025), -(t733 * t860 + c6_arm * t1074), t798, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t316, t343, -t403, t316,
+                t429, t369, -t480, -t514, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, t607,
+                c6_arm * t605 - s6_arm * t614, s6_arm * t638 - c6_arm * t397, -t629,
+                s6_arm * t396 - c6_arm * t671, -t603, -(c6_arm * t480), t796, t514, 0.0, 0.0, 0.0,
+                0.0, 0.0, t856, c6_arm * t862 - s6_arm * (t861 + t890),
+                t850 * t898 - t852 * t901 + c6_arm * t904, t606 - t856,
+                t850 * t939 - t852 * t941 + c6_arm * t944, t853 - t850 * t858 + c6_arm * t897,
+                -(t732 * t852 + c6_arm * t1012), -(t732 * t850 + c6_arm * t1061), t796, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t563, t611, -t639, t563, t673, t632, -t733,
-                -t772, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -t871,
-                s7_arm * t881 - c7_arm * t869, -(s7_arm * t910 + c7_arm * t913), t902,
-                -(s7_arm * t952 + c7_arm * t954), t867, -(c7_arm * t733), s7_arm * t733, -t772, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t571, t395, -t642, t571, t674, t637, -t732,
+                -t770, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -t861,
+                s7_arm * t869 - c7_arm * t859, -(s7_arm * t898 + c7_arm * t901), t890,
+                -(s7_arm * t939 + c7_arm * t941), t857, -(c7_arm * t732), s7_arm * t732, -t770, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -840,7 +834,7 @@ impl KukaLwr {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t824, t874, t916, -t824, t957, t909, -t1025, -t1074, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t814, t862, t904, -t814, t944, t897, -t1012, -t1061, 0.0,
                 0.0, joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -856,7 +850,7 @@ impl KukaLwr {
     /// Output: 7 x 69.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1026 operations (424 additions, 602 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 853 intermediates.
+    /// 1019 operations (425 additions, 594 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 846 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 7],
@@ -936,194 +930,191 @@ impl KukaLwr {
         let t166 = t142 - t165;
         let t173 = s4_arm * t45 + c4_arm * t80 + joint_velocities[3] * t149;
         let t174 = t151 + t173;
-        let t178 = t149 * t149;
-        let t179 = t140 * t140;
-        let t180 = t178 - t179;
-        let t188 = s4_arm * t174;
-        let t189 = c4_arm * t166;
-        let t191 = joint_accelerations[3] - t71;
-        let t192 = t191 - t154;
-        let t194 = t150 * t150;
-        let t195 = t194 - t178;
-        let t198 = t165 + t142;
-        let t206 = s4_arm * t192;
-        let t209 = t179 - t194;
-        let t211 = t154 + t191;
-        let t214 = t151 - t173;
-        let t223 = c4_arm * t211;
-        let t236 = t32 - 0.4 * (t18 + t23);
-        let t238 = s4_arm * t128 + c4_arm * t236;
-        let t240 = 0.4 * c4_arm;
-        let t244 = t238 + 0.4 * t206 + t240 * (t179 + t194);
-        let t246 = t240 * t174;
-        let t249 = t119 + 0.4 * t188;
-        let t260 = t119 + 0.4 * t189;
+        let t175 = t134 * t174;
+        let t176 = t146 * t166;
+        let t178 = t140 * t140;
+        let t179 = t150 * t150;
+        let t180 = t178 + t179;
+        let t181 = t178 - t179;
+        let t183 = t63 + t83 - t181;
+        let t184 = t183 - t180;
+        let t187 = t159 * t174;
+        let t188 = t157 * t166;
+        let t192 = s4_arm * t174;
+        let t193 = c4_arm * t166;
+        let t195 = joint_accelerations[3] - t71;
+        let t196 = t195 - t154;
+        let t198 = t184 + t181;
+        let t201 = t165 + t142;
+        let t209 = s4_arm * t196;
+        let t213 = t154 + t195;
+        let t216 = t151 - t173;
+        let t225 = c4_arm * t213;
+        let t238 = t32 - 0.4 * (t18 + t23);
+        let t240 = s4_arm * t128 + c4_arm * t238;
+        let t242 = 0.4 * c4_arm;
+        let t245 = t240 + 0.4 * t209 + t242 * t180;
+        let t249 = t119 + 0.4 * t192;
+        let t260 = t119 + 0.4 * t193;
         let t262 = 0.4 * s4_arm;
-        let t263 = t262 * t166;
-        let t266 = t178 + t194;
-        let t272 = c4_arm * t128 - s4_arm * t236;
-        let t273 = t262 * t266 - 0.4 * t223 - t272;
-        let t287 = t134 * c5_arm - t47 * s5_arm;
-        let t293 = c5_arm * t150 - s5_arm * t149;
-        let t295 = c5_arm * t142 + s5_arm * t191 + joint_velocities[4] * t293;
-        let t299 = t134 * s5_arm + t47 * c5_arm;
-        let t302 = c5_arm * t149 + s5_arm * t150;
-        let t303 = t140 + joint_velocities[4];
-        let t304 = t302 * t303;
-        let t305 = t299 * t304;
-        let t307 = t302 * t293;
-        let t312 = s5_arm * t159 - c3_arm * c5_arm;
-        let t313 = t312 * t304;
-        let t316 = c5_arm * t159 + c3_arm * s5_arm;
-        let t321 = 0.39 * s4_arm;
-        let t322 = s5_arm * t321;
-        let t323 = 2.5641025641025643 * t322;
-        let t324 = t323 * t304;
-        let t325 = c5_arm * t321;
-        let t326 = 2.5641025641025643 * t325;
-        let t331 = t149 * t303;
-        let t332 = t293 * t303;
-        let t333 = t332 + t295;
-        let t336 = t302 * t302;
-        let t337 = t293 * t293;
-        let t338 = t336 - t337;
-        let t344 = c5_arm * t191 - s5_arm * t142 - joint_velocities[4] * t302;
-        let t345 = t304 - t344;
-        let t355 = t326 * t345;
-        let t356 = t323 * t333;
-        let t363 = t173 + joint_accelerations[4];
-        let t364 = t307 + t363;
-        let t366 = t303 * t303;
-        let t367 = t366 - t336;
-        let t370 = t332 - t295;
-        let t379 = t326 * t364;
-        let t383 = s5_arm * t364;
-        let t386 = t337 - t366;
-        let t388 = t307 - t363;
-        let t391 = t304 + t344;
-        let t401 = t323 * t388;
-        let t405 = c5_arm * t388;
-        let t419 = 1.0256410256410255 * t322;
-        let t421 = t240 + 0.39;
-        let t423 = t419 * t345 - t421 * t364;
-        let t426 = 0.39 * t266 - t238;
-        let t428 = t337 + t366;
-        let t431 = t426 + 0.4 * t355 - t421 * t428;
-        let t438 = t272 + 0.39 * t211;
-        let t441 = t119 + 0.39 * t166;
-        let t443 = s5_arm * t438 + c5_arm * t441;
-        let t444 = t419 * t428 - 0.4 * t379 - t443;
-        let t458 = 0.39 * c5_arm;
-        let t464 = t336 + t366;
-        let t467 = 0.4 * t356 + t421 * t464 - t426;
-        let t470 = 1.0256410256410255 * t325;
-        let t472 = t421 * t388 + t470 * t333;
-        let t480 = c5_arm * t438 - s5_arm * t441;
-        let t481 = t470 * t464 - 0.4 * t401 - t480;
-        let t495 = 0.39 * s5_arm;
-        let t505 = t287 * c6_arm + t146 * s6_arm;
-        let t511 = c6_arm * t303 - s6_arm * t302;
-        let t513 = c6_arm * t295 + s6_arm * t363 + joint_velocities[5] * t511;
-        let t517 = t146 * c6_arm - t287 * s6_arm;
-        let t520 = c6_arm * t302 + s6_arm * t303;
-        let t521 = joint_velocities[5] - t293;
-        let t522 = t520 * t521;
-        let t523 = t517 * t522;
-        let t525 = t520 * t511;
-        let t530 = s6_arm * t316 - c6_arm * t157;
-        let t531 = t530 * t522;
-        let t534 = c6_arm * t316 + s6_arm * t157;
-        let t540 = c6_arm * t326;
-        let t541 = c4_arm * s6_arm - t540;
-        let t543 = s6_arm * t326;
-        let t545 = t543 + c4_arm * c6_arm;
-        let t546 = t545 * t522;
-        let t550 = s5_arm * c6_arm;
-        let t552 = s5_arm * s6_arm;
-        let t553 = t552 * t522;
-        let t557 = t302 * t521;
-        let t558 = t511 * t521;
-        let t559 = t558 + t513;
-        let t567 = c6_arm * t363 - s6_arm * t295 - joint_velocities[5] * t520;
-        let t568 = t522 - t567;
-        let t571 = t520 * t520;
-        let t572 = t511 * t511;
-        let t573 = t571 - t572;
-        let t594 = joint_accelerations[5] - t344;
-        let t595 = t525 + t594;
-        let t597 = t521 * t521;
-        let t598 = t597 - t571;
-        let t601 = t558 - t513;
-        let t622 = t572 - t597;
-        let t624 = t525 - t594;
-        let t627 = t522 + t567;
-        let t666 = 0.4 * t543 + c6_arm * t421;
-        let t669 = t666 * t568 + t419 * t595;
-        let t671 = t572 + t597;
-        let t675 = s6_arm * t421 - 0.4 * t540;
-        let t678 = t419 * t671 - t675 * t568 - t443;
-        let t686 = s6_arm * t480 + c6_arm * t426;
-        let t687 = t675 * t595 + t666 * t671 - t686;
-        let t701 = c6_arm * t458;
-        let t703 = s6_arm * t458;
-        let t713 = t571 + t597;
-        let t716 = t443 + t666 * t559 - t419 * t713;
-        let t720 = t419 * t624 + t675 * t559;
-        let t725 = c6_arm * t480 - s6_arm * t426;
-        let t729 = t725 + t675 * t713 + t666 * t624;
-        let t757 = t505 * c7_arm - t299 * s7_arm;
-        let t763 = s7_arm * t520 + c7_arm * t521;
-        let t765 = c7_arm * t513 - s7_arm * t594 - joint_velocities[6] * t763;
-        let t769 = t505 * s7_arm + t299 * c7_arm;
-        let t772 = c7_arm * t520 - s7_arm * t521;
-        let t773 = t511 + joint_velocities[6];
-        let t774 = t772 * t773;
-        let t775 = t769 * t774;
-        let t777 = t772 * t763;
-        let t782 = s7_arm * t312 - c7_arm * t534;
-        let t786 = s7_arm * t534 + c7_arm * t312;
-        let t787 = t786 * t774;
-        let t792 = s7_arm * t323;
-        let t793 = c7_arm * t541 + t792;
-        let t795 = c7_arm * t323;
-        let t797 = t795 - s7_arm * t541;
-        let t798 = t797 * t774;
-        let t804 = c7_arm * t550 + c5_arm * s7_arm;
-        let t808 = c5_arm * c7_arm - s7_arm * t550;
-        let t809 = t808 * t774;
-        let t813 = s6_arm * c7_arm;
-        let t815 = s6_arm * s7_arm;
-        let t816 = t815 * t774;
-        let t820 = t520 * t773;
-        let t821 = t763 * t773;
-        let t822 = t765 - t821;
-        let t825 = t772 * t772;
-        let t826 = t763 * t763;
-        let t827 = t825 - t826;
-        let t833 = s7_arm * t513 + c7_arm * t594 + joint_velocities[6] * t772;
-        let t834 = t774 + t833;
-        let t862 = t567 + joint_accelerations[6];
-        let t863 = t862 - t777;
-        let t865 = t773 * t773;
-        let t866 = t865 - t825;
-        let t869 = t821 + t765;
-        let t895 = t826 - t865;
-        let t897 = t777 + t862;
-        let t900 = t774 - t833;
-        let t948 = 0.4 * t795 - s7_arm * t675;
-        let t951 = t948 * t834 - t666 * t863;
-        let t953 = t826 + t865;
-        let t957 = c7_arm * t675 + 0.4 * t792;
-        let t960 = t686 - (t666 * t953 + t957 * t834);
-        let t968 = s7_arm * t725 + c7_arm * t443;
-        let t969 = t957 * t863 + t948 * t953 - t968;
-        let t987 = c7_arm * t701 - s7_arm * t495;
-        let t991 = s7_arm * t701 + c7_arm * t495;
-        let t1002 = t825 + t865;
-        let t1005 = t948 * t822 + t666 * t1002 - t686;
-        let t1009 = t666 * t897 + t957 * t822;
-        let t1017 = c7_arm * t725 - s7_arm * t443;
-        let t1018 = t948 * t897 - t957 * t1002 - t1017;
+        let t270 = c4_arm * t128 - s4_arm * t238;
+        let t271 = t262 * t183 - 0.4 * t225 - t270;
+        let t285 = t134 * c5_arm - t47 * s5_arm;
+        let t291 = c5_arm * t150 - s5_arm * t149;
+        let t293 = c5_arm * t142 + s5_arm * t195 + joint_velocities[4] * t291;
+        let t297 = t134 * s5_arm + t47 * c5_arm;
+        let t300 = c5_arm * t149 + s5_arm * t150;
+        let t301 = t140 + joint_velocities[4];
+        let t302 = t300 * t301;
+        let t303 = t297 * t302;
+        let t305 = t300 * t291;
+        let t310 = s5_arm * t159 - c3_arm * c5_arm;
+        let t311 = t310 * t302;
+        let t314 = c5_arm * t159 + c3_arm * s5_arm;
+        let t319 = s4_arm * s5_arm;
+        let t320 = t319 * t302;
+        let t321 = s4_arm * c5_arm;
+        let t326 = t149 * t301;
+        let t327 = t291 * t301;
+        let t328 = t327 + t293;
+        let t331 = t291 * t291;
+        let t332 = t301 * t301;
+        let t333 = t331 + t332;
+        let t338 = c6_arm * t300 + s6_arm * t301;
+        let t339 = t338 * t338;
+        let t342 = c6_arm * t301 - s6_arm * t300;
+        let t343 = t342 * t342;
+        let t344 = t339 + t343;
+        let t345 = t344 - t333;
+        let t351 = c5_arm * t195 - s5_arm * t142 - joint_velocities[4] * t300;
+        let t352 = t302 - t351;
+        let t362 = t321 * t352;
+        let t363 = t319 * t328;
+        let t370 = t173 + joint_accelerations[4];
+        let t371 = t305 + t370;
+        let t373 = t331 - t332;
+        let t374 = t345 + t373;
+        let t377 = t327 - t293;
+        let t386 = t321 * t371;
+        let t390 = s5_arm * t371;
+        let t394 = t305 - t370;
+        let t397 = t302 + t351;
+        let t407 = t319 * t394;
+        let t411 = c5_arm * t394;
+        let t425 = t262 * s5_arm;
+        let t427 = t242 + 0.39;
+        let t429 = t425 * t352 - t427 * t371;
+        let t432 = 0.39 * t183 - t240;
+        let t436 = t432 + 0.4 * t362 - t427 * t333;
+        let t443 = t270 + 0.39 * t213;
+        let t446 = t119 + 0.39 * t166;
+        let t448 = s5_arm * t443 + c5_arm * t446;
+        let t449 = t425 * t333 - 0.4 * t386 - t448;
+        let t463 = 0.39 * c5_arm;
+        let t471 = 0.4 * t363 + t427 * t344 - t432;
+        let t474 = t262 * c5_arm;
+        let t476 = t427 * t394 + t474 * t328;
+        let t484 = c5_arm * t443 - s5_arm * t446;
+        let t485 = t474 * t344 - 0.4 * t407 - t484;
+        let t499 = 0.39 * s5_arm;
+        let t507 = t285 * c6_arm + t146 * s6_arm;
+        let t512 = c6_arm * t293 + s6_arm * t370 + joint_velocities[5] * t342;
+        let t516 = t146 * c6_arm - t285 * s6_arm;
+        let t517 = joint_velocities[5] - t291;
+        let t518 = t338 * t517;
+        let t519 = t516 * t518;
+        let t521 = t338 * t342;
+        let t526 = s6_arm * t314 - c6_arm * t157;
+        let t527 = t526 * t518;
+        let t530 = c6_arm * t314 + s6_arm * t157;
+        let t536 = c6_arm * t321;
+        let t537 = c4_arm * s6_arm - t536;
+        let t539 = s6_arm * t321;
+        let t541 = t539 + c4_arm * c6_arm;
+        let t542 = t541 * t518;
+        let t546 = s5_arm * c6_arm;
+        let t548 = s5_arm * s6_arm;
+        let t549 = t548 * t518;
+        let t553 = t300 * t517;
+        let t554 = t342 * t517;
+        let t555 = t554 + t512;
+        let t563 = c6_arm * t370 - s6_arm * t293 - joint_velocities[5] * t338;
+        let t564 = t518 - t563;
+        let t567 = t339 - t343;
+        let t588 = joint_accelerations[5] - t351;
+        let t589 = t521 + t588;
+        let t591 = t517 * t517;
+        let t592 = t591 - t339;
+        let t595 = t554 - t512;
+        let t616 = t343 - t591;
+        let t618 = t521 - t588;
+        let t621 = t518 + t563;
+        let t660 = 0.4 * t539 + c6_arm * t427;
+        let t663 = t660 * t564 + t425 * t589;
+        let t665 = t343 + t591;
+        let t669 = s6_arm * t427 - 0.4 * t536;
+        let t672 = t425 * t665 - t669 * t564 - t448;
+        let t680 = s6_arm * t484 + c6_arm * t432;
+        let t681 = t669 * t589 + t660 * t665 - t680;
+        let t695 = c6_arm * t463;
+        let t697 = s6_arm * t463;
+        let t707 = t339 + t591;
+        let t710 = t448 + t660 * t555 - t425 * t707;
+        let t714 = t425 * t618 + t669 * t555;
+        let t719 = c6_arm * t484 - s6_arm * t432;
+        let t723 = t719 + t669 * t707 + t660 * t618;
+        let t751 = t507 * c7_arm - t297 * s7_arm;
+        let t757 = s7_arm * t338 + c7_arm * t517;
+        let t759 = c7_arm * t512 - s7_arm * t588 - joint_velocities[6] * t757;
+        let t763 = t507 * s7_arm + t297 * c7_arm;
+        let t766 = c7_arm * t338 - s7_arm * t517;
+        let t767 = t342 + joint_velocities[6];
+        let t768 = t766 * t767;
+        let t769 = t763 * t768;
+        let t771 = t766 * t757;
+        let t776 = s7_arm * t310 - c7_arm * t530;
+        let t780 = s7_arm * t530 + c7_arm * t310;
+        let t781 = t780 * t768;
+        let t786 = s7_arm * t319;
+        let t787 = c7_arm * t537 + t786;
+        let t789 = c7_arm * t319;
+        let t791 = t789 - s7_arm * t537;
+        let t792 = t791 * t768;
+        let t798 = c7_arm * t546 + c5_arm * s7_arm;
+        let t802 = c5_arm * c7_arm - s7_arm * t546;
+        let t803 = t802 * t768;
+        let t807 = s6_arm * c7_arm;
+        let t809 = s6_arm * s7_arm;
+        let t810 = t809 * t768;
+        let t814 = t338 * t767;
+        let t815 = t757 * t767;
+        let t816 = t759 - t815;
+        let t819 = t767 * t767;
+        let t820 = t766 * t766;
+        let t821 = t819 - t820;
+        let t822 = t707 + t821;
+        let t823 = t820 + t819;
+        let t824 = t823 - t822;
+        let t830 = s7_arm * t512 + c7_arm * t588 + joint_velocities[6] * t766;
+        let t831 = t768 + t830;
+        let t859 = t563 + joint_accelerations[6];
+        let t860 = t859 - t771;
+        let t864 = t815 + t759;
+        let t890 = t824 + t821;
+        let t892 = t771 + t859;
+        let t895 = t768 - t830;
+        let t943 = 0.4 * t789 - s7_arm * t669;
+        let t946 = t943 * t831 - t660 * t860;
+        let t951 = c7_arm * t669 + 0.4 * t786;
+        let t954 = t680 - (t660 * t822 + t951 * t831);
+        let t962 = s7_arm * t719 + c7_arm * t448;
+        let t963 = t951 * t860 + t943 * t822 - t962;
+        let t981 = c7_arm * t695 - s7_arm * t499;
+        let t985 = s7_arm * t695 + c7_arm * t499;
+        let t998 = t943 * t816 + t660 * t823 - t680;
+        let t1002 = t660 * t892 + t951 * t816;
+        let t1010 = c7_arm * t719 - s7_arm * t448;
+        let t1011 = t943 * t892 - t951 * t823 - t1010;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
@@ -1133,22 +1124,22 @@ impl KukaLwr {
                 s2_arm * (t19 - t23) - c2_arm * t29, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 t37 * t45 - t53 + c2_arm * t55, c2_arm * t65 - (t37 * t72 + t47 * t60), t89, t100,
                 t53 - t37 * t59 + c2_arm * t80, -(0.4 * t89), -(0.4 * t100), 0.0, 0.0, 0.0, 0.0,
-                t134 * t142 - t152 - t47 * t154, -(t134 * t174 + t146 * t166 + t47 * t180),
-                t134 * t192 - t146 * t195 - t47 * t198, t134 * t209 - t146 * t211 - t47 * t214,
-                t152 - t134 * t165 - t47 * t191, t47 * t244 - (t134 * t246 + t146 * t249),
-                -(t134 * t260 + t146 * t263 + t47 * t273), 0.0, 0.0, 0.0, 0.0,
-                t287 * t295 - t305 - t146 * t307, t146 * t338 - (t287 * t345 + t299 * t333),
-                t287 * t364 - t299 * t367 - t146 * t370, t287 * t386 + t299 * t388 + t146 * t391,
-                t287 * t332 + t305 + t146 * t363, t287 * t423 - t299 * t431 + t146 * t444,
-                t287 * t467 - t299 * t472 + t146 * t481, 0.0, 0.0, 0.0, 0.0,
-                t505 * t513 + t523 - t299 * t525, t517 * t559 - t505 * t568 + t299 * t573,
-                t505 * t595 + t517 * t598 - t299 * t601, t505 * t622 - t517 * t624 + t299 * t627,
-                t505 * t558 - t523 + t299 * t594, t505 * t669 + t517 * t678 + t299 * t687,
-                t505 * t716 - t517 * t720 - t299 * t729, 0.0, 0.0, 0.0, 0.0,
-                t757 * t765 - t775 + t517 * t777, t517 * t827 - (t757 * t834 + t769 * t822),
-                t757 * t863 - t769 * t866 + t517 * t869, t757 * t895 - t769 * t897 + t517 * t900,
-                t775 - t757 * t821 + t517 * t862, t757 * t951 - t769 * t960 + t517 * t969,
-                t757 * t1005 + t769 * t1009 + t517 * t1018, 0.0, 0.0, 0.0, 0.0,
+                t134 * t142 - t152 - t47 * t154, -(t175 + t176 + t47 * t184),
+                t134 * t196 + t146 * t198 - t47 * t201, t134 * t181 - t146 * t213 - t47 * t216,
+                t152 - t134 * t165 - t47 * t195, t47 * t245 - (t175 * t242 + t146 * t249),
+                -(t134 * t260 + t176 * t262 + t47 * t271), 0.0, 0.0, 0.0, 0.0,
+                t285 * t293 - t303 - t146 * t305, t146 * t345 - (t285 * t352 + t297 * t328),
+                t285 * t371 + t297 * t374 - t146 * t377, t285 * t373 + t297 * t394 + t146 * t397,
+                t285 * t327 + t303 + t146 * t370, t285 * t429 - t297 * t436 + t146 * t449,
+                t285 * t471 - t297 * t476 + t146 * t485, 0.0, 0.0, 0.0, 0.0,
+                t507 * t512 + t519 - t297 * t521, t516 * t555 - t507 * t564 + t297 * t567,
+                t507 * t589 + t516 * t592 - t297 * t595, t507 * t616 - t516 * t618 + t297 * t621,
+                t507 * t554 - t519 + t297 * t588, t507 * t663 + t516 * t672 + t297 * t681,
+                t507 * t710 - t516 * t714 - t297 * t723, 0.0, 0.0, 0.0, 0.0,
+                t751 * t759 - t769 + t516 * t771, t516 * t824 - (t751 * t831 + t763 * t816),
+                t751 * t860 - t763 * t821 + t516 * t864, t516 * t895 - (t751 * t890 + t763 * t892),
+                t769 - t751 * t815 + t516 * t859, t751 * t946 - t763 * t954 + t516 * t963,
+                t751 * t998 + t763 * t1002 + t516 * t1011, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t13, joint_accelerations[1], t32, -t33,
@@ -1156,91 +1147,92 @@ impl KukaLwr {
                 -(t58 + s3_arm * t60), s3_arm * t72 - c3_arm * t60, -(t90 + c3_arm * t84),
                 -(s3_arm * t93 + t102), t58, 0.4 * t90 + c3_arm * t111,
                 0.4 * t102 - s3_arm * (t111 + t65 * 0.4), 0.0, 0.0, 0.0, 0.0,
-                t158 - t142 * t159 - c3_arm * t154, t159 * t174 + t157 * t166 - c3_arm * t180,
-                t157 * t195 - t159 * t192 - c3_arm * t198,
-                t157 * t211 - t159 * t209 - c3_arm * t214, t159 * t165 - t158 - c3_arm * t191,
-                t159 * t246 + t157 * t249 + c3_arm * t244,
-                t159 * t260 + t157 * t263 - c3_arm * t273, 0.0, 0.0, 0.0, 0.0,
-                t313 - t295 * t316 + t157 * t307, t316 * t345 + t312 * t333 - t157 * t338,
-                t312 * t367 - t316 * t364 + t157 * t370, -(t316 * t386 + t312 * t388 + t157 * t391),
-                -(t316 * t332 + t313 + t157 * t363), t312 * t431 - t316 * t423 - t157 * t444,
-                t312 * t472 - t316 * t467 - t157 * t481, 0.0, 0.0, 0.0, 0.0,
-                t531 - t513 * t534 + t312 * t525, t534 * t568 + t530 * t559 - t312 * t573,
-                t530 * t598 - t534 * t595 + t312 * t601, -(t534 * t622 + t530 * t624 + t312 * t627),
-                -(t534 * t558 + t531 + t312 * t594), t530 * t678 - t534 * t669 - t312 * t687,
-                t312 * t729 - (t534 * t716 + t530 * t720), 0.0, 0.0, 0.0, 0.0,
-                t765 * t782 + t787 + t530 * t777, t786 * t822 - t782 * t834 + t530 * t827,
-                t782 * t863 + t786 * t866 + t530 * t869, t782 * t895 + t786 * t897 + t530 * t900,
-                t530 * t862 - (t782 * t821 + t787), t782 * t951 + t786 * t960 + t530 * t969,
-                t782 * t1005 - t786 * t1009 + t530 * t1018, 0.0, 0.0, 0.0, 0.0,
+                t158 - t142 * t159 - c3_arm * t154, t187 + t188 - c3_arm * t184,
+                -(t157 * t198 + t159 * t196 + c3_arm * t201),
+                t157 * t213 - t159 * t181 - c3_arm * t216, t159 * t165 - t158 - c3_arm * t195,
+                t242 * t187 + t157 * t249 + c3_arm * t245,
+                t159 * t260 + t262 * t188 - c3_arm * t271, 0.0, 0.0, 0.0, 0.0,
+                t311 - t293 * t314 + t157 * t305, t314 * t352 + t310 * t328 - t157 * t345,
+                t157 * t377 - (t310 * t374 + t314 * t371),
+                -(t314 * t373 + t310 * t394 + t157 * t397), -(t314 * t327 + t311 + t157 * t370),
+                t310 * t436 - t314 * t429 - t157 * t449, t310 * t476 - t314 * t471 - t157 * t485,
+                0.0, 0.0, 0.0, 0.0, t527 - t512 * t530 + t310 * t521,
+                t530 * t564 + t526 * t555 - t310 * t567, t526 * t592 - t530 * t589 + t310 * t595,
+                -(t530 * t616 + t526 * t618 + t310 * t621), -(t530 * t554 + t527 + t310 * t588),
+                t526 * t672 - t530 * t663 - t310 * t681, t310 * t723 - (t530 * t710 + t526 * t714),
+                0.0, 0.0, 0.0, 0.0, t759 * t776 + t781 + t526 * t771,
+                t780 * t816 - t776 * t831 + t526 * t824, t776 * t860 + t780 * t821 + t526 * t864,
+                t780 * t892 - t776 * t890 + t526 * t895, t526 * t859 - (t776 * t815 + t781),
+                t776 * t946 + t780 * t954 + t526 * t963, t776 * t998 - t780 * t1002 + t526 * t1011,
+                0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t65, t87,
                 t98, t80, -t119, -t128, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, -(t164 + s4_arm * t166),
-                t188 - t189, -(t206 + c4_arm * t195), -(s4_arm * t209 + t223), t164,
+                t192 - t193, -(t209 - c4_arm * t198), -(s4_arm * t181 + t225), t164,
                 -(c4_arm * t119), s4_arm * t119, 0.0, 0.0, 0.0, 0.0,
-                t324 - t295 * t326 - c4_arm * t307, t355 + t356 + c4_arm * t338,
-                t323 * t367 - t379 - c4_arm * t370, c4_arm * t391 - (t326 * t386 + t401),
-                c4_arm * t363 - (t326 * t332 + t324), t323 * t431 - t326 * t423 + c4_arm * t444,
-                t323 * t472 - t326 * t467 + c4_arm * t481, 0.0, 0.0, 0.0, 0.0,
-                t513 * t541 + t546 + t323 * t525, t545 * t559 - t541 * t568 - t323 * t573,
-                t541 * t595 + t545 * t598 + t323 * t601, t541 * t622 - t545 * t624 - t323 * t627,
-                t541 * t558 - t546 - t323 * t594, t541 * t669 + t545 * t678 - t323 * t687,
-                t541 * t716 - t545 * t720 + t323 * t729, 0.0, 0.0, 0.0, 0.0,
-                t765 * t793 + t798 + t545 * t777, t797 * t822 - t793 * t834 + t545 * t827,
-                t793 * t863 + t797 * t866 + t545 * t869, t793 * t895 + t797 * t897 + t545 * t900,
-                t545 * t862 - (t793 * t821 + t798), t793 * t951 + t797 * t960 + t545 * t969,
-                t793 * t1005 - t797 * t1009 + t545 * t1018, 0.0, 0.0, 0.0, 0.0,
+                t320 - t293 * t321 - c4_arm * t305, t362 + t363 + c4_arm * t345,
+                -(t319 * t374 + t386 + c4_arm * t377), c4_arm * t397 - (t321 * t373 + t407),
+                c4_arm * t370 - (t321 * t327 + t320), t319 * t436 - t321 * t429 + c4_arm * t449,
+                t319 * t476 - t321 * t471 + c4_arm * t485, 0.0, 0.0, 0.0, 0.0,
+                t512 * t537 + t542 + t319 * t521, t541 * t555 - t537 * t564 - t319 * t567,
+                t537 * t589 + t541 * t592 + t319 * t595, t537 * t616 - t541 * t618 - t319 * t621,
+                t537 * t554 - t542 - t319 * t588, t537 * t663 + t541 * t672 - t319 * t681,
+                t537 * t710 - t541 * t714 + t319 * t723, 0.0, 0.0, 0.0, 0.0,
+                t759 * t787 + t792 + t541 * t771, t791 * t816 - t787 * t831 + t541 * t824,
+                t787 * t860 + t791 * t821 + t541 * t864, t791 * t892 - t787 * t890 + t541 * t895,
+                t541 * t859 - (t787 * t815 + t792), t787 * t946 + t791 * t954 + t541 * t963,
+                t787 * t998 - t791 * t1002 + t541 * t1011, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t154, t180, t198, t214, t191, -t238, -t272,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t154, t184, t201, t216, t195, -t240, -t270,
                 joint_accelerations[3], joint_velocities[3],
-                ::overact::math::sign(joint_velocities[3]), 1.0, t331 + s5_arm * t333,
-                c5_arm * t333 - s5_arm * t345, t383 + c5_arm * t367, s5_arm * t386 - t405, -t331,
-                c5_arm * t426 - (t458 * t428 + 0.39 * t383),
-                0.39 * t405 + t495 * t464 - s5_arm * t426, 0.0, 0.0, 0.0, 0.0,
-                t513 * t550 - t553 + c5_arm * t525, -(t550 * t568 + t552 * t559 + c5_arm * t573),
-                t550 * t595 - t552 * t598 + c5_arm * t601,
-                t550 * t622 + t552 * t624 - c5_arm * t627, t550 * t558 + t553 - c5_arm * t594,
-                t495 * t568 - (t701 * t671 + t703 * t595) + t443 * t552 + c5_arm * t686,
-                t701 * t624 + t703 * t713 + t495 * t559 + t443 * t550 + c5_arm * t725, 0.0, 0.0,
-                0.0, 0.0, t765 * t804 + t809 - t552 * t777, t808 * t822 - t804 * t834 - t552 * t827,
-                t804 * t863 + t808 * t866 - t552 * t869, t804 * t895 + t808 * t897 - t552 * t900,
-                -(t804 * t821 + t809 + t552 * t862),
-                t686 * t808 + t552 * t968 - (t987 * t953 + t991 * t863 + t703 * t834),
-                t991 * t1002 - t987 * t897 - t703 * t822 + t552 * t1017 - t686 * t804, 0.0, 0.0,
-                0.0, 0.0,
+                ::overact::math::sign(joint_velocities[3]), 1.0, t326 + s5_arm * t328,
+                c5_arm * t328 - s5_arm * t352, t390 - c5_arm * t374, s5_arm * t373 - t411, -t326,
+                c5_arm * t432 - (t463 * t333 + 0.39 * t390),
+                0.39 * t411 + t499 * t344 - s5_arm * t432, 0.0, 0.0, 0.0, 0.0,
+                t512 * t546 - t549 + c5_arm * t521, -(t546 * t564 + t548 * t555 + c5_arm * t567),
+                t546 * t589 - t548 * t592 + c5_arm * t595,
+                t546 * t616 + t548 * t618 - c5_arm * t621, t546 * t554 + t549 - c5_arm * t588,
+                t499 * t564 - (t695 * t665 + t697 * t589) + t448 * t548 + c5_arm * t680,
+                t695 * t618 + t697 * t707 + t499 * t555 + t448 * t546 + c5_arm * t719, 0.0, 0.0,
+                0.0, 0.0, t759 * t798 + t803 - t548 * t771, t802 * t816 - t798 * t831 - t548 * t824,
+                t798 * t860 + t802 * t821 - t548 * t864, t802 * t892 - t798 * t890 - t548 * t895,
+                -(t798 * t815 + t803 + t548 * t859),
+                t680 * t802 + t548 * t962 - (t981 * t822 + t985 * t860 + t697 * t831),
+                t985 * t823 - t981 * t892 - t697 * t816 + t548 * t1010 - t680 * t798, 0.0, 0.0, 0.0,
+                0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t307, t338, -t370, t391, t363, -t443, -t480, joint_accelerations[4],
+                0.0, 0.0, -t305, t345, -t377, t397, t370, -t448, -t484, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
-                t557 + s6_arm * t559, c6_arm * t559 - s6_arm * t568, s6_arm * t595 + c6_arm * t598,
-                s6_arm * t622 - c6_arm * t624, -t557, -(c6_arm * t443), s6_arm * t443, 0.0, 0.0,
-                0.0, 0.0, t765 * t813 - t816 + c6_arm * t777,
-                c6_arm * t827 - (t813 * t834 + t815 * t822),
-                t813 * t863 - t815 * t866 + c6_arm * t869,
-                t813 * t895 - t815 * t897 + c6_arm * t900, t816 - t813 * t821 + c6_arm * t862,
-                -(t686 * t815 + c6_arm * t968), -(t686 * t813 + c6_arm * t1017), 0.0, 0.0, 0.0, 0.0,
+                t553 + s6_arm * t555, c6_arm * t555 - s6_arm * t564, s6_arm * t589 + c6_arm * t592,
+                s6_arm * t616 - c6_arm * t618, -t553, -(c6_arm * t448), s6_arm * t448, 0.0, 0.0,
+                0.0, 0.0, t759 * t807 - t810 + c6_arm * t771,
+                c6_arm * t824 - (t807 * t831 + t809 * t816),
+                t807 * t860 - t809 * t821 + c6_arm * t864,
+                c6_arm * t895 - (t807 * t890 + t809 * t892), t810 - t807 * t815 + c6_arm * t859,
+                -(t680 * t809 + c6_arm * t962), -(t680 * t807 + c6_arm * t1010), 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t525, t573, -t601,
-                t627, t594, -t686, -t725, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -(t820 + s7_arm * t822),
-                s7_arm * t834 - c7_arm * t822, -(s7_arm * t863 + c7_arm * t866),
-                -(s7_arm * t895 + c7_arm * t897), t820, -(c7_arm * t686), s7_arm * t686, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t521, t567, -t595,
+                t621, t588, -t680, -t719, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -(t814 + s7_arm * t816),
+                s7_arm * t831 - c7_arm * t816, -(s7_arm * t860 + c7_arm * t821),
+                -(c7_arm * t892 - s7_arm * t890), t814, -(c7_arm * t680), s7_arm * t680, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t777, t827, t869, t900, t862, -t968, -t1017,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t771, t824, t864, t895, t859, -t962, -t1010,
                 joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],

@@ -1304,7 +1304,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 456 operations (156 additions, 294 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 347 intermediates.
+    /// 432 operations (148 additions, 274 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 323 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1313,325 +1313,317 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
-        ::overact::guard::reach(t2, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        let t2 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t3 = 1.0 - t2;
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t4 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t4;
-        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t8 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t9 = 1.0 - t8;
-        ::overact::guard::reach(t9, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t9);
-        let t11 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t11, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t11;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t15 = pose[2] * minus_gleft_bar_vz_along_x;
-        let t16 = minus_gleft_bar_vz_along_x * t15;
-        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t16;
+        let t13 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let minus_gfoot_vz_along_x = gdrive_vz_along_x
+            * (minus_s_foot_along_x * minus_gleft_bar_vz_along_x);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t21 = minus_rate_left_bar_along_x * (pose[2] * minus_rate_foot_along_x);
-        let t22 = minus_s_foot_along_x * t21;
-        let t24 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = t24 + t25;
-        let t32 = c_foot_along_x * t21;
-        let t35 = acceleration[1] + pose[1] * t26 + t32 + t32;
-        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t40 = acceleration[2] + pose[2] * t24;
-        let rate_dot_drive_along_x = acceleration[0] - (t22 - 0.31 * t11 * t26 + t22)
-            + gdrive_vy_along_x * t35 + gdrive_vz_along_x * t40;
-        let t43 = gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t44 = gdrive_vz_along_x * rate_dot_drive_along_x;
-        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
-            + gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
-            + minus_gfoot_vz_along_x * t40;
-        let t57 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t58 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t61 = c_foot_along_x * t25
+        let t20 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t23 = gdrive_vz_along_x * twist[2];
+        let t25 = t23 * (t7 * minus_rate_foot_along_x);
+        let t31 = acceleration[2] + pose[2] * t13;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (acceleration[1] + pose[1] * (t13 + t20) + t25 + t25)
+            + minus_gfoot_vz_along_x * t31;
+        let t34 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t35 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t36 = minus_rate_left_bar_along_x * t35;
+        let t37 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t39 = t36 + t37 + t36;
+        let t40 = minus_s_left_bar_along_x * t39;
+        let t41 = minus_gfoot_vy_along_x * t40;
+        let t42 = t34 - t41;
+        let t44 = t42 * (0.31 * c_foot_along_x);
+        let t46 = t2 * t20;
+        let t47 = t13 - t46;
+        let t48 = t20 + t47;
+        let t50 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t52 = minus_s_left_bar_along_x * minus_rate_foot_along_x * t35;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t31;
+        let t54 = t52 + minus_rate_dot_left_bar_along_x;
+        let t57 = minus_s_foot_along_x * t44 + t9 * t48 + t50 * t54;
+        let rate_dot_drive_along_x = acceleration[0] + 0.31 * t57;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t61 = gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t62 = gdrive_vz_along_x * rate_dot_drive_along_x;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1] + t23;
+        let t71 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t74 = c_foot_along_x * t20
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t62 = c_foot_along_x * rate_dot_drive_along_x;
-        let t63 = minus_gfoot_vy_along_x * t62;
-        let t67 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t68 = minus_gfoot_vz_along_x * t67;
-        let t72 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t25;
-        let t74 = gdrive_vy_along_x * t72 + t63;
-        let t77 = gdrive_vz_along_x * t72 + minus_gfoot_vz_along_x * t62;
-        let t78 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t79 = minus_rate_left_bar_along_x * t78;
-        let t80 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t82 = t79 + t80 + t79;
-        let t83 = minus_s_left_bar_along_x * t82;
-        let t84 = minus_gfoot_vy_along_x * t83;
-        let t86 = t78 * t78;
-        let t87 = t86 * t16;
-        let t88 = minus_gfoot_vz_along_x * t83 - t87;
-        let t91 = t4 * (minus_rate_dot_foot_along_x - t83);
-        let t93 = c_left_bar_along_x * t82 + minus_s_left_bar_along_x * t91;
-        let t94 = minus_gfoot_vy_along_x * t93;
-        let t96 = pose[2] * t87;
-        let t99 = minus_gfoot_vz_along_x * t93
-            + minus_gleft_bar_vz_along_x * (t96 - t86);
-        let t100 = t86 * t15;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
-        let t106 = minus_s_left_bar_along_x * (t100 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t24 - t96);
-        let t107 = minus_gfoot_vy_along_x * t106;
-        let t110 = minus_gfoot_vz_along_x * t106 + minus_gleft_bar_vz_along_x * t80;
-        let t111 = t57 - t84;
-        let t112 = t58 - t88;
-        let t113 = 3.225806451612903 * acceleration[2];
-        let t114 = minus_gfoot_vy_along_x * t113;
-        let t117 = minus_gfoot_vz_along_x * t113
+        let t75 = minus_gleft_bar_vz_along_x * rate_dot_drive_along_x;
+        let t79 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t80 = minus_gfoot_vz_along_x * t79;
+        let t84 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t20;
+        let t86 = gdrive_vy_along_x * t84 + t75;
+        let t88 = minus_gfoot_vz_along_x * rate_dot_drive_along_x;
+        let t90 = gdrive_vz_along_x * t84 + c_foot_along_x * t88;
+        let t93 = minus_gfoot_vz_along_x * t40 - minus_gleft_bar_vz_along_x * t52;
+        let t96 = c_left_bar_along_x * t39 + minus_s_left_bar_along_x * t44;
+        let t97 = minus_gfoot_vy_along_x * t96;
+        let t99 = t46 + t13;
+        let t102 = minus_gfoot_vz_along_x * t96
+            + minus_gleft_bar_vz_along_x * (t99 - t48);
+        let t105 = minus_s_left_bar_along_x * t54 + c_left_bar_along_x * t47;
+        let t106 = minus_gfoot_vy_along_x * t105;
+        let t109 = minus_gfoot_vz_along_x * t105 + minus_gleft_bar_vz_along_x * t37;
+        let t110 = t71 - t93;
+        let t111 = 3.225806451612903 * acceleration[2];
+        let t112 = minus_gfoot_vy_along_x * t111;
+        let t115 = minus_gfoot_vz_along_x * t111
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t118 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t120 = 3.225806451612903 * (acceleration[0] - rate_dot_drive_along_x);
-        let t123 = gdrive_vy_along_x * t120 - 3.225806451612903 * t43;
-        let t127 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t130 = gdrive_vz_along_x * t120 - c_left_bar_along_x * t68
-            - (-31.64516129032258 + t127 * t63);
-        let t137 = t11 * (minus_rate_dot_left_bar_along_x - t100) - t127 * (t96 + t24)
-            - minus_s_foot_along_x * t82;
-        let t139 = minus_s_left_bar_along_x * t67;
-        let t141 = gdrive_vy_along_x * t137 - minus_gfoot_vy_along_x * t139;
-        let t149 = gdrive_vz_along_x * t137 - minus_gfoot_vz_along_x * t139
+        let t116 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t119 = gdrive_vy_along_x * t57 + 3.225806451612903 * t61;
+        let t121 = c_left_bar_along_x * t88;
+        let t126 = gdrive_vz_along_x * t57 + minus_s_foot_along_x * t121
+            + -31.64516129032258 + t50 * t75;
+        let t132 = t9 * (minus_rate_dot_left_bar_along_x - t52) - t50 * t99
+            - minus_s_foot_along_x * t39;
+        let t134 = gdrive_vy_along_x * t132 - t121;
+        let t142 = gdrive_vz_along_x * t132 - minus_s_left_bar_along_x * t80
             + minus_gleft_bar_vz_along_x
-                * (c_left_bar_along_x * t62 + 31.64516129032258 * pose[2]);
-        let t151 = t67 - 0.31 * t91;
-        let t159 = -9.81 - acceleration[2];
+                * (t9 * rate_dot_drive_along_x + 31.64516129032258 * pose[2]);
+        let t144 = t79 - 0.31 * t44;
+        let t152 = -9.81 - acceleration[2];
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t162 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        ::overact::guard::reach(t162, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t162);
+        let t155 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t155, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t155);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t167 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t167, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t167);
-        let t169 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t169, 1.0, "along_y")?;
-        let t170 = 1.0 / t169;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t170;
-        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t159 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t159, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t159);
+        let t161 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t161, 1.0, "along_y")?;
+        let gdrive_vx_along_y = minus_s_left_bar_along_y / t161;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t161;
+        let minus_gleft_bar_vx_along_y = c_foot_along_y * minus_gfoot_vz_along_y;
+        let t165 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t166 = minus_s_foot_along_y * t165;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t166;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t174 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t176 = acceleration[0] + pose[0] * t174;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t179 = gdrive_vx_along_y * twist[0];
-        let t180 = pose[0] * minus_gleft_bar_vx_along_y;
-        let t181 = minus_s_foot_along_y * t180;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t181;
+        let t169 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t171 = acceleration[0] + pose[0] * t169;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t187 = t179 * (t167 * minus_rate_foot_along_y);
-        let t188 = gdrive_vz_along_y * t187;
-        let t190 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t191 = t190 + t174;
-        let t200 = acceleration[2] + pose[2] * t191 + t187 + t187;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t176 + acceleration[1]
-            - (t188 - 0.31 * t169 * t191 + t188) + gdrive_vz_along_y * t200;
-        let t203 = gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t204 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t176 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t177 = t176 + t169;
+        let t179 = gdrive_vx_along_y * twist[0];
+        let t181 = t179 * (t159 * minus_rate_foot_along_y);
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t171
+            + minus_gfoot_vz_along_y * (acceleration[2] + pose[2] * t177 + t181 + t181);
+        let t187 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t188 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t189 = minus_rate_left_bar_along_y * t188;
+        let t190 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t192 = t189 + t190 + t189;
+        let t193 = c_left_bar_along_y * t192;
+        let t194 = t193 * t165;
+        let t195 = minus_gfoot_vz_along_y * t194;
+        let t196 = t187 - t195;
+        let t198 = t196 * (0.31 * c_foot_along_y);
+        let t200 = t188 * t188;
+        let t201 = t200 + t169;
+        let t203 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t204 = t200 * t165;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t171;
+        let t206 = t204 + minus_rate_dot_left_bar_along_y;
+        let t209 = minus_s_foot_along_y * t198 + t161 * t201 + t203 * t206;
+        let t210 = 3.225806451612903 * acceleration[1];
+        let t211 = t209 + t210;
+        let rate_dot_drive_along_y = 0.31 * t211;
+        let t213 = gdrive_vx_along_y * rate_dot_drive_along_y;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t215 = gdrive_vz_along_y * rate_dot_drive_along_y;
         let rate_drive_along_y = t179 + twist[1] + gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t176
-            + minus_gfoot_vz_along_y * t200;
-        let t216 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t217 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t220 = c_foot_along_y * t190
+        let t224 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t227 = c_foot_along_y * t176
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t222 = 9.81 - t204;
-        let t223 = c_foot_along_y * t222;
-        let t231 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t190;
-        let t235 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t237 = gdrive_vx_along_y * t231 + minus_gfoot_vx_along_y * t235;
-        let t240 = gdrive_vz_along_y * t231 + minus_gfoot_vz_along_y * t235;
-        let t241 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t242 = minus_rate_left_bar_along_y * t241;
-        let t243 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t245 = t242 + t243 + t242;
-        let t246 = minus_s_left_bar_along_y * t245;
-        let t248 = t241 * t241;
-        let t249 = t248 * t180;
-        let t250 = minus_gleft_bar_vx_along_y * t249;
-        let t251 = minus_gfoot_vx_along_y * t246 - t250;
-        let t252 = minus_gfoot_vz_along_y * t246;
-        let t254 = t217 - t252;
-        let t256 = t254 * (0.31 * c_foot_along_y);
-        let t258 = c_left_bar_along_y * t245 + minus_s_left_bar_along_y * t256;
-        let t260 = pose[0] * t250;
-        let t263 = minus_gfoot_vx_along_y * t258
-            + minus_gleft_bar_vx_along_y * (t260 - t248);
-        let t264 = minus_gfoot_vz_along_y * t258;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t176;
-        let t270 = minus_s_left_bar_along_y * (t249 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t174 - t260);
-        let t273 = minus_gfoot_vx_along_y * t270 + minus_gleft_bar_vx_along_y * t243;
-        let t274 = minus_gfoot_vz_along_y * t270;
-        let t275 = t216 - t251;
-        let t277 = 10.40582726326743 * (t170 * acceleration[0]);
-        let t280 = t181 * t277 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t281 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t283 = 3.225806451612903 * (acceleration[1] - rate_dot_drive_along_y);
-        let t286 = gdrive_vx_along_y * t283 - 3.225806451612903 * t203;
-        let t289 = gdrive_vz_along_y * t283 + 3.225806451612903 * t222;
-        let t297 = t169 * (minus_rate_dot_left_bar_along_y - t249)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t260 + t174)
-            - minus_s_foot_along_y * t245;
-        let t299 = minus_s_left_bar_along_y * t223;
-        let t303 = gdrive_vx_along_y * t297 + minus_gfoot_vx_along_y * t299
-            + 3.225806451612903 * t235;
-        let t306 = gdrive_vz_along_y * t297 + minus_gfoot_vz_along_y * t299;
-        let t308 = t223 + 0.31 * t256;
-        let t317 = 1.0 - t2 * t8;
-        ::overact::guard::reach(t317, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t317);
+        let t230 = c_foot_along_y * (9.81 - t215);
+        let t234 = minus_gfoot_vz_along_y * t230;
+        let t238 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t176;
+        let t242 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t244 = gdrive_vx_along_y * t238 + minus_gfoot_vx_along_y * t242;
+        let t247 = gdrive_vz_along_y * t238 + minus_gfoot_vz_along_y * t242;
+        let t250 = minus_gfoot_vx_along_y * t194 - minus_gleft_bar_vx_along_y * t204;
+        let t252 = t193 + minus_s_left_bar_along_y * t198;
+        let t254 = t177 - t200;
+        let t257 = minus_gfoot_vx_along_y * t252
+            + minus_gleft_bar_vx_along_y * (t254 - t201);
+        let t258 = minus_gfoot_vz_along_y * t252;
+        let t262 = minus_s_left_bar_along_y * t206 + c_left_bar_along_y * (t201 - t176);
+        let t265 = minus_gfoot_vx_along_y * t262 + minus_gleft_bar_vx_along_y * t190;
+        let t266 = minus_gfoot_vz_along_y * t262;
+        let t267 = t224 - t250;
+        let t269 = 10.40582726326743 * (acceleration[0] / t161);
+        let t272 = t166 * t269 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t273 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t274 = t209 + t211;
+        let t275 = gdrive_vx_along_y * t274;
+        let t277 = 31.64516129032258 - gdrive_vz_along_y * t274;
+        let t283 = t161 * (minus_rate_dot_left_bar_along_y - t204) - t203 * t254
+            - minus_s_foot_along_y * t192;
+        let t285 = minus_s_left_bar_along_y * t234;
+        let t289 = gdrive_vx_along_y * t283 + t166 * t285 + 3.225806451612903 * t242;
+        let t291 = gdrive_vz_along_y * t283 + t285;
+        let t293 = t230 + 0.31 * t198;
+        let t302 = 1.0 - t3 * t6;
+        ::overact::guard::reach(t302, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t302);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t319 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t319;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t323 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t323, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t323);
-        let t325 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t325, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t325;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t306 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t306, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t306);
+        let t308 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t308, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t308;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t329 = pose[1] * minus_gleft_bar_vy_along_z;
-        let t330 = minus_gleft_bar_vy_along_z * t329;
-        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t330;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = gdrive_vy_along_z
+            * (minus_s_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t334 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t318 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
+        let t319 = t318 * t318;
+        let t320 = minus_rate_foot_along_z * minus_rate_foot_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t336 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t337 = t334 + t336;
-        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t340 = gdrive_vy_along_z * twist[1];
-        let t342 = t340 * (t323 * minus_rate_foot_along_z);
-        let t345 = acceleration[0] + pose[0] * t337 + t342 + t342;
-        let t348 = acceleration[1] + pose[1] * t336;
-        let t351 = gdrive_vx_along_z * t342;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t345 + gdrive_vy_along_z * t348
-            + acceleration[2] - (t351 - 0.31 * t325 * t337 + t351);
-        let t358 = 9.81 + rate_dot_drive_along_z;
-        let t359 = gdrive_vx_along_z * t358;
-        let t360 = gdrive_vy_along_z * t358;
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t340 + twist[2];
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t345
-            + minus_gfoot_vy_along_z * t348;
-        let t374 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t375 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t378 = c_foot_along_z * t334
+        let t322 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t323 = t322 - t319;
+        let t324 = t320 + t323;
+        let t327 = gdrive_vy_along_z * twist[1];
+        let t329 = t327 * (t306 * minus_rate_foot_along_z);
+        let t335 = acceleration[1] + pose[1] * t322;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
+            * (acceleration[0] + pose[0] * (t319 + t324) + t329 + t329)
+            + minus_gfoot_vy_along_z * t335;
+        let t338 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t339 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t340 = minus_rate_left_bar_along_z * t339;
+        let t341 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t343 = t340 + t341 + t340;
+        let t344 = minus_s_left_bar_along_z * t343;
+        let t345 = minus_gfoot_vx_along_z * t344;
+        let t346 = t338 - t345;
+        let t348 = t346 * (0.31 * c_foot_along_z);
+        let t351 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t352 = t318 * t339;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t335;
+        let t354 = t352 + minus_rate_dot_left_bar_along_z;
+        let t357 = minus_s_foot_along_z * t348 + t308 * t324 + t351 * t354;
+        let rate_dot_drive_along_z = acceleration[2] + 0.31 * t357;
+        let t360 = 9.81 + rate_dot_drive_along_z;
+        let t361 = gdrive_vx_along_z * t360;
+        let t362 = gdrive_vy_along_z * t360;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t327 + twist[2];
+        let t373 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t376 = c_foot_along_z * t320
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t379 = c_foot_along_z * t358;
-        let t380 = minus_gfoot_vx_along_z * t379;
-        let t384 = minus_s_foot_along_z * t358;
-        let t389 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t334;
-        let t391 = gdrive_vx_along_z * t389 + t380;
-        let t394 = gdrive_vy_along_z * t389 + minus_gfoot_vy_along_z * t379;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t396 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t397 = minus_rate_left_bar_along_z * t396;
-        let t398 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t400 = t397 + t398 + t397;
-        let t401 = minus_s_left_bar_along_z * t400;
-        let t402 = minus_gfoot_vx_along_z * t401;
-        let t404 = t396 * t396;
-        let t405 = t404 * t330;
-        let t406 = minus_gfoot_vy_along_z * t401 - t405;
-        let t409 = t319 * (minus_rate_dot_foot_along_z - t401);
-        let t411 = c_left_bar_along_z * t400 + minus_s_left_bar_along_z * t409;
-        let t412 = minus_gfoot_vx_along_z * t411;
-        let t414 = pose[1] * t405;
-        let t417 = minus_gfoot_vy_along_z * t411
-            + minus_gleft_bar_vy_along_z * (t414 - t404);
-        let t418 = t404 * t329;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t348;
-        let t424 = minus_s_left_bar_along_z * (t418 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t336 - t414);
-        let t425 = minus_gfoot_vx_along_z * t424;
-        let t428 = minus_gfoot_vy_along_z * t424 + minus_gleft_bar_vy_along_z * t398;
-        let t429 = t374 - t402;
-        let t430 = t375 - t406;
-        let t431 = 3.225806451612903 * acceleration[1];
-        let t432 = minus_gfoot_vx_along_z * t431;
-        let t435 = minus_gfoot_vy_along_z * t431
+        let t377 = c_foot_along_z * t360;
+        let t378 = minus_gfoot_vx_along_z * t377;
+        let t382 = minus_s_foot_along_z * t360;
+        let t383 = minus_gfoot_vy_along_z * t382;
+        let t387 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t320;
+        let t389 = gdrive_vx_along_z * t387 + t378;
+        let t392 = gdrive_vy_along_z * t387 + minus_gfoot_vy_along_z * t377;
+        let t395 = minus_gfoot_vy_along_z * t344 - minus_gleft_bar_vy_along_z * t352;
+        let t398 = c_left_bar_along_z * t343 + minus_s_left_bar_along_z * t348;
+        let t399 = minus_gfoot_vx_along_z * t398;
+        let t401 = t319 + t322;
+        let t404 = minus_gfoot_vy_along_z * t398
+            + minus_gleft_bar_vy_along_z * (t401 - t324);
+        let t407 = minus_s_left_bar_along_z * t354 + c_left_bar_along_z * t323;
+        let t408 = minus_gfoot_vx_along_z * t407;
+        let t411 = minus_gfoot_vy_along_z * t407 + minus_gleft_bar_vy_along_z * t341;
+        let t412 = t373 - t395;
+        let t413 = minus_gfoot_vx_along_z * t210;
+        let t416 = minus_gfoot_vy_along_z * t210
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t436 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t438 = 3.225806451612903 * (acceleration[2] - rate_dot_drive_along_z);
-        let t441 = gdrive_vx_along_z * t438 - 3.225806451612903 * t359;
-        let t444 = gdrive_vy_along_z * t438 - 3.225806451612903 * t360;
-        let t452 = t325 * (minus_rate_dot_left_bar_along_z - t418)
-            - minus_s_left_bar_along_z * c_foot_along_z * (t414 + t336)
-            - minus_s_foot_along_z * t400;
-        let t454 = minus_s_left_bar_along_z * t384;
-        let t456 = gdrive_vx_along_z * t452 - minus_gfoot_vx_along_z * t454;
-        let t461 = gdrive_vy_along_z * t452 - minus_gfoot_vy_along_z * t454
-            + 3.225806451612903 * t379;
-        let t463 = t384 - 0.31 * t409;
+        let t417 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t420 = gdrive_vx_along_z * t357 + 3.225806451612903 * t361;
+        let t422 = 3.225806451612903 * t362;
+        let t423 = gdrive_vy_along_z * t357 + t422;
+        let t429 = t308 * (minus_rate_dot_left_bar_along_z - t352) - t351 * t401
+            - minus_s_foot_along_z * t343;
+        let t432 = gdrive_vx_along_z * t429 - minus_s_foot_along_z * t422;
+        let t437 = gdrive_vy_along_z * t429 - minus_s_left_bar_along_z * t383
+            + 3.225806451612903 * t377;
+        let t439 = t382 - 0.31 * t348;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t61, t72,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t120, t137, -t72,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t120, t137, -t72,
-                rate_dot_drive_along_x, 0.0, -t61, -t72, acceleration[0], t203, t203,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t74, t84,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t57, t132, -t84,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t57, t132, -t84,
+                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t213, t213,
                 gdrive_vx_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y), gdrive_vx_along_y,
-                t216, -(gdrive_vx_along_y * t220 - minus_gfoot_vx_along_y * t223), t237, t203, t251,
-                -t263, -t273, t275, t280, t281, t286, t303, -t237, t203, t251, -t263, -t273, t275,
-                t280, t281, t286, t303, -t237, t203, t216, minus_gfoot_vx_along_y * t308,
-                -(t237 - 0.31 * t273), acceleration[0], t359,
+                t224, -(gdrive_vx_along_y * t227 - minus_gfoot_vx_along_y * t230), t244, t213, t250,
+                -t257, -t265, t267, t272, t273, -t275, t289, -t244, t213, t250, -t257, -t265, t267,
+                t272, t273, -t275, t289, -t244, t213, t224, minus_gfoot_vx_along_y * t293,
+                -(t244 - 0.31 * t265), acceleration[0], t361,
                 gdrive_vx_along_z * rate_dot_drive_along_z, gdrive_vx_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), gdrive_vx_along_z,
-                t374, -(gdrive_vx_along_z * (t378 + t380)), t391, t359, t402, -t412, -t425, t429,
-                t432, 0.0, t441, t456, -t391, t359, t402, -t412, -t425, t429, t432, 0.0, t441, t456,
-                -t391, t359, t374, -(minus_gfoot_vx_along_z * t463 - t389), -(t391 - 0.31 * t425),
-                acceleration[0], acceleration[0],
+                t338, -(gdrive_vx_along_z * (t376 + t378)), t389, t361, t345, -t399, -t408, t346,
+                t413, 0.0, -t420, t432, -t389, t361, t345, -t399, -t408, t346, t413, 0.0, -t420,
+                t432, -t389, t361, t338, -(minus_gfoot_vx_along_z * t439 - t387),
+                -(t389 - 0.31 * t408), acceleration[0], acceleration[0],
             ],
             [
-                t43, t43, gdrive_vy_along_x * rate_drive_along_x,
+                t61, t61, gdrive_vy_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x), gdrive_vy_along_x,
-                t57, -(gdrive_vy_along_x * (t61 + t63)), t74, t43, t84, -t94, -t107, t111, t114,
-                0.0, t123, t141, -t74, t43, t84, -t94, -t107, t111, t114, 0.0, t123, t141, -t74,
-                t43, t57, -(minus_gfoot_vy_along_x * t151 - t72), -(t74 - 0.31 * t107),
-                acceleration[1], rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t220, t231,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t283, t297, -t231,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t283, t297, -t231,
-                rate_dot_drive_along_y, 0.0, -t220, -t231, acceleration[1], t360,
+                t34, -(gdrive_vy_along_x * (t74 + t75)), t86, t61, t41, -t97, -t106, t42, t112, 0.0,
+                -t119, t134, -t86, t61, t41, -t97, -t106, t42, t112, 0.0, -t119, t134, -t86, t61,
+                t34, -(minus_gfoot_vy_along_x * t144 - t84), -(t86 - 0.31 * t106), acceleration[1],
+                rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t227, t238,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t209, t283, -t238,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t209, t283, -t238,
+                rate_dot_drive_along_y, 0.0, -t227, -t238, acceleration[1], t362,
                 gdrive_vy_along_z * rate_dot_drive_along_z, gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_z,
-                t375, -(gdrive_vy_along_z * t378 + minus_gfoot_vy_along_z * t384), t394, t360, t406,
-                -t417, -t428, t430, t435, t436, t444, t461, -t394, t360, t406, -t417, -t428, t430,
-                t435, t436, t444, t461, -t394, t360, t375, -(minus_gfoot_vy_along_z * t463),
-                -(t394 - 0.31 * t428), acceleration[1], acceleration[1],
+                t373, -(gdrive_vy_along_z * t376 + t383), t392, t362, t395, -t404, -t411, t412,
+                t416, t417, -t423, t437, -t392, t362, t395, -t404, -t411, t412, t416, t417, -t423,
+                t437, -t392, t362, t373, -(minus_gfoot_vy_along_z * t439), -(t392 - 0.31 * t411),
+                acceleration[1], acceleration[1],
             ],
             [
-                t44, t44, gdrive_vz_along_x * rate_drive_along_x,
+                t62, t62, gdrive_vz_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x), gdrive_vz_along_x,
-                t58, -(gdrive_vz_along_x * t61 + t68), t77, t44, t88, -t99, -t110, t112, t117, t118,
-                t130, t149, -t77, t44, t88, -t99, -t110, t112, t117, t118, t130, t149, -t77, t44,
-                t58, -(minus_gfoot_vz_along_x * t151), -(t77 - 0.31 * t110), -t159, t204, t204,
-                gdrive_vz_along_y * rate_drive_along_y,
+                t71, -(gdrive_vz_along_x * t74 + t80), t90, t62, t93, -t102, -t109, t110, t115,
+                t116, -t126, t142, -t90, t62, t93, -t102, -t109, t110, t115, t116, -t126, t142,
+                -t90, t62, t71, -(minus_gfoot_vz_along_x * t144), -(t90 - 0.31 * t109), -t152, t215,
+                t215, gdrive_vz_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y), gdrive_vz_along_y,
-                t217, -(gdrive_vz_along_y * t220 - minus_gfoot_vz_along_y * t223), t240, t204, t252,
-                -t264, -t274, t254, t277, 0.0, t289, t306, -t240, t204, t252, -t264, -t274, t254,
-                t277, 0.0, t289, t306, -t240, t204, t217, t231 + minus_gfoot_vz_along_y * t308,
-                -(t240 - 0.31 * t274), -t159, t358, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t378, t389, t358, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t438, t452, -t389, t358, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t438,
-                t452, -t389, t358, 0.0, -t378, -t389, -t159, -t159,
+                t187, -(gdrive_vz_along_y * t227 - t234), t247, t215, t195, -t258, -t266, t196,
+                t269, 0.0, t277, t291, -t247, t215, t195, -t258, -t266, t196, t269, 0.0, t277, t291,
+                -t247, t215, t187, t238 + minus_gfoot_vz_along_y * t293, -(t247 - 0.31 * t266),
+                -t152, t360, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t376, t387, t360, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -t357, t429, -t387, t360, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t357,
+                t429, -t387, t360, 0.0, -t376, -t387, -t152, -t152,
             ],
         ])
     }
@@ -1646,7 +1638,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 451 operations (150 additions, 295 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 348 intermediates.
+    /// 425 operations (142 additions, 275 multiplications, 8 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 322 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1657,323 +1649,309 @@ impl Orthoglide {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
-        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
-        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
-        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
+        (s_left_bar_along_x, c_left_bar_along_x),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
+        (minus_c_foot_along_z, s_foot_along_z), (s_left_bar_along_z, c_left_bar_along_z),
+        ] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[6], joints[5], joints[9], joints[10],
         ]);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t4 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t4;
+        let t4 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t4, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t4;
+        let t6 = 0.31 * c_left_bar_along_x;
+        let t7 = minus_c_foot_along_x * t6;
+        let minus_gleft_bar_vz_along_x = s_foot_along_x * minus_gfoot_vy_along_x;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t7 = 0.31 * s_left_bar_along_x;
-        let t8 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t8, 1.0, "along_x")?;
-        let t9 = 1.0 / t8;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t9;
-        let t12 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t12 * t9;
-        let t14 = s_left_bar_along_x * t4;
-        let t15 = minus_gleft_bar_vz_along_x * t14;
-        let minus_gfoot_vz_along_x = minus_gdrive_vy_along_x * t15;
+        let t10 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let minus_gdrive_vz_along_x = s_left_bar_along_x / t4;
+        let minus_gfoot_vz_along_x = minus_gdrive_vz_along_x
+            * (minus_c_foot_along_x * minus_gleft_bar_vz_along_x);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t20 = minus_rate_left_bar_along_x * (t7 * minus_rate_foot_along_x);
-        let t21 = minus_c_foot_along_x * t20;
-        let t22 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t23 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t25 = 0.31 * (t22 + t23);
-        let t31 = s_foot_along_x * t20;
-        let t34 = acceleration[1] - (t12 * t25 + t31 + t31);
-        let minus_gdrive_vz_along_x = s_left_bar_along_x * t9;
-        let t39 = acceleration[2] - t7 * t22;
-        let rate_dot_drive_along_x = acceleration[0] - (t21 - t8 * t25 + t21)
-            - minus_gdrive_vy_along_x * t34 - minus_gdrive_vz_along_x * t39;
-        let t42 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t43 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
-            - minus_gdrive_vz_along_x * twist[2];
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t34
-            + minus_gfoot_vz_along_x * t39;
-        let t56 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t57 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t60 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t23;
-        let t61 = s_foot_along_x * rate_dot_drive_along_x;
-        let t62 = minus_gfoot_vy_along_x * t61;
-        let t65 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t66 = minus_gfoot_vz_along_x * t65;
-        let t71 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t23;
-        let t73 = t62 - minus_gdrive_vy_along_x * t71;
-        let t76 = minus_gfoot_vz_along_x * t61 - minus_gdrive_vz_along_x * t71;
-        let t77 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t78 = minus_rate_left_bar_along_x * t77;
-        let t79 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t81 = t78 + t78 - t79;
-        let t82 = s_left_bar_along_x * t81;
-        let t83 = minus_gfoot_vy_along_x * t82;
-        let t84 = t77 * t77;
-        let t85 = t84 * t15;
-        let t87 = t85 - minus_gfoot_vz_along_x * t82;
-        let t90 = t4 * (minus_rate_dot_foot_along_x + t82);
-        let t92 = c_left_bar_along_x * t81 - s_left_bar_along_x * t90;
-        let t93 = minus_gfoot_vy_along_x * t92;
-        let t95 = t7 * t85;
-        let t98 = minus_gfoot_vz_along_x * t92
-            + minus_gleft_bar_vz_along_x * (t95 - t84);
-        let t99 = t84 * t14;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t39;
-        let t105 = s_left_bar_along_x * (t99 - minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t22 - t95);
-        let t106 = minus_gfoot_vy_along_x * t105;
-        let t109 = minus_gleft_bar_vz_along_x * t79 - minus_gfoot_vz_along_x * t105;
-        let t110 = t56 + t83;
-        let t111 = t57 - t87;
-        let t112 = 3.225806451612903 * acceleration[2];
-        let t113 = minus_gfoot_vy_along_x * t112;
-        let t116 = minus_gfoot_vz_along_x * t112
+        let t17 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t20 = s_foot_along_x * minus_rate_left_bar_along_x;
+        let t21 = s_left_bar_along_x * minus_rate_foot_along_x;
+        let t23 = t20 * (0.31 * t21);
+        let t28 = minus_gdrive_vz_along_x * twist[2];
+        let t30 = acceleration[2] - t20 * t28;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (acceleration[1] - (t7 * (t10 + t17) + t23 + t23))
+            + minus_gfoot_vz_along_x * t30;
+        let t33 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t34 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t35 = minus_rate_left_bar_along_x * t34;
+        let t36 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t38 = t35 + t35 - t36;
+        let t39 = s_left_bar_along_x * t38;
+        let t40 = minus_gfoot_vy_along_x * t39;
+        let t41 = t33 + t40;
+        let t43 = t41 * (0.31 * s_foot_along_x);
+        let t45 = t21 * t21;
+        let t46 = t10 - t45;
+        let t47 = t17 + t46;
+        let t49 = s_foot_along_x * s_left_bar_along_x;
+        let t50 = t21 * t34;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t30;
+        let t52 = t50 - minus_rate_dot_left_bar_along_x;
+        let t55 = minus_c_foot_along_x * t43 - (t4 * t47 + t49 * t52);
+        let rate_dot_drive_along_x = acceleration[0] - 0.31 * t55;
+        let minus_gdrive_vy_along_x = minus_gfoot_vy_along_x * t7;
+        let t59 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t60 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
+        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1] - t28;
+        let t69 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t72 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t17;
+        let t73 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t74 = minus_gfoot_vy_along_x * t73;
+        let t75 = minus_gdrive_vy_along_x * t72;
+        let t77 = minus_gfoot_vz_along_x * t73;
+        let t81 = t33 * t6 - t75;
+        let t82 = s_foot_along_x * rate_dot_drive_along_x;
+        let t85 = minus_gfoot_vy_along_x * t82 - minus_gdrive_vy_along_x * t81;
+        let t88 = minus_gfoot_vz_along_x * t82 - minus_gdrive_vz_along_x * t81;
+        let t91 = minus_gleft_bar_vz_along_x * t50 - minus_gfoot_vz_along_x * t39;
+        let t94 = c_left_bar_along_x * t38 - s_left_bar_along_x * t43;
+        let t95 = minus_gfoot_vy_along_x * t94;
+        let t97 = t45 + t10;
+        let t100 = minus_gfoot_vz_along_x * t94
+            + minus_gleft_bar_vz_along_x * (t97 - t47);
+        let t103 = s_left_bar_along_x * t52 + c_left_bar_along_x * t46;
+        let t104 = minus_gfoot_vy_along_x * t103;
+        let t107 = minus_gleft_bar_vz_along_x * t36 - minus_gfoot_vz_along_x * t103;
+        let t108 = t69 - t91;
+        let t109 = 3.225806451612903 * acceleration[2];
+        let t110 = minus_gfoot_vy_along_x * t109;
+        let t113 = minus_gfoot_vz_along_x * t109
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t117 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t119 = 3.225806451612903 * (acceleration[0] - rate_dot_drive_along_x);
-        let t122 = 3.225806451612903 * t42 - minus_gdrive_vy_along_x * t119;
-        let t130 = c_left_bar_along_x * t66 - minus_gdrive_vz_along_x * t119
+        let t114 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t117 = 3.225806451612903 * t59 - minus_gdrive_vy_along_x * t55;
+        let t118 = s_left_bar_along_x * t74;
+        let t126 = minus_c_foot_along_x * t118 - minus_gdrive_vz_along_x * t55
             + minus_gleft_bar_vz_along_x
-                * (s_left_bar_along_x * t61 + 9.81 * c_left_bar_along_x);
-        let t138 = t8 * (t99 + minus_rate_dot_left_bar_along_x)
-            + s_foot_along_x * s_left_bar_along_x * (t95 + t22)
-            + minus_c_foot_along_x * t81;
-        let t140 = s_left_bar_along_x * t65;
-        let t142 = minus_gdrive_vy_along_x * t138 + minus_gfoot_vy_along_x * t140;
-        let t150 = minus_gleft_bar_vz_along_x
-            * (c_left_bar_along_x * t61 - 9.81 * s_left_bar_along_x)
-            - (minus_gdrive_vz_along_x * t138 + minus_gfoot_vz_along_x * t140);
-        let t152 = t65 + 0.31 * t90;
-        let t160 = -9.81 - acceleration[2];
-        let t165 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t165, 1.0, "along_y")?;
-        let t166 = 1.0 / t165;
-        let minus_gdrive_vx_along_y = t166 * s_left_bar_along_y;
-        let t168 = s_foot_along_y * s_left_bar_along_y;
-        let t169 = 1.0 / c_left_bar_along_y;
-        let t170 = t168 * t169;
-        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t166;
-        let t173 = t170 * minus_gdrive_vz_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t169;
+                * (s_left_bar_along_x * t82 + 9.81 * c_left_bar_along_x);
+        let t132 = t4 * (t50 + minus_rate_dot_left_bar_along_x) + t49 * t97
+            + minus_c_foot_along_x * t38;
+        let t134 = minus_gdrive_vy_along_x * t132 + t118;
+        let t142 = minus_gleft_bar_vz_along_x
+            * (c_left_bar_along_x * t82 - 9.81 * s_left_bar_along_x)
+            - (minus_gdrive_vz_along_x * t132 + s_left_bar_along_x * t77);
+        let t144 = t73 + 0.31 * t43;
+        let t152 = -9.81 - acceleration[2];
+        let t157 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t157, 1.0, "along_y")?;
+        let minus_gdrive_vx_along_y = s_left_bar_along_y / t157;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t157;
+        let t160 = s_foot_along_y * s_left_bar_along_y;
+        let t161 = minus_c_foot_along_y / t157;
+        let t162 = t160 * t161;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t162;
+        let minus_gleft_bar_vx_along_y = s_foot_along_y * minus_gfoot_vz_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t166;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t173;
+        let t167 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t169 = acceleration[0] - 0.31 * s_left_bar_along_y * t167;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t181 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t182 = minus_rate_left_bar_along_y * t181;
-        let t183 = 0.31 * t182;
-        let t184 = t173 * t183;
-        let t186 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t187 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t189 = 0.31 * t165 * (t186 + t187);
-        let t193 = 0.31 * s_left_bar_along_y;
-        let t195 = acceleration[0] - t193 * t187;
-        let t199 = t170 * t183;
-        let t202 = acceleration[2] - (t189 * minus_gdrive_vz_along_y + t199 + t199);
-        let rate_dot_drive_along_y = acceleration[1] - (t184 - t189 + t184)
-            - minus_gdrive_vx_along_y * t195 - minus_gdrive_vz_along_y * t202;
-        let t205 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
-        let t206 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t175 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t176 = t175 + t167;
+        let minus_gdrive_vz_along_y = c_left_bar_along_y * t161;
+        let t180 = 0.31 * s_foot_along_y;
+        let t181 = s_left_bar_along_y * minus_rate_foot_along_y;
+        let t183 = t180 * (minus_rate_left_bar_along_y * t181);
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t169
+            + minus_gfoot_vz_along_y
+                * (acceleration[2]
+                    - (0.31 * t157 * t176 * minus_gdrive_vz_along_y + t183 + t183));
+        let t189 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t190 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t191 = minus_rate_left_bar_along_y * t190;
+        let t192 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t194 = t191 + t191 - t192;
+        let t195 = s_left_bar_along_y * t194;
+        let t196 = minus_gfoot_vz_along_y * t195;
+        let t197 = t189 + t196;
+        let t198 = t197 * t180;
+        let t200 = t190 * t190;
+        let t201 = t200 + t167;
+        let t203 = t181 * t190;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t169;
+        let t205 = t203 - minus_rate_dot_left_bar_along_y;
+        let t208 = minus_c_foot_along_y * t198 - (t157 * t201 + t160 * t205);
+        let t209 = 3.225806451612903 * acceleration[1];
+        let t210 = t208 - t209;
+        let minus_rate_dot_drive_along_y = 0.31 * t210;
+        let t212 = minus_gdrive_vx_along_y * minus_rate_dot_drive_along_y;
+        let t213 = minus_gdrive_vz_along_y * minus_rate_dot_drive_along_y;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t195
-            + minus_gfoot_vz_along_y * t202;
-        let t219 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t220 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t221 = 9.81 + t206;
-        let t222 = s_foot_along_y * t221;
-        let t226 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t186;
-        let t234 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t238 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t186;
-        let t240 = minus_gfoot_vx_along_y * t234 - minus_gdrive_vx_along_y * t238;
-        let t243 = minus_gfoot_vz_along_y * t234 - minus_gdrive_vz_along_y * t238;
-        let t245 = s_left_bar_along_y * minus_rate_foot_along_y * t181;
-        let t246 = minus_gleft_bar_vx_along_y * t245;
-        let t247 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t249 = t182 + t182 - t247;
-        let t250 = s_left_bar_along_y * t249;
-        let t252 = t246 - minus_gfoot_vx_along_y * t250;
-        let t253 = minus_gfoot_vz_along_y * t250;
-        let t255 = t220 + t253;
-        let t257 = t255 * (0.31 * s_foot_along_y);
-        let t259 = c_left_bar_along_y * t249 - s_left_bar_along_y * t257;
-        let t261 = t193 * t246;
-        let t265 = minus_gfoot_vx_along_y * t259
-            + minus_gleft_bar_vx_along_y * (t261 - t181 * t181);
-        let t266 = minus_gfoot_vz_along_y * t259;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t195;
-        let t273 = s_left_bar_along_y * (t245 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t187 - t261);
-        let t275 = minus_gleft_bar_vx_along_y * t247 - minus_gfoot_vx_along_y * t273;
-        let t276 = minus_gfoot_vz_along_y * t273;
-        let t277 = t219 - t252;
-        let t279 = 10.40582726326743 * (t166 * acceleration[0]);
-        let t282 = t173 * t279 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t283 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t285 = 3.225806451612903 * (acceleration[1] - rate_dot_drive_along_y);
-        let t288 = 3.225806451612903 * t205 - minus_gdrive_vx_along_y * t285;
-        let t291 = 3.225806451612903 * t221 - minus_gdrive_vz_along_y * t285;
-        let t299 = t165 * (t245 + minus_rate_dot_left_bar_along_y) + t168 * (t261 + t187)
-            + minus_c_foot_along_y * t249;
-        let t301 = s_left_bar_along_y * t222;
-        let t304 = 3.225806451612903 * t234
-            - (minus_gdrive_vx_along_y * t299 + minus_gfoot_vx_along_y * t301);
-        let t307 = minus_gdrive_vz_along_y * t299 + minus_gfoot_vz_along_y * t301;
-        let t309 = t222 + 0.31 * t257;
-        let t321 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t322 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t322, 1.0, "along_z")?;
-        let t323 = 1.0 / t322;
-        let minus_gdrive_vx_along_z = t321 * t323;
-        let t325 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t325;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t329 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t323;
-        let minus_gdrive_vy_along_z = t323 * s_left_bar_along_z;
-        let t333 = s_foot_along_z * minus_gdrive_vy_along_z;
-        let t334 = minus_gleft_bar_vy_along_z * t333;
-        let minus_gfoot_vy_along_z = minus_gdrive_vx_along_z * t334;
+        let t223 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t225 = minus_gleft_bar_vx_along_y * (9.81 - t213);
+        let t229 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t175;
+        let t236 = s_foot_along_y * minus_rate_dot_drive_along_y
+            + 9.81 * minus_c_foot_along_y;
+        let t240 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t175;
+        let t242 = minus_gfoot_vx_along_y * t236 + minus_gdrive_vx_along_y * t240;
+        let t245 = minus_gfoot_vz_along_y * t236 + minus_gdrive_vz_along_y * t240;
+        let t248 = minus_gleft_bar_vx_along_y * t203 - minus_gfoot_vx_along_y * t195;
+        let t251 = c_left_bar_along_y * t194 - s_left_bar_along_y * t198;
+        let t253 = t176 - t200;
+        let t256 = minus_gfoot_vx_along_y * t251
+            + minus_gleft_bar_vx_along_y * (t253 - t201);
+        let t257 = minus_gfoot_vz_along_y * t251;
+        let t262 = s_left_bar_along_y * t205 + c_left_bar_along_y * (t201 - t175);
+        let t264 = minus_gleft_bar_vx_along_y * t192 - minus_gfoot_vx_along_y * t262;
+        let t265 = minus_gfoot_vz_along_y * t262;
+        let t266 = t223 - t248;
+        let t268 = 10.40582726326743 * (acceleration[0] / t157);
+        let t271 = t162 * t268 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t272 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t274 = minus_gdrive_vx_along_y * (t208 + t210);
+        let t277 = c_left_bar_along_y * t225 - minus_gdrive_vz_along_y * t208;
+        let t284 = t157 * (t203 + minus_rate_dot_left_bar_along_y) + t160 * t253
+            + minus_c_foot_along_y * t194;
+        let t286 = s_left_bar_along_y * t225;
+        let t289 = 3.225806451612903 * t236 + minus_gdrive_vx_along_y * t284
+            + t162 * t286;
+        let t291 = minus_gdrive_vz_along_y * t284 + t286;
+        let t293 = t225 + t198 / t157;
+        let t304 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t304, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t304;
+        let t306 = 0.31 * c_left_bar_along_z;
+        let t307 = minus_c_foot_along_z * t306;
+        let minus_gdrive_vx_along_z = minus_gfoot_vx_along_z * t307;
+        let t310 = 0.31 * s_left_bar_along_z;
+        let minus_gdrive_vy_along_z = t310 * minus_gfoot_vx_along_z;
+        let minus_gleft_bar_vy_along_z = s_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_gfoot_vy_along_z = minus_gdrive_vy_along_z
+            * (minus_c_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t339 = s_foot_along_z * minus_rate_left_bar_along_z
-            * (t329 * minus_rate_foot_along_z);
-        let t340 = minus_gdrive_vx_along_z * t339;
-        let t341 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t342 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t344 = 0.31 * (t341 + t342);
-        let t352 = acceleration[0] - (t321 * t344 + t339 + t339);
-        let t355 = acceleration[1] - t329 * t342;
-        let rate_dot_drive_along_z = acceleration[2] - (t340 - t322 * t344 + t340)
-            - (minus_gdrive_vx_along_z * t352 + minus_gdrive_vy_along_z * t355);
-        let t359 = 9.81 + rate_dot_drive_along_z;
-        let t360 = minus_gdrive_vx_along_z * t359;
-        let t361 = minus_gdrive_vy_along_z * t359;
+        let t317 = s_left_bar_along_z * minus_rate_foot_along_z;
+        let t318 = t317 * t317;
+        let t319 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t321 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t322 = t321 - t318;
+        let t323 = t319 + t322;
+        let t326 = 0.31 * s_foot_along_z;
+        let t328 = t326 * (minus_rate_left_bar_along_z * t317);
+        let t334 = acceleration[1] - t310 * t321;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
+            * (acceleration[0] - (t307 * (t318 + t323) + t328 + t328))
+            + minus_gfoot_vy_along_z * t334;
+        let t337 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t338 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t339 = minus_rate_left_bar_along_z * t338;
+        let t340 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t342 = t339 + t339 - t340;
+        let t343 = s_left_bar_along_z * t342;
+        let t344 = minus_gfoot_vx_along_z * t343;
+        let t345 = t337 + t344;
+        let t346 = t345 * t326;
+        let t349 = s_foot_along_z * s_left_bar_along_z;
+        let t350 = t317 * t338;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t334;
+        let t352 = t350 - minus_rate_dot_left_bar_along_z;
+        let t355 = minus_c_foot_along_z * t346 - (t304 * t323 + t349 * t352);
+        let rate_dot_drive_along_z = acceleration[2] - 0.31 * t355;
+        let t358 = 9.81 + rate_dot_drive_along_z;
+        let t359 = minus_gdrive_vx_along_z * t358;
+        let t360 = minus_gdrive_vy_along_z * t358;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t352
-            + minus_gfoot_vy_along_z * t355;
-        let t376 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t377 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t380 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t341;
-        let t381 = s_foot_along_z * t359;
-        let t382 = minus_gfoot_vx_along_z * t381;
-        let t385 = minus_c_foot_along_z * t359;
-        let t391 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t341;
-        let t393 = t382 - minus_gdrive_vx_along_z * t391;
-        let t396 = minus_gfoot_vy_along_z * t381 - minus_gdrive_vy_along_z * t391;
-        let t397 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t398 = minus_rate_left_bar_along_z * t397;
-        let t399 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t401 = t398 + t398 - t399;
-        let t402 = s_left_bar_along_z * t401;
-        let t403 = minus_gfoot_vx_along_z * t402;
-        let t404 = t397 * t397;
-        let t405 = t404 * t334;
-        let t407 = t405 - minus_gfoot_vy_along_z * t402;
-        let t410 = t325 * (minus_rate_dot_foot_along_z + t402);
-        let t412 = c_left_bar_along_z * t401 - s_left_bar_along_z * t410;
-        let t413 = minus_gfoot_vx_along_z * t412;
-        let t415 = t329 * t405;
-        let t418 = minus_gfoot_vy_along_z * t412
-            + minus_gleft_bar_vy_along_z * (t415 - t404);
-        let t419 = t404 * t333;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t355;
-        let t425 = s_left_bar_along_z * (t419 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t342 - t415);
-        let t426 = minus_gfoot_vx_along_z * t425;
-        let t429 = minus_gleft_bar_vy_along_z * t399 - minus_gfoot_vy_along_z * t425;
-        let t430 = t376 + t403;
-        let t431 = t377 - t407;
-        let t432 = 3.225806451612903 * acceleration[1];
-        let t433 = minus_gfoot_vx_along_z * t432;
-        let t436 = minus_gfoot_vy_along_z * t432
+        let t372 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t373 = minus_c_foot_along_z * t358;
+        let t377 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t319;
+        let t378 = minus_gdrive_vx_along_z * t377;
+        let t380 = minus_gfoot_vy_along_z * t373;
+        let t383 = s_foot_along_z * t358;
+        let t386 = t337 * t306 - t378;
+        let t388 = minus_gfoot_vx_along_z * t383 - minus_gdrive_vx_along_z * t386;
+        let t391 = minus_gfoot_vy_along_z * t383 - minus_gdrive_vy_along_z * t386;
+        let t394 = minus_gleft_bar_vy_along_z * t350 - minus_gfoot_vy_along_z * t343;
+        let t397 = c_left_bar_along_z * t342 - s_left_bar_along_z * t346;
+        let t398 = minus_gfoot_vx_along_z * t397;
+        let t400 = t318 + t321;
+        let t403 = minus_gfoot_vy_along_z * t397
+            + minus_gleft_bar_vy_along_z * (t400 - t323);
+        let t406 = s_left_bar_along_z * t352 + c_left_bar_along_z * t322;
+        let t407 = minus_gfoot_vx_along_z * t406;
+        let t410 = minus_gleft_bar_vy_along_z * t340 - minus_gfoot_vy_along_z * t406;
+        let t411 = t372 - t394;
+        let t412 = minus_gfoot_vx_along_z * t209;
+        let t415 = minus_gfoot_vy_along_z * t209
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t437 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t440 = 3.225806451612903 * (acceleration[2] - rate_dot_drive_along_z);
-        let t442 = 3.225806451612903 * t360 - minus_gdrive_vx_along_z * t440;
-        let t445 = 3.225806451612903 * t361 - minus_gdrive_vy_along_z * t440;
-        let t453 = t322 * (t419 + minus_rate_dot_left_bar_along_z)
-            + s_foot_along_z * s_left_bar_along_z * (t415 + t342)
-            + minus_c_foot_along_z * t401;
-        let t455 = s_left_bar_along_z * t385;
-        let t457 = minus_gdrive_vx_along_z * t453 + minus_gfoot_vx_along_z * t455;
-        let t462 = 3.225806451612903 * t381
-            - (minus_gdrive_vy_along_z * t453 + minus_gfoot_vy_along_z * t455);
-        let t464 = t385 + 0.31 * t410;
+        let t416 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t419 = 3.225806451612903 * t359 - minus_gdrive_vx_along_z * t355;
+        let t421 = 3.225806451612903 * t360;
+        let t422 = t421 - minus_gdrive_vy_along_z * t355;
+        let t428 = t304 * (t350 + minus_rate_dot_left_bar_along_z) + t349 * t400
+            + minus_c_foot_along_z * t342;
+        let t431 = minus_gdrive_vx_along_z * t428 + minus_c_foot_along_z * t421;
+        let t436 = 3.225806451612903 * t383
+            - (minus_gdrive_vy_along_z * t428 + s_left_bar_along_z * t380);
+        let t438 = t373 + 0.31 * t346;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t60, t71,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119, t138, -t71,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119, t138, -t71,
-                rate_dot_drive_along_x, 0.0, t60, -t71, acceleration[0], -t205, -t205,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t72, t81,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t132, -t81,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t132, -t81,
+                rate_dot_drive_along_x, 0.0, t72, -t81, acceleration[0], t212, t212,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
-                -minus_gdrive_vx_along_y, t219,
-                minus_gfoot_vx_along_y * t222 - minus_gdrive_vx_along_y * t226, t240, -t205, t252,
-                -t265, t275, t277, t282, t283, t288, t304, -t240, -t205, t252, -t265, t275, t277,
-                t282, t283, t288, t304, -t240, -t205, t219, minus_gfoot_vx_along_y * t309,
-                -(t240 + 0.31 * t275), acceleration[0], -t360,
+                -minus_gdrive_vx_along_y, t223, t162 * t225 - minus_gdrive_vx_along_y * t229, -t242,
+                t212, t248, -t256, t264, t266, t271, t272, -t274, -t289, t242, t212, t248, -t256,
+                t264, t266, t271, t272, -t274, -t289, t242, t212, t223, t162 * t293,
+                -(0.31 * t264 - t242), acceleration[0], -t359,
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z),
-                -minus_gdrive_vx_along_z, t376, -(minus_gdrive_vx_along_z * (t380 - t382)), t393,
-                -t360, -t403, -t413, -t426, t430, t433, 0.0, t442, -t457, -t393, -t360, -t403,
-                -t413, -t426, t430, t433, 0.0, t442, -t457, -t393, -t360, t376,
-                t391 + minus_gfoot_vx_along_z * t464, -(t393 - 0.31 * t426), acceleration[0],
+                -minus_gdrive_vx_along_z, t337, minus_gfoot_vx_along_z * t373 - t378, t388, -t359,
+                -t344, -t398, -t407, t345, t412, 0.0, t419, -t431, -t388, -t359, -t344, -t398,
+                -t407, t345, t412, 0.0, t419, -t431, -t388, -t359, t337,
+                t386 + minus_gfoot_vx_along_z * t438, -(t388 - 0.31 * t407), acceleration[0],
                 acceleration[0],
             ],
             [
-                -t42, -t42, -(minus_gdrive_vy_along_x * rate_drive_along_x),
+                -t59, -t59, -(minus_gdrive_vy_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vy_along_x, rate_drive_along_x),
-                -minus_gdrive_vy_along_x, t56, -(minus_gdrive_vy_along_x * (t60 - t62)), t73, -t42,
-                -t83, -t93, -t106, t110, t113, 0.0, t122, -t142, -t73, -t42, -t83, -t93, -t106,
-                t110, t113, 0.0, t122, -t142, -t73, -t42, t56, t71 + minus_gfoot_vy_along_x * t152,
-                -(t73 - 0.31 * t106), acceleration[1], rate_dot_drive_along_y,
-                rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t226, t238,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t285, t299, -t238,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t285, t299, -t238,
-                rate_dot_drive_along_y, 0.0, t226, -t238, acceleration[1], -t361,
+                -minus_gdrive_vy_along_x, t33, t74 - t75, t85, -t59, -t40, -t95, -t104, t41, t110,
+                0.0, t117, -t134, -t85, -t59, -t40, -t95, -t104, t41, t110, 0.0, t117, -t134, -t85,
+                -t59, t33, t81 + minus_gfoot_vy_along_x * t144, -(t85 - 0.31 * t104),
+                acceleration[1], -minus_rate_dot_drive_along_y, -minus_rate_dot_drive_along_y,
+                rate_drive_along_y, ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t229, t240,
+                -minus_rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t208, t284, -t240,
+                -minus_rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t208, t284, -t240,
+                -minus_rate_dot_drive_along_y, 0.0, t229, -t240, acceleration[1], -t360,
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
-                -minus_gdrive_vy_along_z, t377,
-                minus_gfoot_vy_along_z * t385 - minus_gdrive_vy_along_z * t380, t396, -t361, t407,
-                -t418, t429, t431, t436, t437, t445, t462, -t396, -t361, t407, -t418, t429, t431,
-                t436, t437, t445, t462, -t396, -t361, t377, minus_gfoot_vy_along_z * t464,
-                -(t396 + 0.31 * t429), acceleration[1], acceleration[1],
+                -minus_gdrive_vy_along_z, t372, t380 - minus_gdrive_vy_along_z * t377, t391, -t360,
+                t394, -t403, t410, t411, t415, t416, t422, t436, -t391, -t360, t394, -t403, t410,
+                t411, t415, t416, t422, t436, -t391, -t360, t372, minus_gfoot_vy_along_z * t438,
+                -(t391 + 0.31 * t410), acceleration[1], acceleration[1],
             ],
             [
-                -t43, -t43, -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -t60, -t60, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
-                -minus_gdrive_vz_along_x, t57, t66 - minus_gdrive_vz_along_x * t60, t76, -t43, t87,
-                -t98, t109, t111, t116, t117, t130, t150, -t76, -t43, t87, -t98, t109, t111, t116,
-                t117, t130, t150, -t76, -t43, t57, minus_gfoot_vz_along_x * t152,
-                -(t76 + 0.31 * t109), -t160, -t206, -t206,
+                -minus_gdrive_vz_along_x, t69, t77 - minus_gdrive_vz_along_x * t72, t88, -t60, t91,
+                -t100, t107, t108, t113, t114, t126, t142, -t88, -t60, t91, -t100, t107, t108, t113,
+                t114, t126, t142, -t88, -t60, t69, minus_gfoot_vz_along_x * t144,
+                -(t88 + 0.31 * t107), -t152, t213, t213,
                 -(minus_gdrive_vz_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
-                -minus_gdrive_vz_along_y, t220,
-                minus_gfoot_vz_along_y * t222 - minus_gdrive_vz_along_y * t226, t243, -t206, -t253,
-                -t266, -t276, t255, t279, 0.0, t291, -t307, -t243, -t206, -t253, -t266, -t276, t255,
-                t279, 0.0, t291, -t307, -t243, -t206, t220, t238 + minus_gfoot_vz_along_y * t309,
-                -(t243 - 0.31 * t276), -t160, t359, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t380, t391, t359, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t440, t453, -t391, t359, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t440,
-                t453, -t391, t359, 0.0, t380, -t391, -t160, -t160,
+                -minus_gdrive_vz_along_y, t189, t225 - minus_gdrive_vz_along_y * t229, -t245, t213,
+                -t196, -t257, -t265, t197, t268, 0.0, t277, -t291, t245, t213, -t196, -t257, -t265,
+                t197, t268, 0.0, t277, -t291, t245, t213, t189, t240 + t293, t245 + 0.31 * t265,
+                -t152, t358, rate_dot_drive_along_z, rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t377, t386, t358, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t355, t428, -t386, t358, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t355,
+                t428, -t386, t358, 0.0, t377, -t386, -t152, -t152,
             ],
         ])
     }
@@ -1988,7 +1966,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 519 operations (185 additions, 325 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 414 intermediates.
+    /// 487 operations (181 additions, 266 multiplications, 40 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 382 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1999,364 +1977,348 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        ::overact::guard::reach(t2, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t4;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t9 = 1.0 - t2 * t7;
-        ::overact::guard::reach(t9, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t9);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t11 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t11;
-        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
-        let t14 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t15 = 1.0 - t14;
-        ::overact::guard::reach(t15, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t15);
-        let t17 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t17, 1.0, "along_x")?;
-        let t18 = 1.0 / t17;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t18;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t21 = gdrive_vy_along_x * actuator_accelerations[0];
-        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t23 = gdrive_vz_along_x * actuator_accelerations[0];
-        let t24 = gdrive_vy_along_x * actuator_velocities[0];
-        let t25 = gdrive_vz_along_x * actuator_velocities[0];
-        let t32 = 1.0 - t9 * t14;
-        ::overact::guard::reach(t32, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t32);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t34 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t34;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t38 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t38, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t38);
-        let t40 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t40, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t40;
-        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t45 = 1.0 - t7;
-        ::overact::guard::reach(t45, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t45);
-        let t47 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t47, 1.0, "along_y")?;
-        let t48 = 1.0 / t47;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t48;
-        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t54 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
-        let t58 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t58, 1.0, "actuators")?;
-        ::overact::guard::platform(t58, 1.0, "actuators")?;
-        let t59 = 1.0 / t58;
-        let t60 = t54 * t59;
-        let t62 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t54 * t60;
-        ::overact::guard::platform(t62, 1.0, "actuators")?;
-        ::overact::guard::platform(t62, 1.0, "actuators")?;
-        let t63 = 1.0 / t62;
-        let t65 = gdrive_vy_along_z * actuator_velocities[2];
-        let t67 = gdrive_vx_along_y * actuator_velocities[1];
-        let t69 = gdrive_vx_along_z * actuator_velocities[2];
-        let t70 = actuator_velocities[0] + t67 + t69;
-        let t72 = t24 + actuator_velocities[1] + t65 - t70 * t60;
-        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t78 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t80 = gdrive_vz_along_x + t78 + gdrive_vx_along_z;
-        let t81 = t80 * t59;
-        let t83 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
-            + gdrive_vy_along_z - t54 * t81;
-        let t84 = t83 * t63;
-        let t92 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t80 * t81 - t83 * t84;
-        ::overact::guard::platform(t92, 1.0, "actuators")?;
-        ::overact::guard::platform(t92, 1.0, "actuators")?;
-        let t93 = 1.0 / t92;
-        let t94 = gdrive_vz_along_y * actuator_velocities[1];
-        let t101 = t93 * (t25 + t94 + actuator_velocities[2] - t70 * t81 - t84 * t72);
-        let t103 = t63 * t72 - t84 * t101;
-        let minus_gfoot_vz_along_x = minus_gleft_bar_vz_along_x
-            * (minus_s_foot_along_x * gdrive_vz_along_x);
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t103
-            + minus_gfoot_vz_along_x * t101;
-        let t109 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t101;
-        let t111 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t112 = pose[2] * minus_rate_foot_along_x;
-        let t114 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t115 = 3.225806451612903 * t112 * t114;
-        let t116 = minus_gleft_bar_vz_along_x * t115;
-        let t117 = pose[2] * t116;
-        let t118 = t111 - t117;
-        let t119 = t109 + t118;
-        let rate_dot_drive_along_x = t119 * (0.31 * t18);
-        let t122 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t124 = t45 * t78;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t124;
-        let t130 = t70 * t59 - t60 * t103 - t81 * t101;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t130
-            + minus_gfoot_vz_along_y * t101;
-        let t134 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t135 = t134 * t134;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t130;
-        let t137 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let rate_dot_drive_along_y = (t135 + t137) * (0.31 * t48);
-        let t141 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let t144 = pose[1] * minus_gleft_bar_vy_along_z;
-        let t145 = minus_gleft_bar_vy_along_z * t144;
-        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t145;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t130
-            + minus_gfoot_vy_along_z * t103;
-        let t149 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t103;
-        let t151 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t152 = t149 + t151;
-        let t156 = c_foot_along_z * minus_rate_left_bar_along_z
-            * (pose[1] * minus_rate_foot_along_z);
-        let t158 = pose[0] * t152 + t156 + t156;
-        let t160 = pose[1] * t151;
-        let t163 = gdrive_vx_along_z * t156;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t158 + gdrive_vy_along_z * t160
-            - (t163 - 0.31 * t40 * t152 + t163);
-        let t169 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t175 = t122 + gdrive_vx_along_y * t141 + gdrive_vx_along_z * t169;
-        let t177 = gdrive_vy_along_x * t122 + t141 + gdrive_vy_along_z * t169
-            - t60 * t175;
-        let t187 = t93
-            * (gdrive_vz_along_x * t122 + gdrive_vz_along_y * t141 + t169 - t81 * t175
-                - t84 * t177);
-        let t189 = t63 * t177 - t84 * t187;
-        let t193 = c_foot_along_x * minus_rate_left_bar_along_x * t112;
-        let t199 = t187 + pose[2] * t111;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t189 + pose[1] * (t111 + t109) + t193 + t193)
-            + minus_gfoot_vz_along_x * t199;
-        let t202 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t203 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t206 = c_foot_along_x * t109
-            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t207 = gdrive_vy_along_x * t206;
-        let t208 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t212 = minus_gfoot_vz_along_x * t208;
-        let t216 = t18 * (c_left_bar_along_x * minus_rate_dot_foot_along_x) - t207;
-        let t218 = c_foot_along_x * actuator_accelerations[0];
-        let t219 = minus_gfoot_vy_along_x * t218;
-        let t220 = gdrive_vy_along_x * t216 + t219;
-        let t223 = gdrive_vz_along_x * t216 + minus_gfoot_vz_along_x * t218;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t225 = minus_rate_left_bar_along_x * t114;
-        let t226 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t228 = t225 + t226 + t225;
-        let t229 = minus_s_left_bar_along_x * t228;
-        let t230 = minus_gfoot_vy_along_x * t229;
-        let t232 = minus_gfoot_vz_along_x * t229 - t116;
-        let t235 = t11 * (minus_rate_dot_foot_along_x - t229);
-        let t237 = c_left_bar_along_x * t228 + minus_s_left_bar_along_x * t235;
-        let t238 = minus_gfoot_vy_along_x * t237;
-        let t240 = t117 + t111;
-        let t243 = minus_gfoot_vz_along_x * t237
-            + minus_gleft_bar_vz_along_x * (t240 - t119);
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t199;
-        let t248 = minus_s_left_bar_along_x * (t115 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * t118;
-        let t249 = minus_gfoot_vy_along_x * t248;
-        let t252 = minus_gfoot_vz_along_x * t248 + minus_gleft_bar_vz_along_x * t226;
-        let t253 = t202 - t230;
-        let t254 = t203 - t232;
-        let t255 = 3.225806451612903 * t187;
-        let t256 = minus_gfoot_vy_along_x * t255;
-        let t259 = minus_gfoot_vz_along_x * t255
-            + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t260 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t265 = t59 * t175 - t60 * t189 - t81 * t187;
-        let t267 = 3.225806451612903 * (actuator_accelerations[0] - t265);
-        let t270 = gdrive_vy_along_x * t267 + 3.225806451612903 * t21;
-        let t274 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t277 = gdrive_vz_along_x * t267 + c_left_bar_along_x * t212
-            + -31.64516129032258 + t274 * t219;
-        let t283 = t17 * (minus_rate_dot_left_bar_along_x - t115) - t274 * t240
-            - minus_s_foot_along_x * t228;
-        let t285 = minus_s_left_bar_along_x * t208;
-        let t287 = gdrive_vy_along_x * t283 - minus_gfoot_vy_along_x * t285;
-        let t295 = gdrive_vz_along_x * t283 - minus_gfoot_vz_along_x * t285
-            + minus_gleft_bar_vz_along_x
-                * (c_left_bar_along_x * t218 + 31.64516129032258 * pose[2]);
-        let t297 = t208 - 0.31 * t235;
-        let t305 = -9.81 - t187;
-        let t306 = gdrive_vx_along_y * actuator_accelerations[1];
-        let t307 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t312 = t265 + pose[0] * t137;
-        let t314 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t318 = pose[0] * minus_rate_foot_along_y;
-        let t319 = c_foot_along_y * minus_rate_left_bar_along_y * t318;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t312
-            + minus_gfoot_vz_along_y * (t187 + pose[2] * (t314 + t137) + t319 + t319);
-        let t325 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t326 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t329 = c_foot_along_y * t314
-            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t331 = 9.81 - t307;
-        let t332 = c_foot_along_y * t331;
-        let t340 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t314;
-        let t344 = 9.81 * minus_s_foot_along_y
-            + c_foot_along_y * actuator_accelerations[1];
-        let t346 = gdrive_vx_along_y * t340 + minus_gfoot_vx_along_y * t344;
-        let t349 = gdrive_vz_along_y * t340 + minus_gfoot_vz_along_y * t344;
-        let t350 = minus_rate_left_bar_along_y * t134;
-        let t351 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t353 = t350 + t351 + t350;
-        let t354 = minus_s_left_bar_along_y * t353;
-        let t357 = 3.225806451612903 * t318 * t134;
-        let t358 = minus_gleft_bar_vx_along_y * t357;
-        let t359 = minus_gfoot_vx_along_y * t354 - t358;
-        let t360 = minus_gfoot_vz_along_y * t354;
-        let t363 = t4 * (minus_rate_dot_foot_along_y - t354);
-        let t365 = c_left_bar_along_y * t353 + minus_s_left_bar_along_y * t363;
-        let t367 = pose[0] * t358;
-        let t370 = minus_gfoot_vx_along_y * t365
-            + minus_gleft_bar_vx_along_y * (t367 - t135);
-        let t371 = minus_gfoot_vz_along_y * t365;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t312;
-        let t377 = minus_s_left_bar_along_y * (t357 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t137 - t367);
-        let t380 = minus_gfoot_vx_along_y * t377 + minus_gleft_bar_vx_along_y * t351;
-        let t381 = minus_gfoot_vz_along_y * t377;
-        let t382 = t325 - t359;
-        let t383 = t326 - t360;
-        let t385 = 10.40582726326743 * (t48 * t265);
-        let t388 = t124 * t385 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t389 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t391 = 3.225806451612903 * (actuator_accelerations[1] - t189);
-        let t394 = gdrive_vx_along_y * t391 + 3.225806451612903 * t306;
-        let t397 = 3.225806451612903 * t331 - gdrive_vz_along_y * t391;
-        let t405 = t47 * (minus_rate_dot_left_bar_along_y - t357)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t367 + t137)
-            - minus_s_foot_along_y * t353;
-        let t407 = minus_s_left_bar_along_y * t332;
-        let t411 = gdrive_vx_along_y * t405 + minus_gfoot_vx_along_y * t407
-            + 3.225806451612903 * t344;
-        let t414 = gdrive_vz_along_y * t405 + minus_gfoot_vz_along_y * t407;
-        let t416 = t332 + 0.31 * t363;
-        let t424 = 9.81 + actuator_accelerations[2];
-        let t425 = gdrive_vx_along_z * t424;
-        let t426 = gdrive_vy_along_z * t424;
-        let t434 = t189 + t160;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t265 + t158)
-            + minus_gfoot_vy_along_z * t434;
-        let t437 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t438 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t441 = c_foot_along_z * t149
-            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t442 = c_foot_along_z * t424;
-        let t443 = minus_gfoot_vx_along_z * t442;
-        let t447 = minus_s_foot_along_z * t424;
-        let t452 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t149;
-        let t454 = gdrive_vx_along_z * t452 + t443;
-        let t457 = gdrive_vy_along_z * t452 + minus_gfoot_vy_along_z * t442;
+        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        let t4 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t4;
+        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t7 = 1.0 - t6;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t12 = gdrive_vy_along_x * actuator_accelerations[0];
+        let gdrive_vz_along_x = minus_s_left_bar_along_x / t9;
+        let t14 = gdrive_vz_along_x * actuator_accelerations[0];
+        let t15 = gdrive_vy_along_x * actuator_velocities[0];
+        let t16 = gdrive_vz_along_x * actuator_velocities[0];
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t459 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t460 = minus_rate_left_bar_along_z * t459;
-        let t461 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t463 = t460 + t461 + t460;
-        let t464 = minus_s_left_bar_along_z * t463;
-        let t465 = minus_gfoot_vx_along_z * t464;
-        let t467 = t459 * t459;
-        let t468 = t467 * t145;
-        let t469 = minus_gfoot_vy_along_z * t464 - t468;
-        let t472 = t34 * (minus_rate_dot_foot_along_z - t464);
-        let t474 = c_left_bar_along_z * t463 + minus_s_left_bar_along_z * t472;
-        let t475 = minus_gfoot_vx_along_z * t474;
-        let t477 = pose[1] * t468;
-        let t480 = minus_gfoot_vy_along_z * t474
-            + minus_gleft_bar_vy_along_z * (t477 - t467);
-        let t481 = t467 * t144;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t434;
-        let t487 = minus_s_left_bar_along_z * (t481 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t151 - t477);
-        let t488 = minus_gfoot_vx_along_z * t487;
-        let t491 = minus_gfoot_vy_along_z * t487 + minus_gleft_bar_vy_along_z * t461;
-        let t492 = t437 - t465;
-        let t493 = t438 - t469;
-        let t494 = 3.225806451612903 * t189;
-        let t495 = minus_gfoot_vx_along_z * t494;
-        let t498 = minus_gfoot_vy_along_z * t494
+        let t23 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t23, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t23);
+        let t25 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t25;
+        let t27 = minus_s_foot_along_z * minus_s_foot_along_z;
+        let t28 = 1.0 - t27;
+        ::overact::guard::reach(t28, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t28);
+        let t30 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t30, 1.0, "along_z")?;
+        let gdrive_vy_along_z = minus_s_left_bar_along_z / t30;
+        let t32 = gdrive_vy_along_z * actuator_velocities[2];
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t36 = 1.0 - t23 * t27;
+        ::overact::guard::reach(t36, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t36);
+        let t38 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t38;
+        let t41 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t41, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t41);
+        let t43 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t43, 1.0, "along_y")?;
+        let gdrive_vx_along_y = minus_s_left_bar_along_y / t43;
+        let t45 = gdrive_vx_along_y * actuator_velocities[1];
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t30;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t49 = gdrive_vx_along_z * actuator_velocities[2];
+        let t50 = actuator_velocities[0] + t45 + t49;
+        let t52 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let t53 = gdrive_vy_along_x + gdrive_vx_along_y + t52;
+        let t57 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        ::overact::guard::platform(t57, 1.0, "actuators")?;
+        let t58 = t53 / t57;
+        let t60 = t15 + actuator_velocities[1] + t32 - t50 * t58;
+        let t66 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t53 * t58;
+        ::overact::guard::platform(t66, 1.0, "actuators")?;
+        ::overact::guard::platform(t66, 1.0, "actuators")?;
+        let t68 = gdrive_vy_along_x * gdrive_vz_along_x;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t43;
+        let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
+        let t73 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t75 = gdrive_vz_along_x + t73 + gdrive_vx_along_z;
+        let t76 = t75 / t57;
+        let t78 = t68 + gdrive_vz_along_y + gdrive_vy_along_z - t53 * t76;
+        let t79 = t78 / t66;
+        let t80 = gdrive_vz_along_y * actuator_velocities[1];
+        let t94 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t75 * t76 - t78 * t79;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        ::overact::guard::platform(t94, 1.0, "actuators")?;
+        let t95 = (t16 + t80 + actuator_velocities[2] - t50 * t76 - t79 * t60) / t94;
+        let t97 = t60 / t66 - t79 * t95;
+        let t99 = t7 * t68;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * t99;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t97
+            + minus_gfoot_vz_along_x * t95;
+        let t103 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let minus_rate_left_bar_along_x = t95 / t4;
+        let t105 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t106 = pose[2] * minus_rate_foot_along_x;
+        let t108 = 10.40582726326743 * (minus_rate_foot_along_x * t106);
+        let t109 = pose[2] * t108;
+        let t110 = t105 - t109;
+        let t111 = t103 + t110;
+        let rate_dot_drive_along_x = 0.31 * t111 / t9;
+        let t114 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t116 = t41 * t73;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t116;
+        let t122 = t50 / t57 - t58 * t97 - t76 * t95;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t122
+            + minus_gfoot_vz_along_y * t95;
+        let t126 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t127 = t126 * t126;
+        let minus_rate_left_bar_along_y = t122 / t38;
+        let t129 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t130 = t127 + t129;
+        let rate_dot_drive_along_y = 0.31 * t130 / t43;
+        let t133 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t136 = t28 * t52;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * t136;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t122
+            + minus_gfoot_vy_along_z * t97;
+        let t140 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t97;
+        let t143 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t144 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
+        let t145 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t146 = t144 * t145;
+        let t147 = t146 / t25;
+        let t148 = pose[1] * t147;
+        let t149 = t143 - t148;
+        let t150 = t140 + t149;
+        let rate_dot_drive_along_z = 0.31 * t150 / t30;
+        let t153 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t159 = t114 + gdrive_vx_along_y * t133 + gdrive_vx_along_z * t153;
+        let t161 = gdrive_vy_along_x * t114 + t133 + gdrive_vy_along_z * t153
+            - t58 * t159;
+        let t171 = (gdrive_vz_along_x * t114 + gdrive_vz_along_y * t133 + t153
+            - t76 * t159 - t79 * t161) / t94;
+        let t173 = t161 / t66 - t79 * t171;
+        let t177 = c_foot_along_x * minus_rate_left_bar_along_x * t106;
+        let t183 = t171 + pose[2] * t105;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t173 + pose[1] * (t105 + t103) + t177 + t177)
+            + minus_gfoot_vz_along_x * t183;
+        let t186 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t187 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t190 = c_foot_along_x * t103
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t191 = gdrive_vy_along_x * t190;
+        let t192 = actuator_accelerations[0] / t4;
+        let t193 = gdrive_vy_along_x * t192;
+        let t196 = t193 * t99;
+        let t199 = t4 * t186 - t191;
+        let t201 = gdrive_vy_along_x * t199 + t192;
+        let t204 = gdrive_vz_along_x * t199 + t192 * t99;
+        let t209 = t159 / t57 - t58 * t173 - t76 * t171;
+        let t211 = 3.225806451612903 * (actuator_accelerations[0] - t209);
+        let t212 = gdrive_vy_along_x * t211;
+        let t213 = 3.225806451612903 * t173;
+        let t214 = t212 + t213;
+        let t215 = 3.225806451612903 * t214;
+        let t216 = t186 - t215;
+        let t218 = t108 + t215 * t99;
+        let t219 = t187 - t218;
+        let t221 = minus_rate_left_bar_along_x
+            * (c_left_bar_along_x * minus_rate_foot_along_x);
+        let t224 = t221 + minus_s_left_bar_along_x * minus_rate_dot_foot_along_x + t221;
+        let t226 = c_foot_along_x * t214;
+        let t228 = c_left_bar_along_x * t224 + minus_s_left_bar_along_x * t226;
+        let t229 = minus_gfoot_vy_along_x * t228;
+        let t231 = t109 + t105;
+        let t234 = minus_gfoot_vz_along_x * t228 + (t231 - t111) / t4;
+        let t235 = t4 * t108;
+        let minus_rate_dot_left_bar_along_x = t183 / t4;
+        let t240 = minus_s_left_bar_along_x * (t235 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * t110;
+        let t241 = minus_gfoot_vy_along_x * t240;
+        let t243 = t201 - t240 / t9;
+        let t245 = (t190 - t243) * t99;
+        let t247 = 3.225806451612903 * (t204 + t245);
+        let t248 = 3.225806451612903 * t171;
+        let t249 = minus_gfoot_vy_along_x * t248;
+        let t252 = minus_gfoot_vz_along_x * t248
+            + 3.225806451612903 * minus_rate_dot_foot_along_x;
+        let t253 = minus_rate_dot_left_bar_along_x / t4;
+        let t254 = 3.225806451612903 * t12;
+        let t255 = t212 + t254;
+        let t259 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t262 = gdrive_vz_along_x * t211 + t254 * t99 + -31.64516129032258
+            + t259 * t192;
+        let t268 = t9 * (minus_rate_dot_left_bar_along_x - t235) - t259 * t231
+            - minus_s_foot_along_x * t224;
+        let t271 = gdrive_vy_along_x * t268 - minus_s_left_bar_along_x * t193;
+        let t279 = gdrive_vz_along_x * t268 - minus_s_left_bar_along_x * t196
+            + (actuator_accelerations[0] * t9 + 31.64516129032258 * pose[2]) / t4;
+        let t281 = t193 - t226 / t9;
+        let t284 = 9.81 + actuator_accelerations[2];
+        let t285 = actuator_accelerations[2] - t171;
+        let t286 = t285 - t284;
+        let t287 = gdrive_vx_along_y * actuator_accelerations[1];
+        let t288 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t293 = t209 + pose[0] * t129;
+        let t295 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t296 = t295 + t129;
+        let t299 = pose[0] * minus_rate_foot_along_y;
+        let t300 = c_foot_along_y * minus_rate_left_bar_along_y * t299;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t293
+            + minus_gfoot_vz_along_y * (t171 + pose[2] * t296 + t300 + t300);
+        let t306 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t307 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t310 = c_foot_along_y * t295
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t313 = (9.81 - t288) / t38;
+        let t314 = t116 * t313;
+        let t316 = gdrive_vz_along_y * t310;
+        let t319 = t38 * t307 - t316;
+        let t323 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t325 = gdrive_vx_along_y * t319 + minus_gfoot_vx_along_y * t323;
+        let t328 = gdrive_vz_along_y * t319 + minus_gfoot_vz_along_y * t323;
+        let t330 = 3.225806451612903 * t299 * t126;
+        let t333 = 3.225806451612903 * (actuator_accelerations[1] - t173);
+        let t334 = gdrive_vz_along_y * t333;
+        let t335 = t248 + t334;
+        let t336 = 3.225806451612903 * t335;
+        let t338 = t330 / t38 + t116 * t336;
+        let t339 = t306 - t338;
+        let t340 = t307 - t336;
+        let t341 = minus_rate_left_bar_along_y * t126;
+        let t344 = t341 + minus_s_left_bar_along_y * minus_rate_dot_foot_along_y + t341;
+        let t346 = c_foot_along_y * t335;
+        let t348 = c_left_bar_along_y * t344 + minus_s_left_bar_along_y * t346;
+        let t350 = t296 - t127;
+        let t353 = minus_gfoot_vx_along_y * t348 + (t350 - t130) / t38;
+        let t354 = minus_gfoot_vz_along_y * t348;
+        let minus_rate_dot_left_bar_along_y = t293 / t38;
+        let t361 = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * (t330 + minus_rate_dot_left_bar_along_y)
+                + c_left_bar_along_y * (t130 - t295));
+        let t363 = t328 - 0.31 * t361;
+        let t365 = t116 * (t310 - t363);
+        let t367 = 3.225806451612903 * (t325 + t365);
+        let t369 = 10.40582726326743 * (t209 / t43);
+        let t372 = t116 * t369 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t373 = minus_rate_dot_left_bar_along_y / t38;
+        let t376 = gdrive_vx_along_y * t333 + 3.225806451612903 * t287;
+        let t378 = c_left_bar_along_y * t313 - t334;
+        let t385 = t43 * (minus_rate_dot_left_bar_along_y - t330)
+            - minus_s_left_bar_along_y * c_foot_along_y * t350
+            - minus_s_foot_along_y * t344;
+        let t390 = gdrive_vx_along_y * t385 + minus_s_left_bar_along_y * t314
+            + 3.225806451612903 * t323;
+        let t393 = gdrive_vz_along_y * t385 + minus_s_left_bar_along_y * t313;
+        let t395 = t313 + t346 / t43;
+        let t398 = gdrive_vx_along_z * t284;
+        let t399 = gdrive_vy_along_z * t284;
+        let t407 = 0.31 * c_foot_along_z;
+        let t409 = t407 * (minus_rate_left_bar_along_z * t144);
+        let t415 = t173 + pose[1] * t143;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
+            * (t209 + pose[0] * (t140 + t143) + t409 + t409)
+            + minus_gfoot_vy_along_z * t415;
+        let t418 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t419 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t422 = c_foot_along_z * t140
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t423 = gdrive_vx_along_z * t422;
+        let t424 = minus_s_foot_along_z * t284;
+        let t431 = t25 * t418 - t423;
+        let t433 = minus_gleft_bar_vy_along_z * t284;
+        let t434 = gdrive_vx_along_z * t431 + t433;
+        let t437 = gdrive_vy_along_z * t431 + t433 * t136;
+        let t438 = minus_rate_left_bar_along_z * t145;
+        let t441 = t438 + minus_s_left_bar_along_z * minus_rate_dot_foot_along_z + t438;
+        let t442 = c_left_bar_along_z * t441;
+        let t444 = t442 * (gdrive_vy_along_z / t25);
+        let t445 = t444 - t418;
+        let t447 = t147 - t445 * t136;
+        let t448 = t419 - t447;
+        let t449 = t445 * t407;
+        let t451 = t442 - minus_s_left_bar_along_z * t449;
+        let t452 = minus_gfoot_vx_along_z * t451;
+        let t454 = t148 + t143;
+        let t457 = minus_gfoot_vy_along_z * t451
+            + minus_gleft_bar_vy_along_z * (t454 - t150);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t415;
+        let t462 = minus_s_left_bar_along_z * (t146 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * t149;
+        let t463 = minus_gfoot_vx_along_z * t462;
+        let t465 = t434 - t462 / t30;
+        let t467 = t136 * (t422 - t465);
+        let t469 = 3.225806451612903 * (t437 + t467);
+        let t470 = minus_gfoot_vx_along_z * t213;
+        let t473 = minus_gfoot_vy_along_z * t213
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t499 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t501 = 3.225806451612903 * (actuator_accelerations[2] - t187);
-        let t504 = gdrive_vx_along_z * t501 + 3.225806451612903 * t425;
-        let t507 = gdrive_vy_along_z * t501 + 3.225806451612903 * t426;
-        let t515 = t40 * (minus_rate_dot_left_bar_along_z - t481)
-            - minus_s_left_bar_along_z * c_foot_along_z * (t477 + t151)
-            - minus_s_foot_along_z * t463;
-        let t517 = minus_s_left_bar_along_z * t447;
-        let t519 = gdrive_vx_along_z * t515 - minus_gfoot_vx_along_z * t517;
-        let t524 = gdrive_vy_along_z * t515 - minus_gfoot_vy_along_z * t517
-            + 3.225806451612903 * t442;
-        let t526 = t447 - 0.31 * t472;
+        let t474 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t475 = 3.225806451612903 * t285;
+        let t478 = gdrive_vx_along_z * t475 + 3.225806451612903 * t398;
+        let t480 = 3.225806451612903 * t399;
+        let t481 = gdrive_vy_along_z * t475 + t480;
+        let t488 = t30 * (minus_rate_dot_left_bar_along_z - t146)
+            - minus_s_left_bar_along_z * c_foot_along_z * t454
+            - minus_s_foot_along_z * t441;
+        let t490 = minus_s_foot_along_z * t480;
+        let t491 = gdrive_vx_along_z * t488 - t490;
+        let t496 = gdrive_vy_along_z * t488 - t490 * t136 + t30 * t433;
+        let t498 = t424 + 0.31 * t449;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t206, t216,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t267, t283, -t216,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t267, t283, -t216,
-                actuator_accelerations[0], 0.0, -t206, -t216, t265, t306, t306, t67,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t190, t199,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t211, t268, -t199,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t211, t268, -t199,
+                actuator_accelerations[0], 0.0, -t190, -t199, t209, t287, t287, t45,
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
-                gdrive_vx_along_y, t325,
-                -(gdrive_vx_along_y * t329 - minus_gfoot_vx_along_y * t332), t346, t306, t359,
-                -t370, -t380, t382, t388, t389, -t394, t411, -t346, t306, t359, -t370, -t380, t382,
-                t388, t389, -t394, t411, -t346, t306, t325, minus_gfoot_vx_along_y * t416,
-                -(t346 - 0.31 * t380), t265, t425, gdrive_vx_along_z * actuator_accelerations[2],
-                t69, ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
-                gdrive_vx_along_z, t437, -(gdrive_vx_along_z * (t441 + t443)), t454, t425, t465,
-                -t475, -t488, t492, t495, 0.0, -t504, t519, -t454, t425, t465, -t475, -t488, t492,
-                t495, 0.0, -t504, t519, -t454, t425, t437, -(minus_gfoot_vx_along_z * t526 - t452),
-                -(t454 - 0.31 * t488), t265, t265,
+                gdrive_vx_along_y, t306, -(gdrive_vx_along_y * t310 - t314), t325, t287, t339,
+                -t353, -t367, t338, t372, t373, -t376, t390, -t325, t287, t339, -t353, -t367, t338,
+                t372, t373, -t376, t390, -t325, t287, t306, t116 * t395, t365, t209, t398,
+                gdrive_vx_along_z * actuator_accelerations[2], t49,
+                ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
+                gdrive_vx_along_z, t418, -(t423 + minus_gfoot_vx_along_z * t424), t434, t398, t444,
+                -t452, -t463, -t445, t470, 0.0, -t478, t491, -t434, t398, t444, -t452, -t463, -t445,
+                t470, 0.0, -t478, t491, -t434, t398, t418, -(minus_gfoot_vx_along_z * t498 - t431),
+                -t465, t209, t209,
             ],
             [
-                t21, t21, t24, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
-                gdrive_vy_along_x, t202, -(t207 + minus_gfoot_vy_along_x * t208), t220, t21, t230,
-                -t238, -t249, t253, t256, 0.0, -t270, t287, -t220, t21, t230, -t238, -t249, t253,
-                t256, 0.0, -t270, t287, -t220, t21, t202, -(minus_gfoot_vy_along_x * t297 - t216),
-                -(t220 - 0.31 * t249), t189, actuator_accelerations[1], actuator_accelerations[1],
-                actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0,
-                -t329, t340, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t391, t405,
-                -t340, actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t391, t405, -t340,
-                actuator_accelerations[1], 0.0, -t329, -t340, t189, t426,
-                gdrive_vy_along_z * actuator_accelerations[2], t65,
+                t12, t12, t15, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
+                gdrive_vy_along_x, t186, -(t191 + t193), t201, t12, t216, -t229, -t241, t215, t249,
+                0.0, -t255, t271, -t201, t12, t216, -t229, -t241, t215, t249, 0.0, -t255, t271,
+                -t201, t12, t186, -(t281 - t199), -t243, t173, actuator_accelerations[1],
+                actuator_accelerations[1], actuator_velocities[1],
+                ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0, -t310, t319,
+                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t333, t385, -t319,
+                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t333, t385, -t319,
+                actuator_accelerations[1], 0.0, -t310, -t319, t173, t399,
+                gdrive_vy_along_z * actuator_accelerations[2], t32,
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_z, t438,
-                -(gdrive_vy_along_z * t441 + minus_gfoot_vy_along_z * t447), t457, t426, t469,
-                -t480, -t491, t493, t498, t499, -t507, t524, -t457, t426, t469, -t480, -t491, t493,
-                t498, t499, -t507, t524, -t457, t426, t438, -(minus_gfoot_vy_along_z * t526),
-                -(t457 - 0.31 * t491), t189, t189,
+                gdrive_vy_along_z, t419,
+                -(gdrive_vy_along_z * t422 + minus_gfoot_vy_along_z * t424), t437, t399, t448,
+                -t457, -t469, t447, t473, t474, -t481, t496, -t437, t399, t448, -t457, -t469, t447,
+                t473, t474, -t481, t496, -t437, t399, t419, -(minus_gfoot_vy_along_z * t498), t467,
+                t173, t173,
             ],
             [
-                t23, t23, t25, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
-                gdrive_vz_along_x, t203, -(gdrive_vz_along_x * t206 + t212), t223, t23, t232, -t243,
-                -t252, t254, t259, t260, -t277, t295, -t223, t23, t232, -t243, -t252, t254, t259,
-                t260, -t277, t295, -t223, t23, t203, -(minus_gfoot_vz_along_x * t297),
-                -(t223 - 0.31 * t252), -t305, t307, t307, t94,
+                t14, t14, t16, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
+                gdrive_vz_along_x, t187, -(gdrive_vz_along_x * t190 + t196), t204, t14, t219, -t234,
+                -t247, t218, t252, t253, -t262, t279, -t204, t14, t219, -t234, -t247, t218, t252,
+                t253, -t262, t279, -t204, t14, t187, -(t281 * t99), t245, -t286, t288, t288, t80,
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
-                gdrive_vz_along_y, t326,
-                -(gdrive_vz_along_y * t329 - minus_gfoot_vz_along_y * t332), t349, t307, t360,
-                -t371, -t381, t383, t385, 0.0, t397, t414, -t349, t307, t360, -t371, -t381, t383,
-                t385, 0.0, t397, t414, -t349, t307, t326, t340 + minus_gfoot_vz_along_y * t416,
-                -(t349 - 0.31 * t381), -t305, t424, actuator_accelerations[2],
+                gdrive_vz_along_y, t307, -(t316 - t313), t328, t288, t340, -t354, -t361, t336, t369,
+                0.0, t378, t393, -t328, t288, t340, -t354, -t361, t336, t369, 0.0, t378, t393,
+                -t328, t288, t307, t319 + t395, -t363, -t286, t284, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0, 0.0,
-                -t441, t452, t424, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t501, t515, -t452, t424, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -t501, t515, -t452, t424, 0.0, -t441, -t452, -t305, -t305,
+                -t422, t431, t284, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t475, t488, -t431, t284, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -t475, t488, -t431, t284, 0.0, -t422, -t431, -t286, -t286,
             ],
         ])
     }
@@ -3604,7 +3566,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 412 operations (134 additions, 272 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 326 intermediates.
+    /// 402 operations (134 additions, 256 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 316 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3614,78 +3576,80 @@ impl Orthoglide {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t2 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t3 = 1.0 - t2;
         ::overact::guard::reach(t3, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t3);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t5 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t5;
-        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t9 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t10 = 1.0 - t9;
-        ::overact::guard::reach(t10, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t10);
-        let t12 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t12, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t12;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t16 = pose[2] * minus_gleft_bar_vz_along_x;
-        let t17 = minus_gleft_bar_vz_along_x * t16;
-        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t17;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let t16 = minus_s_foot_along_x * minus_gleft_bar_vz_along_x;
+        let minus_gfoot_vz_along_x = gdrive_vz_along_x * t16;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t22 = minus_rate_left_bar_along_x * (pose[2] * minus_rate_foot_along_x);
-        let t23 = minus_s_foot_along_x * t22;
-        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t27 = t25 + t26;
-        let t33 = c_foot_along_x * t22;
-        let t36 = acceleration[1] + pose[1] * t27 + t33 + t33;
-        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t41 = acceleration[2] + pose[2] * t25;
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t12 * t27 + t23)
-            + gdrive_vy_along_x * t36 + gdrive_vz_along_x * t41;
+        let t20 = gdrive_vz_along_x * twist[2];
+        let t22 = t8 * (minus_rate_foot_along_x * t20);
+        let t23 = gdrive_vy_along_x * t22;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t26 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t27 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t28 = t26 + t27;
+        let t36 = acceleration[1] + pose[1] * t28 + t22 + t22;
+        let t40 = acceleration[2] + pose[2] * t26;
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t10 * t28 + t23)
+            + gdrive_vy_along_x * t36 + gdrive_vz_along_x * t40;
+        let t44 = gdrive_vz_along_x * rate_dot_drive_along_x;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t48 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        ::overact::guard::reach(t48, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t48);
+        let t46 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t47 = 1.0 - t46;
+        ::overact::guard::reach(t47, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t47);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t50 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t50;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
         let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t54 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t54, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t54);
-        let t56 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t56, 1.0, "along_y")?;
-        let t57 = 1.0 / t56;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t57;
+        let t52 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t52, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t52);
+        let t54 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t54, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t54;
         let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t61 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t63 = acceleration[0] + pose[0] * t61;
+        let t58 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t60 = acceleration[0] + pose[0] * t58;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t66 = gdrive_vx_along_y * twist[0];
-        let t67 = pose[0] * minus_gleft_bar_vx_along_y;
-        let t68 = minus_s_foot_along_y * t67;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t68;
+        let t63 = gdrive_vx_along_y * twist[0];
+        let t64 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t65 = minus_s_foot_along_y * t64;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t65;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t74 = t66 * (t54 * minus_rate_foot_along_y);
-        let t75 = gdrive_vz_along_y * t74;
-        let t77 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t78 = t77 + t61;
-        let t87 = acceleration[2] + pose[2] * t78 + t74 + t74;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t63 + acceleration[1]
-            - (t75 - 0.31 * t56 * t78 + t75) + gdrive_vz_along_y * t87;
-        let t91 = gdrive_vz_along_y * rate_dot_drive_along_y;
-        let t93 = 1.0 - t3 * t9;
-        ::overact::guard::reach(t93, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t93);
+        let t71 = t63 * (t52 * minus_rate_foot_along_y);
+        let t72 = gdrive_vz_along_y * t71;
+        let t74 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t75 = t74 * t74;
+        let t76 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t77 = t46 * t76;
+        let t78 = t77 + t58;
+        let t79 = t75 + t78;
+        let t88 = acceleration[2] + pose[2] * t79 + t71 + t71;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t60 + acceleration[1]
+            - (t72 - 0.31 * t54 * t79 + t72) + gdrive_vz_along_y * t88;
+        let t92 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t94 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        ::overact::guard::reach(t94, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t94);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t95 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t95;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
         let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
         let t99 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
         ::overact::guard::reach(t99, "along_z")?;
@@ -3694,153 +3658,147 @@ impl Orthoglide {
         ::overact::guard::leg(t101, 1.0, "along_z")?;
         let minus_gfoot_vx_along_z = 3.225806451612903 / t101;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t105 = pose[1] * minus_gleft_bar_vy_along_z;
-        let t106 = minus_gleft_bar_vy_along_z * t105;
-        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t106;
+        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t106 = minus_s_foot_along_z * minus_gleft_bar_vy_along_z;
+        let minus_gfoot_vy_along_z = gdrive_vy_along_z * t106;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t110 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t110 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
+        let t111 = t110 * t110;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t112 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t113 = t110 + t112;
-        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t116 = gdrive_vy_along_z * twist[1];
-        let t118 = t116 * (t99 * minus_rate_foot_along_z);
-        let t121 = acceleration[0] + pose[0] * t113 + t118 + t118;
-        let t124 = acceleration[1] + pose[1] * t112;
-        let t127 = gdrive_vx_along_z * t118;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t121 + gdrive_vy_along_z * t124
-            + acceleration[2] - (t127 - 0.31 * t101 * t113 + t127);
-        let t134 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
-            + gdrive_vz_along_x * twist[2];
-        let rate_drive_along_y = t66 + twist[1] + gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t116 + twist[2];
+        let t113 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t114 = t111 + t113;
+        let t115 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t116 = t115 * t115;
+        let t117 = t114 + t116;
+        let t119 = gdrive_vy_along_z * twist[1];
+        let t121 = t119 * (t99 * minus_rate_foot_along_z);
+        let t124 = acceleration[0] + pose[0] * t117 + t121 + t121;
+        let t127 = acceleration[1] + pose[1] * t113;
+        let t130 = gdrive_vx_along_z * t121;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t124 + gdrive_vy_along_z * t127
+            + acceleration[2] - (t130 - 0.31 * t101 * t117 + t130);
+        let t137 = 9.81 + rate_dot_drive_along_z;
+        let t139 = gdrive_vy_along_z * t137;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1] + t20;
+        let rate_drive_along_y = t63 + twist[1] + gdrive_vz_along_y * twist[2];
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t119 + twist[2];
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t36
-            + minus_gfoot_vz_along_x * t41;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t63
-            + minus_gfoot_vz_along_y * t87;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t121
-            + minus_gfoot_vy_along_z * t124;
-        let t181 = c_foot_along_x * t26
+            + minus_gfoot_vz_along_x * t40;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t60
+            + minus_gfoot_vz_along_y * t88;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t124
+            + minus_gfoot_vy_along_z * t127;
+        let t183 = c_foot_along_x * t27
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t182 = c_foot_along_x * rate_dot_drive_along_x;
-        let t183 = minus_gfoot_vy_along_x * t182;
-        let t187 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t192 = c_foot_along_y * t77
+        let t184 = minus_gleft_bar_vz_along_x * rate_dot_drive_along_x;
+        let t188 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t189 = minus_gfoot_vz_along_x * t188;
+        let t193 = c_foot_along_y * t76
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t195 = c_foot_along_y * (9.81 - t91);
-        let t203 = c_foot_along_z * t110
+        let t196 = minus_gleft_bar_vx_along_y * (9.81 - t92);
+        let t201 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t204 = c_foot_along_z * t201
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t204 = c_foot_along_z * t134;
-        let t205 = minus_gfoot_vx_along_z * t204;
-        let t209 = minus_s_foot_along_z * t134;
+        let t205 = minus_gleft_bar_vy_along_z * t137;
+        let t209 = minus_s_foot_along_z * t137;
+        let t210 = minus_gfoot_vy_along_z * t209;
         let t214 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t26;
-        let t222 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t77;
-        let t226 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t234 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t110;
-        let t240 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t241 = minus_rate_left_bar_along_x * t240;
-        let t242 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t244 = t241 + t242 + t241;
-        let t245 = minus_s_left_bar_along_x * t244;
-        let t248 = t240 * t240;
-        let t249 = t248 * t17;
-        let t251 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t252 = minus_rate_left_bar_along_y * t251;
-        let t253 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t255 = t252 + t253 + t252;
-        let t256 = minus_s_left_bar_along_y * t255;
-        let t258 = t251 * t251;
-        let t259 = t258 * t67;
-        let t260 = minus_gleft_bar_vx_along_y * t259;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t264 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t265 = minus_rate_left_bar_along_z * t264;
+            - minus_s_foot_along_x * t27;
+        let t218 = t44 * t16;
+        let t223 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t76;
+        let t225 = 9.81 * minus_s_foot_along_y;
+        let t227 = t225 + c_foot_along_y * rate_dot_drive_along_y;
+        let t235 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t201;
+        let t239 = t139 * t106;
+        let t242 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t243 = minus_rate_left_bar_along_x * t242;
+        let t244 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t246 = t243 + t244 + t243;
+        let t247 = minus_s_left_bar_along_x * t246;
+        let t251 = minus_s_left_bar_along_x * minus_rate_foot_along_x * t242;
+        let t254 = minus_rate_left_bar_along_y * t74;
+        let t255 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t257 = t254 + t255 + t254;
+        let t258 = c_left_bar_along_y * t257;
+        let t259 = t258 * t64;
+        let t261 = t75 * t64;
+        let t265 = minus_rate_left_bar_along_z * t115;
         let t266 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
         let t268 = t265 + t266 + t265;
         let t269 = minus_s_left_bar_along_z * t268;
-        let t272 = t264 * t264;
-        let t273 = t272 * t106;
-        let t277 = t5 * (minus_rate_dot_foot_along_x - t245);
-        let t279 = c_left_bar_along_x * t244 + minus_s_left_bar_along_x * t277;
-        let t282 = pose[2] * t249;
-        let t288 = t50 * (minus_rate_dot_foot_along_y - t256);
-        let t290 = c_left_bar_along_y * t255 + minus_s_left_bar_along_y * t288;
-        let t292 = pose[0] * t260;
-        let t299 = t95 * (minus_rate_dot_foot_along_z - t269);
-        let t301 = c_left_bar_along_z * t268 + minus_s_left_bar_along_z * t299;
-        let t304 = pose[1] * t273;
-        let t308 = t248 * t16;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t41;
-        let t314 = minus_s_left_bar_along_x * (t308 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t25 - t282);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t63;
-        let t324 = minus_s_left_bar_along_y * (t259 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t61 - t292);
-        let t329 = t272 * t105;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t124;
-        let t335 = minus_s_left_bar_along_z * (t329 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t112 - t304);
-        let t340 = 3.225806451612903 * acceleration[2];
-        let t346 = 10.40582726326743 * (t57 * acceleration[0]);
-        let t350 = 3.225806451612903 * acceleration[1];
-        let t365 = t12 * (minus_rate_dot_left_bar_along_x - t308)
-            - minus_s_left_bar_along_x * c_foot_along_x * (t282 + t25)
-            - minus_s_foot_along_x * t244;
-        let t367 = minus_s_left_bar_along_x * t187;
-        let t385 = t56 * (minus_rate_dot_left_bar_along_y - t259)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t292 + t61)
-            - minus_s_foot_along_y * t255;
-        let t387 = minus_s_left_bar_along_y * t195;
-        let t402 = t101 * (minus_rate_dot_left_bar_along_z - t329)
-            - minus_s_left_bar_along_z * c_foot_along_z * (t304 + t112)
+        let t272 = t110 * t115;
+        let t277 = (minus_rate_dot_foot_along_x - t247) / c_left_bar_along_x;
+        let t279 = c_left_bar_along_x * t246 + minus_s_left_bar_along_x * t277;
+        let t282 = t2 * t27;
+        let t288 = (minus_rate_dot_foot_along_y - t259) / c_left_bar_along_y;
+        let t290 = t258 + minus_s_left_bar_along_y * t288;
+        let t298 = (minus_rate_dot_foot_along_z - t269) / c_left_bar_along_z;
+        let t300 = c_left_bar_along_z * t268 + minus_s_left_bar_along_z * t298;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
+        let t311 = minus_s_left_bar_along_x * (t251 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t26 - t282);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t60;
+        let t321 = minus_s_left_bar_along_y * (t261 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t58 - t77);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t127;
+        let t331 = minus_s_left_bar_along_z * (t272 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t113 - t111);
+        let t336 = 3.225806451612903 * acceleration[2];
+        let t342 = 10.40582726326743 * (acceleration[0] / t54);
+        let t346 = 3.225806451612903 * acceleration[1];
+        let t361 = t10 * (minus_rate_dot_left_bar_along_x - t251)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t282 + t26)
+            - minus_s_foot_along_x * t246;
+        let t379 = t54 * (minus_rate_dot_left_bar_along_y - t261)
+            - minus_s_left_bar_along_y * c_foot_along_y * t78
+            - minus_s_foot_along_y * t257;
+        let t381 = minus_s_left_bar_along_y * t196;
+        let t394 = t101 * (minus_rate_dot_left_bar_along_z - t272)
+            - minus_s_left_bar_along_z * c_foot_along_z * t114
             - minus_s_foot_along_z * t268;
-        let t404 = minus_s_left_bar_along_z * t209;
-        let t413 = t187 - 0.31 * t277;
-        let t418 = t195 + 0.31 * t288;
-        let t423 = t209 - 0.31 * t299;
+        let t404 = t188 - 0.31 * t277;
+        let t409 = t196 + t288 / t54;
+        let t413 = t209 - 0.31 * t298;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x, gdrive_vx_along_y * rate_dot_drive_along_y,
-                gdrive_vx_along_z * t134, gdrive_vx_along_z * rate_dot_drive_along_z,
+                gdrive_vx_along_z * t137, gdrive_vx_along_z * rate_dot_drive_along_z,
                 rate_drive_along_x, gdrive_vx_along_y * rate_drive_along_y,
                 gdrive_vx_along_z * rate_drive_along_z, ::overact::math::sign(rate_drive_along_x),
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y),
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t181,
-                -(gdrive_vx_along_y * t192 - minus_gfoot_vx_along_y * t195),
-                -(gdrive_vx_along_z * (t203 + t205)), t214,
-                gdrive_vx_along_y * t222 + minus_gfoot_vx_along_y * t226,
-                gdrive_vx_along_z * t234 + t205, 0.0, minus_gfoot_vx_along_y * t256 - t260,
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t183,
+                -(gdrive_vx_along_y * t193 - t65 * t196), -(gdrive_vx_along_z * (t204 + t205)),
+                t214, gdrive_vx_along_y * t223 + minus_gfoot_vx_along_y * t227,
+                gdrive_vx_along_z * t235 + t205, 0.0,
+                minus_gfoot_vx_along_y * t259 - minus_gleft_bar_vx_along_y * t261,
                 minus_gfoot_vx_along_z * t269, 0.0,
                 -(minus_gfoot_vx_along_y * t290
-                    + minus_gleft_bar_vx_along_y * (t292 - t258)),
-                -(minus_gfoot_vx_along_z * t301),
+                    + minus_gleft_bar_vx_along_y * (t77 - t75)),
+                -(minus_gfoot_vx_along_z * t300),
                 0.0,
-                -(minus_gfoot_vx_along_y * t324 + minus_gleft_bar_vx_along_y * t253),
-                -(minus_gfoot_vx_along_z * t335),
+                -(minus_gfoot_vx_along_y * t321 + minus_gleft_bar_vx_along_y * t255),
+                -(minus_gfoot_vx_along_z * t331),
                 0.0,
-                t68 * t346 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t350,
+                t65 * t342 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t346,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t365,
-                gdrive_vx_along_y * t385 + minus_gfoot_vx_along_y * t387
-                    + 3.225806451612903 * t226,
-                gdrive_vx_along_z * t402 - minus_gfoot_vx_along_z * t404,
-                -t181,
-                minus_gfoot_vx_along_y * t418,
-                -(minus_gfoot_vx_along_z * t423 - t234),
+                t361,
+                gdrive_vx_along_y * t379 + t65 * t381 + 3.225806451612903 * t227,
+                gdrive_vx_along_z * t394 - c_left_bar_along_z * t239,
+                -t183,
+                t65 * t409,
+                -(minus_gfoot_vx_along_z * t413 - t235),
             ],
             [
                 acceleration[1], gdrive_vy_along_x * rate_dot_drive_along_x, rate_dot_drive_along_y,
-                gdrive_vy_along_z * t134, gdrive_vy_along_z * rate_dot_drive_along_z,
+                t139, gdrive_vy_along_z * rate_dot_drive_along_z,
                 gdrive_vy_along_x * rate_drive_along_x, rate_drive_along_y,
                 gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x),
@@ -3848,68 +3806,65 @@ impl Orthoglide {
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_x,
                 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
                 minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(gdrive_vy_along_x * (t181 + t183)), -t192,
-                -(gdrive_vy_along_z * t203 + minus_gfoot_vy_along_z * t209),
-                gdrive_vy_along_x * t214 + t183, t222,
-                gdrive_vy_along_z * t234 + minus_gfoot_vy_along_z * t204,
-                minus_gfoot_vy_along_x * t245, 0.0, minus_gfoot_vy_along_z * t269 - t273,
+                -(gdrive_vy_along_x * (t183 + t184)), -t193, -(gdrive_vy_along_z * t204 + t210),
+                gdrive_vy_along_x * t214 + t184, t223,
+                gdrive_vy_along_z * t235 + c_foot_along_z * t239, minus_gfoot_vy_along_x * t247,
+                0.0, minus_gfoot_vy_along_z * t269 - minus_gleft_bar_vy_along_z * t272,
                 -(minus_gfoot_vy_along_x * t279), 0.0,
-                -(minus_gfoot_vy_along_z * t301
-                    + minus_gleft_bar_vy_along_z * (t304 - t272)),
-                -(minus_gfoot_vy_along_x * t314),
+                -(minus_gfoot_vy_along_z * t300
+                    + minus_gleft_bar_vy_along_z * (t111 - t116)),
+                -(minus_gfoot_vy_along_x * t311),
                 0.0,
-                -(minus_gfoot_vy_along_z * t335 + minus_gleft_bar_vy_along_z * t266),
-                minus_gfoot_vy_along_x * t340,
+                -(minus_gfoot_vy_along_z * t331 + minus_gleft_bar_vy_along_z * t266),
+                minus_gfoot_vy_along_x * t336,
                 0.0,
-                minus_gfoot_vy_along_z * t350
+                minus_gfoot_vy_along_z * t346
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t365 - minus_gfoot_vy_along_x * t367,
-                t385,
-                gdrive_vy_along_z * t402 - minus_gfoot_vy_along_z * t404
-                    + 3.225806451612903 * t204,
-                -(minus_gfoot_vy_along_x * t413 - t214),
-                -t192,
-                -(minus_gfoot_vy_along_z * t423),
+                gdrive_vy_along_x * t361 - c_left_bar_along_x * t218,
+                t379,
+                gdrive_vy_along_z * t394 - minus_s_left_bar_along_z * t210 + t101 * t205,
+                -(minus_gfoot_vy_along_x * t404 - t214),
+                -t193,
+                -(minus_gfoot_vy_along_z * t413),
             ],
             [
-                -(-9.81 - acceleration[2]), gdrive_vz_along_x * rate_dot_drive_along_x, t91, t134,
-                rate_dot_drive_along_z, gdrive_vz_along_x * rate_drive_along_x,
-                gdrive_vz_along_y * rate_drive_along_y, rate_drive_along_z,
-                ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
+                -(-9.81 - acceleration[2]), t44, t92, t137, rate_dot_drive_along_z,
+                gdrive_vz_along_x * rate_drive_along_x, gdrive_vz_along_y * rate_drive_along_y,
+                rate_drive_along_z, ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(gdrive_vz_along_x * t181 + minus_gfoot_vz_along_x * t187),
-                -(gdrive_vz_along_y * t192 - minus_gfoot_vz_along_y * t195), -t203,
-                gdrive_vz_along_x * t214 + minus_gfoot_vz_along_x * t182,
-                gdrive_vz_along_y * t222 + minus_gfoot_vz_along_y * t226, t234,
-                minus_gfoot_vz_along_x * t245 - t249, minus_gfoot_vz_along_y * t256, 0.0,
+                -(gdrive_vz_along_x * t183 + t189), -(gdrive_vz_along_y * t193 - t196), -t204,
+                gdrive_vz_along_x * t214 + c_foot_along_x * t218,
+                gdrive_vz_along_y * t223 + minus_gfoot_vz_along_y * t227, t235,
+                minus_gfoot_vz_along_x * t247 - minus_gleft_bar_vz_along_x * t251,
+                minus_gfoot_vz_along_y * t259, 0.0,
                 -(minus_gfoot_vz_along_x * t279
-                    + minus_gleft_bar_vz_along_x * (t282 - t248)),
+                    + minus_gleft_bar_vz_along_x * (t282 - t242 * t242)),
                 -(minus_gfoot_vz_along_y * t290),
                 0.0,
-                -(minus_gfoot_vz_along_x * t314 + minus_gleft_bar_vz_along_x * t242),
-                -(minus_gfoot_vz_along_y * t324),
+                -(minus_gfoot_vz_along_x * t311 + minus_gleft_bar_vz_along_x * t244),
+                -(minus_gfoot_vz_along_y * t321),
                 0.0,
-                minus_gfoot_vz_along_x * t340
+                minus_gfoot_vz_along_x * t336
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t346,
+                t342,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t365 - minus_gfoot_vz_along_x * t367
+                gdrive_vz_along_x * t361 - minus_s_left_bar_along_x * t189
                     + minus_gleft_bar_vz_along_x
-                        * (c_left_bar_along_x * t182 + 31.64516129032258 * pose[2]),
-                gdrive_vz_along_y * t385 + minus_gfoot_vz_along_y * t387,
-                t402,
-                -(minus_gfoot_vz_along_x * t413),
-                t222 + minus_gfoot_vz_along_y * t418,
-                -t203,
+                        * (t10 * rate_dot_drive_along_x + c_left_bar_along_y * t225),
+                gdrive_vz_along_y * t379 + t381,
+                t394,
+                -(minus_gfoot_vz_along_x * t404),
+                t223 + t409,
+                -t204,
             ],
         ])
     }
@@ -3924,7 +3879,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 404 operations (128 additions, 270 multiplications, 6 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 324 intermediates.
+    /// 393 operations (129 additions, 248 multiplications, 16 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 313 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3935,189 +3890,180 @@ impl Orthoglide {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
-        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
-        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
-        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
+        (s_left_bar_along_x, c_left_bar_along_x),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
+        (minus_c_foot_along_z, s_foot_along_z), (s_left_bar_along_z, c_left_bar_along_z),
+        ] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[6], joints[5], joints[9], joints[10],
         ]);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t5 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t5;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t8 = 0.31 * s_left_bar_along_x;
-        let t9 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let t10 = 1.0 / t9;
-        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
-        let t13 = minus_c_foot_along_x * c_left_bar_along_x;
-        let minus_gdrive_vy_along_x = t13 * t10;
-        let t15 = s_left_bar_along_x * t5;
-        let t16 = minus_gleft_bar_vz_along_x * t15;
-        let minus_gfoot_vz_along_x = minus_gdrive_vy_along_x * t16;
+        let t5 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t5, 1.0, "along_x")?;
+        let t6 = c_left_bar_along_x / t5;
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * t6;
+        let minus_gdrive_vz_along_x = s_left_bar_along_x / t5;
+        let t9 = minus_gdrive_vz_along_x * twist[2];
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t5;
+        let t12 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
+        let minus_gfoot_vz_along_x = minus_gdrive_vz_along_x
+            * (minus_c_foot_along_x * minus_gleft_bar_vz_along_x);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t21 = minus_rate_left_bar_along_x * (t8 * minus_rate_foot_along_x);
-        let t22 = minus_c_foot_along_x * t21;
-        let t23 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t24 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t26 = 0.31 * (t23 + t24);
-        let t32 = s_foot_along_x * t21;
-        let t35 = acceleration[1] - (t13 * t26 + t32 + t32);
-        let minus_gdrive_vz_along_x = s_left_bar_along_x * t10;
-        let t40 = acceleration[2] - t8 * t23;
-        let rate_dot_drive_along_x = acceleration[0] - (t22 - t9 * t26 + t22)
-            - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t40;
-        let t49 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t49, 1.0, "along_y")?;
-        let t50 = 1.0 / t49;
-        let minus_gdrive_vx_along_y = t50 * s_left_bar_along_y;
-        let t52 = s_foot_along_y * s_left_bar_along_y;
-        let t53 = 1.0 / c_left_bar_along_y;
-        let t54 = t52 * t53;
-        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t50;
-        let t57 = t54 * minus_gdrive_vz_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t53;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t50;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t57;
+        let t18 = s_foot_along_x * minus_rate_foot_along_x;
+        let t20 = s_foot_along_x * (t9 * t18);
+        let t21 = minus_gdrive_vy_along_x * t20;
+        let t22 = s_left_bar_along_x * minus_rate_foot_along_x;
+        let t23 = t22 * t22;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t26 = t23 + t25;
+        let t27 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t28 = t27 * t27;
+        let t31 = t5 * (0.31 * (t26 + t28));
+        let t38 = acceleration[1] - (t31 * minus_gdrive_vy_along_x + t20 + t20);
+        let t43 = acceleration[2] - 0.31 * s_left_bar_along_x * t25;
+        let rate_dot_drive_along_x = acceleration[0] - (t21 - t31 + t21)
+            - minus_gdrive_vy_along_x * t38 - minus_gdrive_vz_along_x * t43;
+        let t52 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t52, 1.0, "along_y")?;
+        let minus_gdrive_vx_along_y = s_left_bar_along_y / t52;
+        let t54 = c_left_bar_along_y / t52;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * t54;
+        let t56 = s_foot_along_y * s_left_bar_along_y;
+        let t57 = t56 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_gfoot_vz_along_y = minus_gleft_bar_vx_along_y * t54;
+        let t60 = t57 * minus_gdrive_vz_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t60;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t65 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t66 = minus_rate_left_bar_along_y * t65;
-        let t67 = 0.31 * t66;
-        let t68 = t57 * t67;
-        let t70 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t65 = twist[0] * minus_rate_foot_along_y;
+        let t66 = t57 * t65;
+        let t67 = minus_gdrive_vz_along_y * t66;
+        let t69 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
         let t71 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t73 = 0.31 * t49 * (t70 + t71);
+        let t73 = 0.31 * t52 * (t69 + t71);
         let t77 = 0.31 * s_left_bar_along_y;
         let t79 = acceleration[0] - t77 * t71;
-        let t83 = t54 * t67;
-        let t86 = acceleration[2] - (t73 * minus_gdrive_vz_along_y + t83 + t83);
-        let rate_dot_drive_along_y = acceleration[1] - (t68 - t73 + t68)
-            - minus_gdrive_vx_along_y * t79 - minus_gdrive_vz_along_y * t86;
-        let t90 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
-        let t95 = minus_c_foot_along_z * c_left_bar_along_z;
-        let t96 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t96, 1.0, "along_z")?;
-        let t97 = 1.0 / t96;
-        let minus_gdrive_vx_along_z = t95 * t97;
-        let t99 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t99;
+        let t85 = acceleration[2] - (t73 * minus_gdrive_vz_along_y + t66 + t66);
+        let rate_dot_drive_along_y = acceleration[1] - (t67 - t73 + t67)
+            - minus_gdrive_vx_along_y * t79 - minus_gdrive_vz_along_y * t85;
+        let t89 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t95 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t95, 1.0, "along_z")?;
+        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z / t95;
+        let t97 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t97;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t103 = 0.31 * s_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t97;
-        let minus_gdrive_vy_along_z = t97 * s_left_bar_along_z;
-        let t107 = s_foot_along_z * minus_gdrive_vy_along_z;
-        let t108 = minus_gleft_bar_vy_along_z * t107;
-        let minus_gfoot_vy_along_z = minus_gdrive_vx_along_z * t108;
+        let t100 = s_foot_along_z * minus_rate_left_bar_along_z;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t95;
+        let minus_gdrive_vy_along_z = s_left_bar_along_z / t95;
+        let minus_gfoot_vy_along_z = minus_gdrive_vy_along_z
+            * (minus_c_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t113 = s_foot_along_z * minus_rate_left_bar_along_z
-            * (t103 * minus_rate_foot_along_z);
-        let t114 = minus_gdrive_vx_along_z * t113;
-        let t115 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t116 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t118 = 0.31 * (t115 + t116);
-        let t126 = acceleration[0] - (t95 * t118 + t113 + t113);
-        let t129 = acceleration[1] - t103 * t116;
-        let rate_dot_drive_along_z = acceleration[2] - (t114 - t96 * t118 + t114)
-            - (minus_gdrive_vx_along_z * t126 + minus_gdrive_vy_along_z * t129);
-        let t133 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
-            - minus_gdrive_vz_along_x * twist[2];
+        let t109 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
+        let t110 = t100 * t109;
+        let t111 = minus_gdrive_vx_along_z * t110;
+        let t112 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t113 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t116 = t95 * (0.31 * (t112 + t113));
+        let t123 = acceleration[0] - (minus_gdrive_vx_along_z * t116 + t110 + t110);
+        let t125 = minus_gdrive_vy_along_z * twist[1];
+        let t127 = acceleration[1] - t100 * t125;
+        let rate_dot_drive_along_z = acceleration[2] - (t111 - t116 + t111)
+            - (minus_gdrive_vx_along_z * t123 + minus_gdrive_vy_along_z * t127);
+        let t131 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1] - t9;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = twist[2]
-            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
-            + minus_gfoot_vz_along_x * t40;
+        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t125);
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t38
+            + minus_gfoot_vz_along_x * t43;
         let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t79
-            + minus_gfoot_vz_along_y * t86;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t126
-            + minus_gfoot_vy_along_z * t129;
-        let t182 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t24;
-        let t183 = s_foot_along_x * rate_dot_drive_along_x;
-        let t184 = minus_gfoot_vy_along_x * t183;
-        let t187 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t192 = s_foot_along_y * (9.81 + t90);
-        let t196 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t70;
-        let t204 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t115;
-        let t205 = s_foot_along_z * t133;
-        let t206 = minus_gfoot_vx_along_z * t205;
-        let t209 = minus_c_foot_along_z * t133;
-        let t215 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t24;
-        let t223 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t227 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t70;
-        let t235 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t115;
-        let t241 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t242 = minus_rate_left_bar_along_x * t241;
-        let t243 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t245 = t242 + t242 - t243;
-        let t246 = s_left_bar_along_x * t245;
-        let t248 = t241 * t241;
-        let t249 = t248 * t16;
-        let t253 = s_left_bar_along_y * minus_rate_foot_along_y * t65;
-        let t254 = minus_gleft_bar_vx_along_y * t253;
-        let t255 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t257 = t66 + t66 - t255;
-        let t258 = s_left_bar_along_y * t257;
-        let t262 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t263 = minus_rate_left_bar_along_z * t262;
-        let t264 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t266 = t263 + t263 - t264;
-        let t267 = s_left_bar_along_z * t266;
-        let t269 = t262 * t262;
-        let t270 = t269 * t108;
-        let t275 = t5 * (minus_rate_dot_foot_along_x + t246);
-        let t277 = c_left_bar_along_x * t245 - s_left_bar_along_x * t275;
-        let t280 = t8 * t249;
-        let t286 = t53 * (minus_rate_dot_foot_along_y + t258);
-        let t288 = c_left_bar_along_y * t257 - s_left_bar_along_y * t286;
-        let t290 = t77 * t254;
-        let t298 = t99 * (minus_rate_dot_foot_along_z + t267);
-        let t300 = c_left_bar_along_z * t266 - s_left_bar_along_z * t298;
-        let t303 = t103 * t270;
-        let t307 = t248 * t15;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
-        let t313 = s_left_bar_along_x * (t307 - minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t23 - t280);
+            + minus_gfoot_vz_along_y * t85;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t123
+            + minus_gfoot_vy_along_z * t127;
+        let t178 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_rate_foot_along_x * t18;
+        let t179 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t180 = minus_gfoot_vy_along_x * t179;
+        let t181 = minus_gdrive_vy_along_x * t178;
+        let t183 = minus_gfoot_vz_along_x * t179;
+        let t187 = minus_gleft_bar_vx_along_y * (9.81 + t89);
+        let t191 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t69;
+        let t194 = minus_gdrive_vz_along_y * t191;
+        let t196 = minus_c_foot_along_z * t131;
+        let t197 = minus_gfoot_vx_along_z * t196;
+        let t200 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t112;
+        let t201 = minus_gdrive_vx_along_z * t200;
+        let t203 = minus_gfoot_vy_along_z * t196;
+        let t207 = minus_rate_dot_foot_along_x * t6 - t181;
+        let t208 = s_foot_along_x * rate_dot_drive_along_x;
+        let t217 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t220 = minus_rate_dot_foot_along_y * t54 - t194;
+        let t226 = s_foot_along_z * t131;
+        let t230 = c_left_bar_along_z * minus_rate_dot_foot_along_z / t95 - t201;
+        let t236 = minus_rate_left_bar_along_x * t27;
+        let t237 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t239 = t236 + t236 - t237;
+        let t240 = s_left_bar_along_x * t239;
+        let t242 = t22 * t27;
+        let t247 = t69 * (c_left_bar_along_y * s_left_bar_along_y);
+        let t248 = minus_gleft_bar_vx_along_y * t247;
+        let t249 = 3.225806451612903 * t65;
+        let t250 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t252 = t249 + t249 - t250;
+        let t253 = s_left_bar_along_y * t252;
+        let t257 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t258 = minus_rate_left_bar_along_z * t257;
+        let t259 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t261 = t258 + t258 - t259;
+        let t262 = s_left_bar_along_z * t261;
+        let t264 = 3.225806451612903 * t109;
+        let t265 = t264 * t257;
+        let t271 = t12 * (minus_rate_dot_foot_along_x + t240);
+        let t273 = c_left_bar_along_x * t239 - s_left_bar_along_x * t271;
+        let t281 = (minus_rate_dot_foot_along_y + t253) / c_left_bar_along_y;
+        let t283 = c_left_bar_along_y * t252 - s_left_bar_along_y * t281;
+        let t285 = t77 * t248;
+        let t293 = t97 * (minus_rate_dot_foot_along_z + t262);
+        let t295 = c_left_bar_along_z * t261 - s_left_bar_along_z * t293;
+        let t298 = t264 * t264;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t43;
+        let t308 = s_left_bar_along_x * (t242 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t25 - t23);
         let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t79;
-        let t324 = s_left_bar_along_y * (t253 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t71 - t290);
-        let t328 = t269 * t107;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t129;
-        let t334 = s_left_bar_along_z * (t328 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t116 - t303);
-        let t339 = 3.225806451612903 * acceleration[2];
-        let t345 = 10.40582726326743 * (t50 * acceleration[0]);
-        let t349 = 3.225806451612903 * acceleration[1];
-        let t364 = t9 * (t307 + minus_rate_dot_left_bar_along_x)
-            + s_foot_along_x * s_left_bar_along_x * (t280 + t23)
-            + minus_c_foot_along_x * t245;
-        let t366 = s_left_bar_along_x * t187;
-        let t384 = t49 * (t253 + minus_rate_dot_left_bar_along_y) + t52 * (t290 + t71)
-            + minus_c_foot_along_y * t257;
-        let t386 = s_left_bar_along_y * t192;
-        let t400 = t96 * (t328 + minus_rate_dot_left_bar_along_z)
-            + s_foot_along_z * s_left_bar_along_z * (t303 + t116)
-            + minus_c_foot_along_z * t266;
-        let t402 = s_left_bar_along_z * t209;
-        let t411 = t187 + 0.31 * t275;
-        let t416 = t192 + 0.31 * t286;
-        let t421 = t209 + 0.31 * t298;
+        let t319 = s_left_bar_along_y * (t247 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t71 - t285);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t127;
+        let t328 = s_left_bar_along_z * (t265 - minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t113 - t298);
+        let t333 = 3.225806451612903 * acceleration[2];
+        let t339 = 10.40582726326743 * (acceleration[0] / t52);
+        let t343 = 3.225806451612903 * acceleration[1];
+        let t357 = t5 * (t242 + minus_rate_dot_left_bar_along_x)
+            + s_foot_along_x * s_left_bar_along_x * t26 + minus_c_foot_along_x * t239;
+        let t376 = t52 * (t247 + minus_rate_dot_left_bar_along_y) + t56 * (t285 + t71)
+            + minus_c_foot_along_y * t252;
+        let t378 = s_left_bar_along_y * t187;
+        let t391 = t95 * (t265 + minus_rate_dot_left_bar_along_z)
+            + s_foot_along_z * s_left_bar_along_z * (t298 + t113)
+            + minus_c_foot_along_z * t261;
+        let t401 = t179 + 0.31 * t271;
+        let t406 = t187 + t281 / t52;
+        let t410 = t196 + 0.31 * t293;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_dot_drive_along_y),
-                -(minus_gdrive_vx_along_z * t133),
+                -(minus_gdrive_vx_along_z * t131),
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z), rate_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
@@ -4125,35 +4071,33 @@ impl Orthoglide {
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 -minus_gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t182,
-                minus_gfoot_vx_along_y * t192 - minus_gdrive_vx_along_y * t196,
-                -(minus_gdrive_vx_along_z * (t204 - t206)), t215,
-                minus_gfoot_vx_along_y * t223 - minus_gdrive_vx_along_y * t227,
-                t206 - minus_gdrive_vx_along_z * t235, 0.0, t254 - minus_gfoot_vx_along_y * t258,
-                -(minus_gfoot_vx_along_z * t267), 0.0,
-                -(minus_gfoot_vx_along_y * t288
-                    + minus_gleft_bar_vx_along_y * (t290 - t65 * t65)),
-                -(minus_gfoot_vx_along_z * t300),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t178,
+                t60 * t187 - minus_gdrive_vx_along_y * t191, t197 - t201, t207,
+                minus_gfoot_vx_along_y * t217 - minus_gdrive_vx_along_y * t220,
+                minus_gfoot_vx_along_z * t226 - minus_gdrive_vx_along_z * t230, 0.0,
+                t248 - minus_gfoot_vx_along_y * t253, -(minus_gfoot_vx_along_z * t262), 0.0,
+                -(minus_gfoot_vx_along_y * t283
+                    + minus_gleft_bar_vx_along_y * (t285 - (t69 - t285))),
+                -(minus_gfoot_vx_along_z * t295),
                 0.0,
-                minus_gleft_bar_vx_along_y * t255 - minus_gfoot_vx_along_y * t324,
-                -(minus_gfoot_vx_along_z * t334),
+                minus_gleft_bar_vx_along_y * t250 - minus_gfoot_vx_along_y * t319,
+                -(minus_gfoot_vx_along_z * t328),
                 0.0,
-                t57 * t345 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t349,
+                t60 * t339 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t343,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t364,
-                3.225806451612903 * t223
-                    - (minus_gdrive_vx_along_y * t384 + minus_gfoot_vx_along_y * t386),
-                -(minus_gdrive_vx_along_z * t400 + minus_gfoot_vx_along_z * t402),
-                t182,
-                minus_gfoot_vx_along_y * t416,
-                t235 + minus_gfoot_vx_along_z * t421,
+                t357,
+                3.225806451612903 * t217 - (minus_gdrive_vx_along_y * t376 + t60 * t378),
+                -(minus_gdrive_vx_along_z * t391 + s_left_bar_along_z * t197),
+                t178,
+                t60 * t406,
+                t230 + minus_gfoot_vx_along_z * t410,
             ],
             [
                 acceleration[1], -(minus_gdrive_vy_along_x * rate_dot_drive_along_x),
-                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t133),
+                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t131),
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_x * rate_drive_along_x), rate_drive_along_y,
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
@@ -4161,69 +4105,69 @@ impl Orthoglide {
                 ::overact::math::sign(rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
                 -minus_gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x,
-                0.0, minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(minus_gdrive_vy_along_x * (t182 - t184)), t196,
-                minus_gfoot_vy_along_z * t209 - minus_gdrive_vy_along_z * t204,
-                t184 - minus_gdrive_vy_along_x * t215, t227,
-                minus_gfoot_vy_along_z * t205 - minus_gdrive_vy_along_z * t235,
-                -(minus_gfoot_vy_along_x * t246), 0.0, t270 - minus_gfoot_vy_along_z * t267,
-                -(minus_gfoot_vy_along_x * t277), 0.0,
-                -(minus_gfoot_vy_along_z * t300
-                    + minus_gleft_bar_vy_along_z * (t303 - t269)),
-                -(minus_gfoot_vy_along_x * t313),
+                0.0, minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z, t180 - t181, t191,
+                t203 - minus_gdrive_vy_along_z * t200,
+                minus_gfoot_vy_along_x * t208 - minus_gdrive_vy_along_x * t207, t220,
+                minus_gfoot_vy_along_z * t226 - minus_gdrive_vy_along_z * t230,
+                -(minus_gfoot_vy_along_x * t240), 0.0,
+                minus_gleft_bar_vy_along_z * t265 - minus_gfoot_vy_along_z * t262,
+                -(minus_gfoot_vy_along_x * t273), 0.0,
+                -(minus_gfoot_vy_along_z * t295
+                    + minus_gleft_bar_vy_along_z * (t298 - t257 * t257)),
+                -(minus_gfoot_vy_along_x * t308),
                 0.0,
-                minus_gleft_bar_vy_along_z * t264 - minus_gfoot_vy_along_z * t334,
-                minus_gfoot_vy_along_x * t339,
+                minus_gleft_bar_vy_along_z * t259 - minus_gfoot_vy_along_z * t328,
+                minus_gfoot_vy_along_x * t333,
                 0.0,
-                minus_gfoot_vy_along_z * t349
+                minus_gfoot_vy_along_z * t343
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                -(minus_gdrive_vy_along_x * t364 + minus_gfoot_vy_along_x * t366),
-                t384,
-                3.225806451612903 * t205
-                    - (minus_gdrive_vy_along_z * t400 + minus_gfoot_vy_along_z * t402),
-                t215 + minus_gfoot_vy_along_x * t411,
-                t196,
-                minus_gfoot_vy_along_z * t421,
+                -(minus_gdrive_vy_along_x * t357 + s_left_bar_along_x * t180),
+                t376,
+                3.225806451612903 * t226
+                    - (minus_gdrive_vy_along_z * t391 + s_left_bar_along_z * t203),
+                t207 + minus_gfoot_vy_along_x * t401,
+                t191,
+                minus_gfoot_vy_along_z * t410,
             ],
             [
                 -(-9.81 - acceleration[2]), -(minus_gdrive_vz_along_x * rate_dot_drive_along_x),
-                -t90, t133, rate_dot_drive_along_z, -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -t89, t131, rate_dot_drive_along_z, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -(minus_gdrive_vz_along_y * rate_drive_along_y), rate_drive_along_z,
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), -minus_gdrive_vz_along_x,
                 -minus_gdrive_vz_along_y, minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                minus_gfoot_vz_along_x * t187 - minus_gdrive_vz_along_x * t182,
-                minus_gfoot_vz_along_y * t192 - minus_gdrive_vz_along_y * t196, t204,
-                minus_gfoot_vz_along_x * t183 - minus_gdrive_vz_along_x * t215,
-                minus_gfoot_vz_along_y * t223 - minus_gdrive_vz_along_y * t227, t235,
-                t249 - minus_gfoot_vz_along_x * t246, -(minus_gfoot_vz_along_y * t258), 0.0,
-                -(minus_gfoot_vz_along_x * t277
-                    + minus_gleft_bar_vz_along_x * (t280 - t248)),
-                -(minus_gfoot_vz_along_y * t288),
+                t183 - minus_gdrive_vz_along_x * t178, t187 - t194, t200,
+                minus_gfoot_vz_along_x * t208 - minus_gdrive_vz_along_x * t207,
+                minus_gfoot_vz_along_y * t217 - minus_gdrive_vz_along_y * t220, t230,
+                minus_gleft_bar_vz_along_x * t242 - minus_gfoot_vz_along_x * t240,
+                -(minus_gfoot_vz_along_y * t253), 0.0,
+                -(minus_gfoot_vz_along_x * t273
+                    + minus_gleft_bar_vz_along_x * (t23 - t28)),
+                -(minus_gfoot_vz_along_y * t283),
                 0.0,
-                minus_gleft_bar_vz_along_x * t243 - minus_gfoot_vz_along_x * t313,
-                -(minus_gfoot_vz_along_y * t324),
+                minus_gleft_bar_vz_along_x * t237 - minus_gfoot_vz_along_x * t308,
+                -(minus_gfoot_vz_along_y * t319),
                 0.0,
-                minus_gfoot_vz_along_x * t339
+                minus_gfoot_vz_along_x * t333
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t345,
+                t339,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
                 minus_gleft_bar_vz_along_x
-                    * (c_left_bar_along_x * t183 - 9.81 * s_left_bar_along_x)
-                    - (minus_gdrive_vz_along_x * t364 + minus_gfoot_vz_along_x * t366),
-                -(minus_gdrive_vz_along_y * t384 + minus_gfoot_vz_along_y * t386),
-                t400,
-                minus_gfoot_vz_along_x * t411,
-                t227 + minus_gfoot_vz_along_y * t416,
-                t204,
+                    * (c_left_bar_along_x * t208 - 9.81 * s_left_bar_along_x)
+                    - (minus_gdrive_vz_along_x * t357 + s_left_bar_along_x * t183),
+                -(minus_gdrive_vz_along_y * t376 + t378),
+                t391,
+                minus_gfoot_vz_along_x * t401,
+                t220 + t406,
+                t200,
             ],
         ])
     }
@@ -4238,7 +4182,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 481 operations (165 additions, 307 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 399 intermediates.
+    /// 472 operations (166 additions, 284 multiplications, 22 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 390 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4252,340 +4196,327 @@ impl Orthoglide {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t4 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t4;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t8 = 1.0 - t7;
-        ::overact::guard::reach(t8, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t8);
-        let t10 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t10, 1.0, "along_y")?;
-        let t11 = 1.0 / t10;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t11;
-        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
-        let t17 = 1.0 - t2 * t7;
-        ::overact::guard::reach(t17, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t17);
+        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
+        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t8 = 1.0 - t2 * t6;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t8);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t19 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t19;
-        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
-        let t22 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t24 = 1.0 - t17 * t22;
-        ::overact::guard::reach(t24, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t24);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t26 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t26;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t30, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t30);
-        let t32 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t32, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t32;
-        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t36 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t36, 1.0, "actuators")?;
-        ::overact::guard::platform(t36, 1.0, "actuators")?;
-        let t37 = 1.0 / t36;
-        let t38 = 1.0 - t22;
-        ::overact::guard::reach(t38, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t38);
-        let t40 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t40, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t40;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
+        let t13 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t13, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t13);
+        let t15 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t15, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t15;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t44 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let t19 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t23 = gdrive_vz_along_x * actuator_velocities[0];
+        let t24 = 1.0 - t6;
+        ::overact::guard::reach(t24, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t24);
+        let t26 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t26, 1.0, "along_y")?;
+        let t27 = 1.0 / t26;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t27;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t52 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t54 = gdrive_vz_along_x + t52 + gdrive_vx_along_z;
-        let t55 = t54 * t37;
-        let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
+        let t30 = gdrive_vz_along_y * actuator_velocities[1];
+        let gdrive_vx_along_y = t27 * minus_s_left_bar_along_y;
+        let t34 = gdrive_vx_along_y * actuator_velocities[1];
+        let t37 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        ::overact::guard::reach(t37, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t37);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let t41 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t41, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t41);
+        let t43 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t43, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t43;
+        let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
+        let t46 = gdrive_vx_along_z * actuator_velocities[2];
+        let t47 = actuator_velocities[0] + t34 + t46;
+        let t48 = gdrive_vz_along_y * gdrive_vx_along_y;
+        let t50 = gdrive_vz_along_x + t48 + gdrive_vx_along_z;
+        let t54 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        let t55 = t50 / t54;
+        let gdrive_vy_along_z = minus_s_left_bar_along_z / t43;
         let t64 = gdrive_vy_along_x + gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vy_along_z;
         let t66 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
             + gdrive_vy_along_z - t64 * t55;
-        let t69 = t64 * t37;
-        let t71 = t44 + gdrive_vy_along_z * gdrive_vy_along_z - t64 * t69;
+        let t69 = t64 / t54;
+        let t71 = t19 + gdrive_vy_along_z * gdrive_vy_along_z - t64 * t69;
         ::overact::guard::platform(t71, 1.0, "actuators")?;
         ::overact::guard::platform(t71, 1.0, "actuators")?;
-        let t72 = 1.0 / t71;
-        let t73 = t66 * t72;
-        let t75 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t54 * t55 - t66 * t73;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        ::overact::guard::platform(t75, 1.0, "actuators")?;
-        let t76 = 1.0 / t75;
-        let t77 = gdrive_vz_along_x * actuator_velocities[0];
-        let t78 = gdrive_vz_along_y * actuator_velocities[1];
-        let t81 = gdrive_vx_along_y * actuator_velocities[1];
-        let t83 = gdrive_vx_along_z * actuator_velocities[2];
-        let t84 = actuator_velocities[0] + t81 + t83;
-        let t87 = gdrive_vy_along_x * actuator_velocities[0];
-        let t89 = gdrive_vy_along_z * actuator_velocities[2];
-        let t92 = t87 + actuator_velocities[1] + t89 - t84 * t69;
-        let t95 = t76 * (t77 + t78 + actuator_velocities[2] - t84 * t55 - t73 * t92);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t95;
-        let t97 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t100 = t72 * t92 - t73 * t95;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t103 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t104 = t103 * t19;
-        let t105 = minus_gfoot_vy_along_x * t104;
-        let minus_gfoot_vz_along_x = gdrive_vy_along_x * t105;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t100
-            + minus_gfoot_vz_along_x * t95;
-        let t109 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t110 = t97 + t109;
-        let t113 = pose[2] * t97;
-        let rate_dot_drive_along_x = t44 * (0.31 * t40 * t110)
-            + gdrive_vz_along_x * t113;
-        let t116 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t117 = t8 * t52;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t117;
-        let t123 = t84 * t37 - t69 * t100 - t55 * t95;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t123
-            + minus_gfoot_vz_along_y * t95;
-        let t127 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t123;
-        let t129 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t130 = t127 + t129;
-        let t133 = pose[0] * minus_rate_foot_along_y;
-        let t134 = c_foot_along_y * minus_rate_left_bar_along_y * t133;
-        let t136 = pose[2] * t130 + t134 + t134;
-        let t138 = pose[0] * t129;
-        let t140 = gdrive_vz_along_y * t134;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t136
-            - (t140 - 0.31 * t10 * t130 + t140 - gdrive_vx_along_y * t138);
-        let t147 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let t151 = pose[1] * minus_gleft_bar_vy_along_z;
+        let t72 = t66 / t71;
+        let t73 = gdrive_vy_along_x * actuator_velocities[0];
+        let t75 = gdrive_vy_along_z * actuator_velocities[2];
+        let t78 = t73 + actuator_velocities[1] + t75 - t47 * t69;
+        let t88 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t50 * t55 - t66 * t72;
+        ::overact::guard::platform(t88, 1.0, "actuators")?;
+        ::overact::guard::platform(t88, 1.0, "actuators")?;
+        let t89 = (t23 + t30 + actuator_velocities[2] - t47 * t55 - t72 * t78) / t88;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t89;
+        let t91 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t94 = t78 / t71 - t72 * t89;
+        let minus_gfoot_vz_along_x = gdrive_vz_along_x
+            * (minus_s_foot_along_x * minus_gleft_bar_vz_along_x);
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t94
+            + minus_gfoot_vz_along_x * t89;
+        let t100 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t101 = t91 + t100;
+        let t104 = pose[2] * t91;
+        let rate_dot_drive_along_x = t19 * (0.31 * t15 * t101)
+            + gdrive_vz_along_x * t104;
+        let t107 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t108 = t24 * t48;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t108;
+        let t114 = t47 / t54 - t69 * t94 - t55 * t89;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t114
+            + minus_gfoot_vz_along_y * t89;
+        let t118 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t114;
+        let t121 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t122 = t118 + t121;
+        let t125 = pose[0] * minus_rate_foot_along_y;
+        let t126 = c_foot_along_y * minus_rate_left_bar_along_y * t125;
+        let t128 = pose[2] * t122 + t126 + t126;
+        let t130 = pose[0] * t121;
+        let t132 = gdrive_vz_along_y * t126;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t128
+            - (t132 - 0.31 * t26 * t122 + t132 - gdrive_vx_along_y * t130);
+        let t139 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_gfoot_vy_along_z = minus_gleft_bar_vy_along_z
+            * (minus_s_foot_along_z * gdrive_vy_along_z);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t114
+            + minus_gfoot_vy_along_z * t94;
+        let t148 = pose[1] * minus_rate_foot_along_z;
+        let t150 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t151 = 3.225806451612903 * t148 * t150;
         let t152 = minus_gleft_bar_vy_along_z * t151;
-        let minus_gfoot_vy_along_z = gdrive_vx_along_z * t152;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t123
-            + minus_gfoot_vy_along_z * t100;
-        let t156 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t100;
-        let t158 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t159 = t156 + t158;
-        let t163 = c_foot_along_z * minus_rate_left_bar_along_z
-            * (pose[1] * minus_rate_foot_along_z);
-        let t165 = pose[0] * t159 + t163 + t163;
-        let t167 = pose[1] * t158;
-        let t170 = gdrive_vx_along_z * t163;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t165 + gdrive_vy_along_z * t167
-            - (t170 - 0.31 * t32 * t159 + t170);
-        let t176 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t178 = t116 + gdrive_vx_along_y * t147 + gdrive_vx_along_z * t176;
-        let t185 = gdrive_vy_along_x * t116 + t147 + gdrive_vy_along_z * t176
-            - t69 * t178;
-        let t195 = t76
-            * (gdrive_vz_along_x * t116 + gdrive_vz_along_y * t147 + t176 - t55 * t178
-                - t73 * t185);
-        let t197 = t72 * t185 - t73 * t195;
-        let t201 = t37 * t178 - t69 * t197 - t55 * t195;
-        let t206 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t207 = 9.81 + actuator_accelerations[2];
-        let t222 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t223 = minus_rate_left_bar_along_x * t222;
-        let t225 = t223 * (0.31 * t104);
-        let t230 = t195 + t113;
+        let t153 = pose[1] * t152;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t94;
+        let t155 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t156 = t153 + t155;
+        let t157 = t150 * t150;
+        let t158 = t156 + t157;
+        let t161 = c_foot_along_z * minus_rate_left_bar_along_z * t148;
+        let t163 = pose[0] * t158 + t161 + t161;
+        let t165 = pose[1] * t155;
+        let t168 = gdrive_vx_along_z * t161;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t163 + gdrive_vy_along_z * t165
+            - (t168 - 0.31 * t43 * t158 + t168);
+        let t174 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t176 = t107 + gdrive_vx_along_y * t139 + gdrive_vx_along_z * t174;
+        let t183 = gdrive_vy_along_x * t107 + t139 + gdrive_vy_along_z * t174
+            - t69 * t176;
+        let t193 = (gdrive_vz_along_x * t107 + gdrive_vz_along_y * t139 + t174
+            - t55 * t176 - t72 * t183) / t88;
+        let t195 = t183 / t71 - t72 * t193;
+        let t199 = t176 / t54 - t69 * t195 - t55 * t193;
+        let t204 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t205 = 9.81 + actuator_accelerations[2];
+        let t221 = pose[2] * minus_rate_foot_along_x;
+        let t222 = c_foot_along_x * minus_rate_left_bar_along_x * t221;
+        let t227 = t193 + t104;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t197 + pose[1] * t110 + t225 + t225) + minus_gfoot_vz_along_x * t230;
-        let t233 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t235 = t201 + t138;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t235
-            + minus_gfoot_vz_along_y * (t195 + t136);
-        let t244 = t197 + t167;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t201 + t165)
-            + minus_gfoot_vy_along_z * t244;
-        let t251 = c_foot_along_x * t109
+            * (t195 + pose[1] * t101 + t222 + t222) + minus_gfoot_vz_along_x * t227;
+        let t232 = t199 + t130;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t232
+            + minus_gfoot_vz_along_y * (t193 + t128);
+        let t241 = t195 + t165;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t199 + t163)
+            + minus_gfoot_vy_along_z * t241;
+        let t248 = c_foot_along_x * t100
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t252 = gdrive_vy_along_x * t251;
-        let t253 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t261 = c_foot_along_y * t127
+        let t249 = gdrive_vy_along_x * t248;
+        let t250 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t251 = minus_gfoot_vy_along_x * t250;
+        let t254 = minus_gfoot_vz_along_x * t250;
+        let t258 = c_foot_along_y * t118
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t264 = c_foot_along_y * (9.81 - t206);
-        let t272 = c_foot_along_z * t156
+        let t261 = minus_gleft_bar_vx_along_y * (9.81 - t204);
+        let t264 = gdrive_vz_along_y * t258;
+        let t269 = c_foot_along_z * (minus_rate_foot_along_z * minus_rate_foot_along_z)
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t273 = c_foot_along_z * t207;
-        let t274 = minus_gfoot_vx_along_z * t273;
-        let t278 = minus_s_foot_along_z * t207;
-        let t281 = 0.31 * c_left_bar_along_x;
-        let t283 = t233 * t281 - t252;
-        let t285 = c_foot_along_x * actuator_accelerations[0];
-        let t293 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t127;
-        let t297 = 9.81 * minus_s_foot_along_y
+        let t270 = gdrive_vx_along_z * t269;
+        let t271 = minus_s_foot_along_z * t205;
+        let t272 = minus_gfoot_vx_along_z * t271;
+        let t275 = minus_gfoot_vy_along_z * t271;
+        let t279 = c_left_bar_along_x * minus_rate_dot_foot_along_x / t15 - t249;
+        let t281 = c_foot_along_x * actuator_accelerations[0];
+        let t289 = t27 * (c_left_bar_along_y * minus_rate_dot_foot_along_y) - t264;
+        let t293 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t305 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t156;
+        let t301 = c_left_bar_along_z * minus_rate_dot_foot_along_z / t43 - t270;
+        let t303 = c_foot_along_z * t205;
+        let t309 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t310 = minus_rate_left_bar_along_x * t309;
         let t311 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t313 = t223 + t311 + t223;
+        let t313 = t310 + t311 + t310;
         let t314 = minus_s_left_bar_along_x * t313;
-        let t317 = t222 * t222;
-        let t318 = t317 * t105;
-        let t320 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t321 = minus_rate_left_bar_along_y * t320;
-        let t322 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t324 = t321 + t322 + t321;
-        let t325 = minus_s_left_bar_along_y * t324;
-        let t328 = 3.225806451612903 * t133 * t320;
-        let t329 = minus_gleft_bar_vx_along_y * t328;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t333 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t334 = minus_rate_left_bar_along_z * t333;
-        let t335 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t337 = t334 + t335 + t334;
-        let t338 = minus_s_left_bar_along_z * t337;
-        let t341 = t333 * t333;
-        let t342 = t341 * t152;
-        let t346 = t19 * (minus_rate_dot_foot_along_x - t314);
-        let t348 = c_left_bar_along_x * t313 + minus_s_left_bar_along_x * t346;
-        let t351 = pose[2] * t318;
-        let t357 = t4 * (minus_rate_dot_foot_along_y - t325);
-        let t359 = c_left_bar_along_y * t324 + minus_s_left_bar_along_y * t357;
-        let t361 = pose[0] * t329;
-        let t369 = t26 * (minus_rate_dot_foot_along_z - t338);
-        let t371 = c_left_bar_along_z * t337 + minus_s_left_bar_along_z * t369;
-        let t374 = pose[1] * t342;
-        let t378 = t318 * t281;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t230;
-        let t384 = minus_s_left_bar_along_x * (t378 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t97 - t351);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t235;
-        let t394 = minus_s_left_bar_along_y * (t328 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t129 - t361);
-        let t399 = t341 * t151;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t244;
-        let t405 = minus_s_left_bar_along_z * (t399 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t158 - t374);
-        let t410 = 3.225806451612903 * t195;
-        let t416 = 10.40582726326743 * (t11 * t201);
-        let t420 = 3.225806451612903 * t197;
-        let t434 = t40 * (minus_rate_dot_left_bar_along_x - t378) - t103 * (t351 + t97)
+        let t317 = 3.225806451612903 * t221;
+        let t318 = t317 * t309;
+        let t321 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t322 = minus_rate_left_bar_along_y * t321;
+        let t323 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t325 = t322 + t323 + t322;
+        let t326 = minus_s_left_bar_along_y * t325;
+        let t329 = 3.225806451612903 * t125 * t321;
+        let t333 = minus_rate_left_bar_along_z * t150;
+        let t334 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t336 = t333 + t334 + t333;
+        let t337 = minus_s_left_bar_along_z * t336;
+        let t343 = (minus_rate_dot_foot_along_x - t314) / c_left_bar_along_x;
+        let t345 = c_left_bar_along_x * t313 + minus_s_left_bar_along_x * t343;
+        let t348 = t317 * t317;
+        let t355 = (minus_rate_dot_foot_along_y - t326) / c_left_bar_along_y;
+        let t357 = c_left_bar_along_y * t325 + minus_s_left_bar_along_y * t355;
+        let t359 = t321 * t321;
+        let t360 = t118 - t359;
+        let t367 = (minus_rate_dot_foot_along_z - t337) / c_left_bar_along_z;
+        let t369 = c_left_bar_along_z * t336 + minus_s_left_bar_along_z * t367;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t227;
+        let t380 = minus_s_left_bar_along_x * (t318 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t91 - t348);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t232;
+        let t390 = minus_s_left_bar_along_y * (t329 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t121 - t360);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t241;
+        let t400 = minus_s_left_bar_along_z * (t151 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t155 - t153);
+        let t405 = 3.225806451612903 * t193;
+        let t411 = 10.40582726326743 * (t27 * t199);
+        let t415 = 3.225806451612903 * t195;
+        let t430 = t15 * (minus_rate_dot_left_bar_along_x - t318)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t348 + t91)
             - minus_s_foot_along_x * t313;
-        let t436 = minus_s_left_bar_along_x * t253;
-        let t454 = t10 * (minus_rate_dot_left_bar_along_y - t328)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t361 + t129)
-            - minus_s_foot_along_y * t324;
-        let t456 = minus_s_left_bar_along_y * t264;
-        let t471 = t32 * (minus_rate_dot_left_bar_along_z - t399)
-            - minus_s_left_bar_along_z * c_foot_along_z * (t374 + t158)
-            - minus_s_foot_along_z * t337;
-        let t473 = minus_s_left_bar_along_z * t278;
-        let t482 = t253 - 0.31 * t346;
-        let t487 = t264 + 0.31 * t357;
-        let t492 = t278 - 0.31 * t369;
+        let t449 = t26 * (minus_rate_dot_left_bar_along_y - t329)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t360 + t121)
+            - minus_s_foot_along_y * t325;
+        let t451 = minus_s_left_bar_along_y * t261;
+        let t464 = t43 * (minus_rate_dot_left_bar_along_z - t151)
+            - minus_s_left_bar_along_z * c_foot_along_z * t156
+            - minus_s_foot_along_z * t336;
+        let t474 = t250 - 0.31 * t343;
+        let t479 = t261 + t27 * t355;
+        let t483 = t271 - 0.31 * t367;
         Ok([
             [
-                t201, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
-                gdrive_vx_along_z * t207, gdrive_vx_along_z * actuator_accelerations[2],
-                actuator_velocities[0], t81, t83, ::overact::math::sign(actuator_velocities[0]),
+                t199, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
+                gdrive_vx_along_z * t205, gdrive_vx_along_z * actuator_accelerations[2],
+                actuator_velocities[0], t34, t46, ::overact::math::sign(actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t251,
-                -(gdrive_vx_along_y * t261 - minus_gfoot_vx_along_y * t264),
-                -(gdrive_vx_along_z * (t272 + t274)), t283,
-                gdrive_vx_along_y * t293 + minus_gfoot_vx_along_y * t297,
-                gdrive_vx_along_z * t305 + t274, 0.0, minus_gfoot_vx_along_y * t325 - t329,
-                minus_gfoot_vx_along_z * t338, 0.0,
-                -(minus_gfoot_vx_along_y * t359
-                    + minus_gleft_bar_vx_along_y * (t361 - t320 * t320)),
-                -(minus_gfoot_vx_along_z * t371),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t248,
+                -(gdrive_vx_along_y * t258 - t108 * t261), -(t270 + t272), t279,
+                gdrive_vx_along_y * t289 + minus_gfoot_vx_along_y * t293,
+                gdrive_vx_along_z * t301 + minus_gfoot_vx_along_z * t303, 0.0,
+                minus_gfoot_vx_along_y * t326 - minus_gleft_bar_vx_along_y * t329,
+                minus_gfoot_vx_along_z * t337, 0.0,
+                -(minus_gfoot_vx_along_y * t357
+                    + minus_gleft_bar_vx_along_y * (t360 - t359)),
+                -(minus_gfoot_vx_along_z * t369),
                 0.0,
-                -(minus_gfoot_vx_along_y * t394 + minus_gleft_bar_vx_along_y * t322),
-                -(minus_gfoot_vx_along_z * t405),
+                -(minus_gfoot_vx_along_y * t390 + minus_gleft_bar_vx_along_y * t323),
+                -(minus_gfoot_vx_along_z * t400),
                 0.0,
-                t117 * t416 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t420,
+                t108 * t411 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t415,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t434,
-                gdrive_vx_along_y * t454 + minus_gfoot_vx_along_y * t456
-                    + 3.225806451612903 * t297,
-                gdrive_vx_along_z * t471 - minus_gfoot_vx_along_z * t473,
-                -t251,
-                minus_gfoot_vx_along_y * t487,
-                -(minus_gfoot_vx_along_z * t492 - t305),
+                t430,
+                gdrive_vx_along_y * t449 + t108 * t451 + 3.225806451612903 * t293,
+                gdrive_vx_along_z * t464 - minus_s_left_bar_along_z * t272,
+                -t248,
+                t108 * t479,
+                -(minus_gfoot_vx_along_z * t483 - t301),
             ],
             [
-                t197, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
-                gdrive_vy_along_z * t207, gdrive_vy_along_z * actuator_accelerations[2], t87,
-                actuator_velocities[1], t89,
+                t195, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
+                gdrive_vy_along_z * t205, gdrive_vy_along_z * actuator_accelerations[2], t73,
+                actuator_velocities[1], t75,
                 ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
                 ::overact::math::sign(actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_x, 1.0, t233, 0.0,
-                minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(t252 + minus_gfoot_vy_along_x * t253), -t261,
-                -(gdrive_vy_along_z * t272 + minus_gfoot_vy_along_z * t278),
-                gdrive_vy_along_x * t283 + minus_gfoot_vy_along_x * t285, t293,
-                gdrive_vy_along_z * t305 + minus_gfoot_vy_along_z * t273,
-                minus_gfoot_vy_along_x * t314, 0.0, minus_gfoot_vy_along_z * t338 - t342,
-                -(minus_gfoot_vy_along_x * t348), 0.0,
-                -(minus_gfoot_vy_along_z * t371
-                    + minus_gleft_bar_vy_along_z * (t374 - t341)),
-                -(minus_gfoot_vy_along_x * t384),
+                gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
+                minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z, -(t249 + t251), -t258,
+                -(gdrive_vy_along_z * t269 + t275),
+                gdrive_vy_along_x * t279 + minus_gfoot_vy_along_x * t281, t289,
+                gdrive_vy_along_z * t301 + minus_gfoot_vy_along_z * t303,
+                minus_gfoot_vy_along_x * t314, 0.0, minus_gfoot_vy_along_z * t337 - t152,
+                -(minus_gfoot_vy_along_x * t345), 0.0,
+                -(minus_gfoot_vy_along_z * t369
+                    + minus_gleft_bar_vy_along_z * (t153 - t157)),
+                -(minus_gfoot_vy_along_x * t380),
                 0.0,
-                -(minus_gfoot_vy_along_z * t405 + minus_gleft_bar_vy_along_z * t335),
-                minus_gfoot_vy_along_x * t410,
+                -(minus_gfoot_vy_along_z * t400 + minus_gleft_bar_vy_along_z * t334),
+                minus_gfoot_vy_along_x * t405,
                 0.0,
-                minus_gfoot_vy_along_z * t420
+                minus_gfoot_vy_along_z * t415
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t434 - minus_gfoot_vy_along_x * t436,
-                t454,
-                gdrive_vy_along_z * t471 - minus_gfoot_vy_along_z * t473
-                    + 3.225806451612903 * t273,
-                -(minus_gfoot_vy_along_x * t482 - t283),
-                -t261,
-                -(minus_gfoot_vy_along_z * t492),
+                gdrive_vy_along_x * t430 - minus_s_left_bar_along_x * t251,
+                t449,
+                gdrive_vy_along_z * t464 - minus_s_left_bar_along_z * t275
+                    + 3.225806451612903 * t303,
+                -(minus_gfoot_vy_along_x * t474 - t279),
+                -t258,
+                -(minus_gfoot_vy_along_z * t483),
             ],
             [
-                -(-9.81 - t195), gdrive_vz_along_x * actuator_accelerations[0], t206, t207,
-                actuator_accelerations[2], t77, t78, actuator_velocities[2],
+                -(-9.81 - t193), gdrive_vz_along_x * actuator_accelerations[0], t204, t205,
+                actuator_accelerations[2], t23, t30, actuator_velocities[2],
                 ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
                 ::overact::math::sign(actuator_velocities[2]), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(gdrive_vz_along_x * t251 + minus_gfoot_vz_along_x * t253),
-                -(gdrive_vz_along_y * t261 - minus_gfoot_vz_along_y * t264), -t272,
-                gdrive_vz_along_x * t283 + minus_gfoot_vz_along_x * t285,
-                gdrive_vz_along_y * t293 + minus_gfoot_vz_along_y * t297, t305,
-                minus_gfoot_vz_along_x * t314 - t318, minus_gfoot_vz_along_y * t325, 0.0,
-                -(minus_gfoot_vz_along_x * t348
-                    + minus_gleft_bar_vz_along_x * (t351 - t317)),
-                -(minus_gfoot_vz_along_y * t359),
+                -(gdrive_vz_along_x * t248 + t254), -(t264 - t261), -t269,
+                gdrive_vz_along_x * t279 + minus_gfoot_vz_along_x * t281,
+                gdrive_vz_along_y * t289 + minus_gfoot_vz_along_y * t293, t301,
+                minus_gfoot_vz_along_x * t314 - minus_gleft_bar_vz_along_x * t318,
+                minus_gfoot_vz_along_y * t326, 0.0,
+                -(minus_gfoot_vz_along_x * t345
+                    + minus_gleft_bar_vz_along_x * (t348 - t309 * t309)),
+                -(minus_gfoot_vz_along_y * t357),
                 0.0,
-                -(minus_gfoot_vz_along_x * t384 + minus_gleft_bar_vz_along_x * t311),
-                -(minus_gfoot_vz_along_y * t394),
+                -(minus_gfoot_vz_along_x * t380 + minus_gleft_bar_vz_along_x * t311),
+                -(minus_gfoot_vz_along_y * t390),
                 0.0,
-                minus_gfoot_vz_along_x * t410
+                minus_gfoot_vz_along_x * t405
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t416,
+                t411,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t434 - minus_gfoot_vz_along_x * t436
+                gdrive_vz_along_x * t430 - minus_s_left_bar_along_x * t254
                     + minus_gleft_bar_vz_along_x
-                        * (c_left_bar_along_x * t285 + 31.64516129032258 * pose[2]),
-                gdrive_vz_along_y * t454 + minus_gfoot_vz_along_y * t456,
-                t471,
-                -(minus_gfoot_vz_along_x * t482),
-                t293 + minus_gfoot_vz_along_y * t487,
-                -t272,
+                        * (c_left_bar_along_x * t281 + minus_s_left_bar_along_x * 9.81),
+                gdrive_vz_along_y * t449 + t451,
+                t464,
+                -(minus_gfoot_vz_along_x * t474),
+                t289 + t479,
+                -t269,
             ],
         ])
     }

@@ -1025,7 +1025,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 256 operations (86 additions, 167 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 205 intermediates.
+    /// 252 operations (85 additions, 159 multiplications, 8 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 201 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1039,191 +1039,176 @@ impl Planar3Prr {
         let t3 = t2 * twist[2];
         let t5 = 0.08 * c_phi;
         let t7 = twist[2] * t3 - t5 * acceleration[2];
-        let t8 = acceleration[0] + t7;
         let t10 = pose[1] + t5 - 0.3;
         let t13 = 8.650519031141869 * (0.1156 - t10 * t10);
         ::overact::guard::reach(t13, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t13);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t15 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t15;
+        let t15 = 0.34 / minus_s2_leg1;
+        let g2_vy_leg1 = 8.650519031141869 * t15;
         let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
         let t18 = t5 * twist[2];
         let t21 = twist[2] * t18 + t2 * acceleration[2];
         let t22 = acceleration[1] - t21;
         let t23 = minus_g1_vy_leg1 * t22;
-        let t25 = twist[1] - t3;
-        let rate_2_leg1 = g2_vy_leg1 * t25;
-        let minus_rate_dot_1_leg1 = t8 + t23 + rate_2_leg1 * rate_2_leg1 * (0.34 * t15);
-        let t31 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let t24 = twist[1] - t3;
+        let rate_2_leg1 = g2_vy_leg1 * t24;
+        let t28 = t23 + rate_2_leg1 * rate_2_leg1 * t15;
+        let minus_rate_dot_1_leg1 = acceleration[0] + t7 + t28;
+        let t30 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
-        let t34 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let minus_rate_1_leg1 = twist[0] - t18 + minus_g1_vy_leg1 * t25;
-        let t43 = 2.9411764705882355 * t22;
-        let t45 = 2.9411764705882355 * (t8 - minus_rate_dot_1_leg1);
-        let t46 = minus_g1_vy_leg1 * t45;
-        let rate_dot_2_leg1 = minus_s2_leg1 * (t43 - t46);
+        let t33 = g1_wz_leg1 * minus_rate_dot_1_leg1;
+        let minus_rate_1_leg1 = twist[0] - t18 + minus_g1_vy_leg1 * t24;
+        let t42 = 2.9411764705882355 * t22;
+        let t43 = 2.9411764705882355 * t28;
+        let t44 = minus_g1_vy_leg1 * t43;
+        let t46 = 2.9411764705882355 * (t42 + t44);
         let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
-        let t52 = 2.9411764705882355 * t31;
-        let t65 = twist[2] - rate_2_leg1;
+        let t53 = minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1);
+        let t62 = twist[2] - rate_2_leg1;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t72 = 0.08 * minus_c23_leg2;
-        let t73 = t2 - t72;
+        let t69 = 0.08 * minus_c23_leg2;
+        let t70 = t2 - t69;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t80 = 0.08 * minus_s23_leg2;
-        let t81 = t5 + t80;
-        let t82 = pose[1] + 0.15;
-        let t85 = 0.8660254037844386 * (pose[0] + t73 + 0.25980762113533157)
-            + 0.5 * (t82 - t81);
-        let minus_c2_leg2 = 2.9411764705882355 * t85;
-        let t89 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
-        ::overact::guard::reach(t89, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t89);
+        let t77 = 0.08 * minus_s23_leg2;
+        let t78 = t5 + t77;
+        let t79 = pose[1] + 0.15;
+        let t82 = 0.8660254037844386 * (pose[0] + t70 + 0.25980762113533157)
+            + 0.5 * (t79 - t78);
+        let minus_c2_leg2 = 2.9411764705882355 * t82;
+        let t86 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t86, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t86);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t92 = 2.5471335405424664 * t85 - 0.5 * minus_s2_leg2;
-        let t93 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t92 * t93;
-        let t97 = t73 * twist[2];
-        let t99 = acceleration[0] + t81 * acceleration[2] - twist[2] * t97;
-        let t103 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t85;
-        let t106 = t81 * twist[2];
-        let t108 = acceleration[1] + t73 * acceleration[2] + twist[2] * t106;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t93;
-        let t112 = twist[0] + t106;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t93;
-        let t115 = twist[1] + t97;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t112 + minus_g2_vy_leg2 * t115;
-        let t118 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t120 = t92 * t99 + t103 * t108 + 0.34 * t118;
-        let minus_rate_dot_1_leg2 = t93 * t120;
-        let t122 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t103 * t93;
-        let t124 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t125 = 2.9411764705882355 * t93;
-        let minus_g2_wz_leg2 = t2 * t125;
-        let minus_g1_wz_leg2 = t85 * minus_g2_wz_leg2 - t5;
-        let t129 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t112 + minus_g1_vy_leg2 * t115;
-        let t141 = 0.8660254037844386 * t99 + 0.5 * t108;
-        let minus_rate_dot_2_leg2 = t125 * (t141 + t85 * t118);
-        let t150 = minus_s2_leg2 * t118 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t152 = minus_c2_leg2 * minus_rate_dot_1_leg2;
-        let t161 = 2.9411764705882355 * t141;
-        let t174 = minus_rate_2_leg2 + twist[2];
-        let t184 = 0.8660254037844386 * (pose[0] + t72 + -0.25980762113533157)
-            - 0.5 * (t80 + t82);
-        let c2_leg3 = 2.9411764705882355 * t184;
-        let t188 = 1.0 - c2_leg3 * c2_leg3;
-        ::overact::guard::reach(t188, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t188);
+        let t89 = 2.5471335405424664 * t82 - 0.5 * minus_s2_leg2;
+        let t90 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t89 * t90;
+        let t94 = t70 * twist[2];
+        let t96 = acceleration[0] + t78 * acceleration[2] - twist[2] * t94;
+        let t100 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t82;
+        let t103 = t78 * twist[2];
+        let t105 = acceleration[1] + t70 * acceleration[2] + twist[2] * t103;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t90;
+        let t109 = twist[0] + t103;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t90;
+        let t112 = twist[1] + t94;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t109 + minus_g2_vy_leg2 * t112;
+        let t115 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t117 = t89 * t96 + t100 * t105 + 0.34 * t115;
+        let minus_rate_dot_1_leg2 = t90 * t117;
+        let t119 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t100 * t90;
+        let t121 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t122 = 2.9411764705882355 * t90;
+        let minus_g2_wz_leg2 = t2 * t122;
+        let minus_g1_wz_leg2 = t82 * minus_g2_wz_leg2 - t5;
+        let t126 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t109 + minus_g1_vy_leg2 * t112;
+        let t138 = 0.8660254037844386 * t96 + 0.5 * t105;
+        let minus_rate_dot_2_leg2 = t122 * (t138 + t82 * t115);
+        let t147 = minus_s2_leg2 * t115 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t149 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t158 = 2.9411764705882355 * t138;
+        let t171 = minus_rate_2_leg2 + twist[2];
+        let t181 = 0.8660254037844386 * (pose[0] + t69 - 0.25980762113533157)
+            - 0.5 * (t77 + t79);
+        let c2_leg3 = 2.9411764705882355 * t181;
+        let t185 = 1.0 - c2_leg3 * c2_leg3;
+        ::overact::guard::reach(t185, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t185);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t191 = 2.5471335405424664 * t184 - 0.5 * minus_s2_leg3;
-        let t192 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t191 * t192;
-        let t196 = t72 * twist[2];
-        let t198 = acceleration[0] - t80 * acceleration[2] - twist[2] * t196;
-        let t202 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t184;
-        let t205 = t80 * twist[2];
-        let t207 = acceleration[1] + t72 * acceleration[2] - twist[2] * t205;
-        let g2_vx_leg3 = 2.5471335405424664 * t192;
-        let t211 = twist[0] - t205;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t192;
-        let t214 = twist[1] + t196;
-        let rate_2_leg3 = g2_vx_leg3 * t211 - minus_g2_vy_leg3 * t214;
-        let t217 = rate_2_leg3 * rate_2_leg3;
-        let t219 = t191 * t198 - t202 * t207 + 0.34 * t217;
-        let minus_rate_dot_1_leg3 = t192 * t219;
-        let t221 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let g1_vy_leg3 = t202 * t192;
-        let t223 = g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let t224 = 2.9411764705882355 * t192;
-        let minus_g2_wz_leg3 = t2 * t224;
-        let g1_wz_leg3 = t5 + t184 * minus_g2_wz_leg3;
-        let t228 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vy_leg3 * t214 - minus_g1_vx_leg3 * t211;
-        let t240 = 0.5 * t207 - 0.8660254037844386 * t198;
-        let minus_rate_dot_2_leg3 = t224 * (t240 - t184 * t217);
-        let t249 = minus_s2_leg3 * t217 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t251 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t260 = 2.9411764705882355 * t240;
-        let t273 = twist[2] - rate_2_leg3;
-        let t278 = 12.5 * t21;
-        let t279 = 12.5 * t7;
+        let t188 = 2.5471335405424664 * t181 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t188 / minus_s2_leg3;
+        let t192 = t69 * twist[2];
+        let t194 = acceleration[0] - t77 * acceleration[2] - twist[2] * t192;
+        let t198 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t181;
+        let t201 = t77 * twist[2];
+        let t203 = acceleration[1] + t69 * acceleration[2] - twist[2] * t201;
+        let g2_vx_leg3 = 2.5471335405424664 / minus_s2_leg3;
+        let t207 = twist[0] - t201;
+        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
+        let t210 = twist[1] + t192;
+        let rate_2_leg3 = g2_vx_leg3 * t207 - minus_g2_vy_leg3 * t210;
+        let t213 = rate_2_leg3 * rate_2_leg3;
+        let t215 = t188 * t194 - t198 * t203 + 0.34 * t213;
+        let minus_rate_dot_1_leg3 = t215 / minus_s2_leg3;
+        let t217 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let g1_vy_leg3 = t198 / minus_s2_leg3;
+        let t219 = g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let t220 = 2.9411764705882355 / minus_s2_leg3;
+        let minus_g2_wz_leg3 = t2 * t220;
+        let g1_wz_leg3 = t5 + t181 * minus_g2_wz_leg3;
+        let t224 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vy_leg3 * t210 - minus_g1_vx_leg3 * t207;
+        let t236 = 0.5 * t203 - 0.8660254037844386 * t194;
+        let minus_rate_dot_2_leg3 = t220 * (t236 - t181 * t213);
+        let t245 = minus_s2_leg3 * t213 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t247 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t256 = 2.9411764705882355 * t236;
+        let t269 = twist[2] - rate_2_leg3;
+        let t274 = 12.5 * t21;
+        let t275 = 12.5 * t7;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, minus_rate_1_leg1,
-                ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, t45, -t43,
-                minus_rate_dot_1_leg1, 0.0, 0.0, t122, t122, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, -t43, -t42,
+                minus_rate_dot_1_leg1, 0.0, 0.0, t119, t119, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vx_leg2 * t150 + minus_g2_vx_leg2 * t152),
-                minus_g1_vx_leg2 * t161 + minus_g2_vx_leg2 * t120, t122,
+                -(minus_g1_vx_leg2 * t147 + minus_g2_vx_leg2 * t149),
+                minus_g1_vx_leg2 * t158 + minus_g2_vx_leg2 * t117, t119,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t174), t221, t221,
+                ::overact::math::signed(minus_g2_vx_leg2, t171), t217, t217,
                 -(minus_g1_vx_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg3,
                 -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                -(minus_g1_vx_leg3 * t249 + g2_vx_leg3 * t251),
-                minus_g1_vx_leg3 * t260 - g2_vx_leg3 * t219, t221,
+                -(minus_g1_vx_leg3 * t245 + g2_vx_leg3 * t247),
+                minus_g1_vx_leg3 * t256 - g2_vx_leg3 * t215, t217,
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t273), 0.0, -t278, t279, acceleration[0],
+                -::overact::math::signed(g2_vx_leg3, t269), 0.0, -t274, t275, acceleration[0],
             ],
             [
-                t31, t31, minus_g1_vy_leg1 * minus_rate_1_leg1,
+                t30, t30, minus_g1_vy_leg1 * minus_rate_1_leg1,
                 ::overact::math::signed(minus_g1_vy_leg1, minus_rate_1_leg1), -minus_g1_vy_leg1,
-                g2_vy_leg1 * rate_dot_2_leg1, -(t52 - t46),
-                -(2.9411764705882355 * (t23 + minus_rate_dot_1_leg1)), t31,
+                t46, -(t44 + 2.9411764705882355 * t30),
+                -(2.9411764705882355 * (t23 + minus_rate_dot_1_leg1)), t30,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t65), t124, t124,
+                -::overact::math::signed(g2_vy_leg1, t62), t121, t121,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vy_leg2 * t150 + minus_g2_vy_leg2 * t152),
-                minus_g1_vy_leg2 * t161 + 1.4705882352941178 * minus_rate_dot_1_leg2, t124,
+                -(minus_g1_vy_leg2 * t147 + minus_g2_vy_leg2 * t149),
+                minus_g1_vy_leg2 * t158 + 1.4705882352941178 * minus_rate_dot_1_leg2, t121,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t174), -t223, -t223,
+                ::overact::math::signed(minus_g2_vy_leg2, t171), -t219, -t219,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t249 + minus_g2_vy_leg3 * t251,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t260, -t223,
+                g1_vy_leg3 * t245 + minus_g2_vy_leg3 * t247,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t256, -t219,
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t273), 0.0, -t279, -t278, acceleration[1],
+                ::overact::math::signed(minus_g2_vy_leg3, t269), 0.0, -t275, -t274, acceleration[1],
             ],
             [
-                -t34, -t34, -(g1_wz_leg1 * minus_rate_1_leg1),
-                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1,
-                -(minus_g2_wz_leg1 * rate_dot_2_leg1), t2 * t52 - g1_wz_leg1 * t45,
-                g1_wz_leg1 * t43
-                    + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
-                -t34,
+                -t33, -t33, -(g1_wz_leg1 * minus_rate_1_leg1),
+                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1, -(t2 * t46),
+                g1_wz_leg1 * t43 + minus_g1_vy_leg1 * t53, g1_wz_leg1 * t42 + t53, -t33,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t65),
-                t129,
-                t129,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t62), t126, t126,
                 minus_g1_wz_leg2 * minus_rate_1_leg2,
-                ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2),
-                -minus_g1_wz_leg2,
+                ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2), -minus_g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_wz_leg2 * t150 + minus_g2_wz_leg2 * t152),
-                minus_g1_wz_leg2 * t161 + minus_g2_wz_leg2 * t120,
-                t129,
+                -(minus_g1_wz_leg2 * t147 + minus_g2_wz_leg2 * t149),
+                minus_g1_wz_leg2 * t158 + minus_g2_wz_leg2 * t117, t126,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t174),
-                -t228,
-                -t228,
-                g1_wz_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3,
-                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t249 + minus_g2_wz_leg3 * t251,
-                minus_g2_wz_leg3 * t219 - g1_wz_leg3 * t260,
-                -t228,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t171), -t224, -t224,
+                g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
+                g1_wz_leg3, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg3 * t245 + minus_g2_wz_leg3 * t247,
+                minus_g2_wz_leg3 * t215 - g1_wz_leg3 * t256, -t224,
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t273),
-                acceleration[2],
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t269), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
-                -(s_phi * acceleration[1] + c_phi * acceleration[0]),
-                0.0,
+                -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
         ])
     }
@@ -1238,7 +1223,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 232 operations (72 additions, 157 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 184 intermediates.
+    /// 227 operations (73 additions, 141 multiplications, 13 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1253,159 +1238,153 @@ impl Planar3Prr {
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t2 = 0.08 * s_phi;
-        let t3 = t2 * twist[2];
-        let t5 = 0.08 * c_phi;
-        let t7 = twist[2] * t3 - t5 * acceleration[2];
-        let t8 = acceleration[0] + t7;
-        let t11 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t11;
-        let t13 = t5 * twist[2];
-        let t16 = twist[2] * t13 + t2 * acceleration[2];
-        let t17 = acceleration[1] - t16;
-        let t18 = g1_vy_leg1 * t17;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t11;
-        let t21 = twist[1] - t3;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t21;
-        let minus_rate_dot_1_leg1 = t8 - t18
-            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t11);
-        let t27 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let g1_wz_leg1 = t5 - g1_vy_leg1 * t2;
-        let t30 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * t21 - (twist[0] - t13);
-        let t39 = 2.9411764705882355 * t17;
-        let t41 = 2.9411764705882355 * (t8 - minus_rate_dot_1_leg1);
-        let t42 = g1_vy_leg1 * t41;
-        let minus_rate_dot_2_leg1 = s2_leg1 * (t39 + t42);
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1;
-        let t48 = 2.9411764705882355 * t27;
-        let t61 = minus_rate_2_leg1 + twist[2];
-        let t69 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t70 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t69 * t70;
-        let t74 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t75 = 0.04 * s_phi;
-        let t76 = 0.06928203230275509 * c_phi;
-        let t77 = t75 - t76;
-        let t80 = 0.06928203230275509 * s_phi;
-        let t81 = 0.04 * c_phi;
-        let t82 = t80 + t81;
-        let t83 = t82 * twist[2];
-        let t85 = acceleration[1] + t77 * acceleration[2] + twist[2] * t83;
-        let t89 = t77 * twist[2];
-        let t91 = acceleration[0] + t82 * acceleration[2] - twist[2] * t89;
-        let g2_vx_leg2 = 2.5471335405424664 * t70;
-        let t95 = twist[0] + t83;
-        let g2_vy_leg2 = 1.4705882352941178 * t70;
-        let t98 = twist[1] + t89;
-        let rate_2_leg2 = g2_vx_leg2 * t95 + g2_vy_leg2 * t98;
-        let t101 = rate_2_leg2 * rate_2_leg2;
-        let t102 = 0.34 * t101;
-        let t103 = t74 * t85 - t69 * t91 - t102;
-        let minus_rate_dot_1_leg2 = t70 * t103;
-        let t105 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t74 * t70;
-        let t107 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = g1_vx_leg2 * t82 - minus_g1_vy_leg2 * t77;
-        let t111 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * t95 - minus_g1_vy_leg2 * t98;
-        let t121 = 2.9411764705882355 * t70;
-        let t125 = 0.8660254037844386 * t91 + 0.5 * t85;
-        let minus_rate_dot_2_leg2 = t121 * (c2_leg2 * t102 - t125);
-        let g2_wz_leg2 = t2 * t121;
-        let t134 = s2_leg2 * t101 + c2_leg2 * minus_rate_dot_2_leg2;
-        let t136 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t146 = 2.9411764705882355 * t125;
-        let t158 = twist[2] - rate_2_leg2;
-        let t167 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t168 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t167 * t168;
-        let t170 = t80 - t81;
-        let t173 = t76 + t75;
-        let t174 = t173 * twist[2];
-        let t176 = acceleration[0] - t170 * acceleration[2] - twist[2] * t174;
-        let t180 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t183 = t170 * twist[2];
-        let t185 = acceleration[1] + t173 * acceleration[2] - twist[2] * t183;
-        let g2_vy_leg3 = 1.4705882352941178 * t168;
-        let t189 = twist[1] + t174;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t168;
-        let t192 = twist[0] - t183;
-        let rate_2_leg3 = g2_vy_leg3 * t189 - minus_g2_vx_leg3 * t192;
-        let t195 = rate_2_leg3 * rate_2_leg3;
-        let t196 = 0.34 * t195;
-        let t197 = t167 * t176 - t180 * t185 + t196;
-        let rate_dot_1_leg3 = t168 * t197;
-        let t199 = g1_vx_leg3 * rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t180 * t168;
-        let t201 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t173 + g1_vx_leg3 * t170;
-        let t205 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t192 - minus_g1_vy_leg3 * t189;
-        let t215 = 2.9411764705882355 * t168;
-        let t218 = 0.5 * t185 - 0.8660254037844386 * t176;
-        let rate_dot_2_leg3 = t215 * (t218 - c2_leg3 * t196);
-        let g2_wz_leg3 = t2 * t215;
-        let t228 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t195;
-        let t230 = c2_leg3 * rate_dot_1_leg3;
-        let t240 = 2.9411764705882355 * t218;
-        let t252 = twist[2] - rate_2_leg3;
-        let t257 = 12.5 * t16;
-        let t258 = 12.5 * t7;
+        let t2 = 0.04 * s_phi;
+        let t3 = 0.04 * c_phi;
+        let t4 = t3 + t3;
+        let t5 = t4 * 0.8660254037844386;
+        let t6 = t2 - t5;
+        let t7 = t5 + t2;
+        let t8 = t6 + t7;
+        let t9 = t8 * twist[2];
+        let t12 = twist[2] * t9 - t4 * acceleration[2];
+        let g1_vy_leg1 = c2_leg1 / s2_leg1;
+        let t17 = t4 * twist[2];
+        let t20 = twist[2] * t17 + t8 * acceleration[2];
+        let t21 = acceleration[1] - t20;
+        let t22 = g1_vy_leg1 * t21;
+        let minus_g2_vy_leg1 = 2.9411764705882355 / s2_leg1;
+        let t24 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t24;
+        let t29 = t22 + minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 / s2_leg1);
+        let minus_rate_dot_1_leg1 = acceleration[0] + t12 - t29;
+        let t31 = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let g1_wz_leg1 = t4 - g1_vy_leg1 * t8;
+        let t34 = g1_wz_leg1 * minus_rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * t24 - (twist[0] - t17);
+        let t43 = 2.9411764705882355 * t21;
+        let t44 = 2.9411764705882355 * t29;
+        let t45 = g1_vy_leg1 * t44;
+        let t47 = 2.9411764705882355 * (t43 + t45);
+        let g2_wz_leg1 = t8 * minus_g2_vy_leg1;
+        let t54 = g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1);
+        let t63 = minus_rate_2_leg1 + twist[2];
+        let t71 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
+        let g1_vx_leg2 = t71 / s2_leg2;
+        let t75 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
+        let t78 = t8 * 0.8660254037844386;
+        let t79 = t78 + t3;
+        let t80 = t79 * twist[2];
+        let t82 = acceleration[1] + t6 * acceleration[2] + twist[2] * t80;
+        let t86 = t6 * twist[2];
+        let t88 = acceleration[0] + t79 * acceleration[2] - twist[2] * t86;
+        let t91 = 2.9411764705882355 / s2_leg2;
+        let g2_vx_leg2 = 0.8660254037844386 * t91;
+        let t93 = twist[0] + t80;
+        let g2_vy_leg2 = 1.4705882352941178 / s2_leg2;
+        let t96 = twist[1] + t86;
+        let rate_2_leg2 = g2_vx_leg2 * t93 + g2_vy_leg2 * t96;
+        let t99 = rate_2_leg2 * rate_2_leg2;
+        let t100 = 0.34 * t99;
+        let t101 = t75 * t82 - t71 * t88 - t100;
+        let minus_rate_dot_1_leg2 = t101 / s2_leg2;
+        let t103 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t75 / s2_leg2;
+        let t105 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = g1_vx_leg2 * t79 - minus_g1_vy_leg2 * t6;
+        let t109 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * t93 - minus_g1_vy_leg2 * t96;
+        let t122 = 0.8660254037844386 * t88 + 0.5 * t82;
+        let minus_rate_dot_2_leg2 = t91 * (c2_leg2 * t100 - t122);
+        let g2_wz_leg2 = t8 * t91;
+        let t131 = s2_leg2 * t99 + c2_leg2 * minus_rate_dot_2_leg2;
+        let t133 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t143 = 2.9411764705882355 * t122;
+        let t155 = twist[2] - rate_2_leg2;
+        let t164 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
+        let g1_vx_leg3 = t164 / s2_leg3;
+        let t166 = t78 - t3;
+        let t169 = t7 * twist[2];
+        let t171 = acceleration[0] - t166 * acceleration[2] - twist[2] * t169;
+        let t175 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
+        let t178 = t166 * twist[2];
+        let t180 = acceleration[1] + t7 * acceleration[2] - twist[2] * t178;
+        let g2_vy_leg3 = 1.4705882352941178 / s2_leg3;
+        let t184 = twist[1] + t169;
+        let t186 = 2.9411764705882355 / s2_leg3;
+        let minus_g2_vx_leg3 = 0.8660254037844386 * t186;
+        let t188 = twist[0] - t178;
+        let rate_2_leg3 = g2_vy_leg3 * t184 - minus_g2_vx_leg3 * t188;
+        let t191 = rate_2_leg3 * rate_2_leg3;
+        let t192 = 0.34 * t191;
+        let t193 = t164 * t171 - t175 * t180 + t192;
+        let rate_dot_1_leg3 = t193 / s2_leg3;
+        let t195 = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t175 / s2_leg3;
+        let t197 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t7 + g1_vx_leg3 * t166;
+        let t201 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * t188 - minus_g1_vy_leg3 * t184;
+        let t213 = 0.5 * t180 - 0.8660254037844386 * t171;
+        let rate_dot_2_leg3 = t186 * (t213 - c2_leg3 * t192);
+        let g2_wz_leg3 = t8 * t186;
+        let t223 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t191;
+        let t225 = c2_leg3 * rate_dot_1_leg3;
+        let t235 = 2.9411764705882355 * t213;
+        let t247 = twist[2] - rate_2_leg3;
+        let t252 = 12.5 * t20;
+        let t253 = 12.5 * t12;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, -rate_1_leg1,
-                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t41, -t39, minus_rate_dot_1_leg1,
-                0.0, 0.0, -t105, -t105, g1_vx_leg2 * rate_1_leg2,
+                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t44, -t43, minus_rate_dot_1_leg1,
+                0.0, 0.0, -t103, -t103, g1_vx_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t134 + g2_vx_leg2 * t136),
-                g2_vx_leg2 * t103 - g1_vx_leg2 * t146, -t105,
+                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t131 + g2_vx_leg2 * t133),
+                g2_vx_leg2 * t101 - g1_vx_leg2 * t143, -t103,
                 ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vx_leg2, t158), t199, t199, g1_vx_leg3 * rate_1_leg3,
+                -::overact::math::signed(g2_vx_leg2, t155), t195, t195, g1_vx_leg3 * rate_1_leg3,
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t228 - minus_g2_vx_leg3 * t230,
-                minus_g2_vx_leg3 * t197 - g1_vx_leg3 * t240, t199,
+                -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t223 - minus_g2_vx_leg3 * t225,
+                minus_g2_vx_leg3 * t193 - g1_vx_leg3 * t235, t195,
                 -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vx_leg3, t252), 0.0, -t257, t258, acceleration[0],
+                ::overact::math::signed(minus_g2_vx_leg3, t247), 0.0, -t252, t253, acceleration[0],
             ],
             [
-                -t27, -t27, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1,
-                minus_g2_vy_leg1 * minus_rate_dot_2_leg1, t48 - t42,
-                2.9411764705882355 * (t18 - minus_rate_dot_1_leg1), -t27,
-                ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(minus_g2_vy_leg1, t61), t107, t107,
+                -t31, -t31, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t47,
+                2.9411764705882355 * t31 - t45, 2.9411764705882355 * (t22 - minus_rate_dot_1_leg1),
+                -t31, ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
+                ::overact::math::signed(minus_g2_vy_leg1, t63), t105, t105,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t134 - g2_vy_leg2 * t136,
-                minus_g1_vy_leg2 * t146 + 1.4705882352941178 * minus_rate_dot_1_leg2, t107,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t131 - g2_vy_leg2 * t133,
+                minus_g1_vy_leg2 * t143 + 1.4705882352941178 * minus_rate_dot_1_leg2, t105,
                 ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vy_leg2, t158), -t201, -t201,
+                -::overact::math::signed(g2_vy_leg2, t155), -t197, -t197,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t230 - minus_g1_vy_leg3 * t228,
-                minus_g1_vy_leg3 * t240 - 1.4705882352941178 * rate_dot_1_leg3, -t201,
+                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t225 - minus_g1_vy_leg3 * t223,
+                minus_g1_vy_leg3 * t235 - 1.4705882352941178 * rate_dot_1_leg3, -t197,
                 ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg3, t252), 0.0, -t258, -t257, acceleration[1],
+                -::overact::math::signed(g2_vy_leg3, t247), 0.0, -t253, -t252, acceleration[1],
             ],
             [
-                -t30, -t30, g1_wz_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), -(g1_wz_leg1 * t41 + t2 * t48),
-                g1_wz_leg1 * t39 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1), -t30,
+                -t34, -t34, g1_wz_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, -(t8 * t47),
+                -(g1_wz_leg1 * t44 + g1_vy_leg1 * t54), g1_wz_leg1 * t43 + t54, -t34,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t61), -t111, -t111,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t63), -t109, -t109,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                -(g1_wz_leg2 * t134 + g2_wz_leg2 * t136), g2_wz_leg2 * t103 - g1_wz_leg2 * t146,
-                -t111, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t158), -t205, -t205,
+                -(g1_wz_leg2 * t131 + g2_wz_leg2 * t133), g2_wz_leg2 * t101 - g1_wz_leg2 * t143,
+                -t109, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t155), -t201, -t201,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t230 - minus_g1_wz_leg3 * t228,
-                minus_g1_wz_leg3 * t240 - g2_wz_leg3 * t197, -t205,
+                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t225 - minus_g1_wz_leg3 * t223,
+                minus_g1_wz_leg3 * t235 - g2_wz_leg3 * t193, -t201,
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t252), acceleration[2],
+                ::overact::math::signed(1.0 - g2_wz_leg3, t247), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -1422,7 +1401,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 337 operations (124 additions, 207 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 285 intermediates.
+    /// 328 operations (125 additions, 181 multiplications, 22 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 276 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1440,232 +1419,211 @@ impl Planar3Prr {
         ::overact::guard::reach(t7, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t7);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t9 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t9;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
         let minus_g1_vy_leg1 = t4 * g2_vy_leg1;
-        let t12 = minus_g1_vy_leg1 * actuator_accelerations[0];
-        let t13 = 0.08 * s_phi;
-        let g1_wz_leg1 = t13 * minus_g1_vy_leg1 + t2;
-        let t16 = g1_wz_leg1 * actuator_accelerations[0];
-        let t17 = minus_g1_vy_leg1 * actuator_velocities[0];
-        let t18 = g1_wz_leg1 * actuator_velocities[0];
+        let t11 = minus_g1_vy_leg1 * actuator_accelerations[0];
+        let t12 = 0.08 * s_phi;
+        let g1_wz_leg1 = t12 * minus_g1_vy_leg1 + t2;
+        let t15 = g1_wz_leg1 * actuator_accelerations[0];
+        let t16 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t17 = g1_wz_leg1 * actuator_velocities[0];
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t26 = 0.08 * minus_c23_leg2;
-        let t27 = t13 - t26;
+        let t24 = 0.08 * minus_c23_leg2;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t34 = 0.08 * minus_s23_leg2;
-        let t35 = t2 + t34;
-        let t36 = pose[1] + 0.15;
-        let t39 = 0.8660254037844386 * (pose[0] + t27 + 0.25980762113533157)
-            + 0.5 * (t36 - t35);
-        let minus_c2_leg2 = 2.9411764705882355 * t39;
-        let t42 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
-        ::overact::guard::reach(t42, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t42);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t46 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t39;
-        let t47 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t46 * t47;
-        let t56 = 0.8660254037844386 * (pose[0] + t26 + -0.25980762113533157)
-            - 0.5 * (t34 + t36);
-        let c2_leg3 = 2.9411764705882355 * t56;
-        let t59 = 1.0 - c2_leg3 * c2_leg3;
-        ::overact::guard::reach(t59, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t59);
+        let t31 = 0.08 * minus_s23_leg2;
+        let t32 = pose[1] + 0.15;
+        let t35 = 0.8660254037844386 * (pose[0] + t24 - 0.25980762113533157)
+            - 0.5 * (t31 + t32);
+        let c2_leg3 = 2.9411764705882355 * t35;
+        let t38 = 1.0 - c2_leg3 * c2_leg3;
+        ::overact::guard::reach(t38, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t38);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t63 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t56;
-        let t64 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = t63 * t64;
-        let t70 = 2.5471335405424664 * t39 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t70 * t47;
-        let t76 = 2.5471335405424664 * t56 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t76 * t64;
-        let t79 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
-            - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t83 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
-            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
-        let t84 = 1.0 / t83;
-        let t85 = t79 * t84;
-        let t87 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t79 * t85;
-        ::overact::guard::platform(t87, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t87, 2.580357142857142, "actuators")?;
-        let t88 = 1.0 / t87;
-        let t90 = 2.9411764705882355 * t47;
-        let minus_g2_wz_leg2 = t13 * t90;
-        let minus_g1_wz_leg2 = t39 * minus_g2_wz_leg2 - t2;
-        let t96 = 2.9411764705882355 * t64;
-        let minus_g2_wz_leg3 = t13 * t96;
-        let g1_wz_leg3 = t2 + t56 * minus_g2_wz_leg3;
-        let t105 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t42 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t35;
+        let g1_vy_leg3 = t42 / minus_s2_leg3;
+        let t44 = t12 - t24;
+        let t48 = t2 + t31;
+        let t51 = 0.8660254037844386 * (pose[0] + t44 + 0.25980762113533157)
+            + 0.5 * (t32 - t48);
+        let minus_c2_leg2 = 2.9411764705882355 * t51;
+        let t54 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t54, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t54);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
+        let t56 = 2.9411764705882355 / minus_s2_leg2;
+        let minus_g2_wz_leg2 = t12 * t56;
+        let minus_g1_wz_leg2 = t51 * minus_g2_wz_leg2 - t2;
+        let t60 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t62 = t12 * 2.9411764705882355;
+        let minus_g2_wz_leg3 = t62 / minus_s2_leg3;
+        let g1_wz_leg3 = t2 + t35 * minus_g2_wz_leg3;
+        let t66 = g1_wz_leg3 * actuator_velocities[2];
+        let t70 = 2.5471335405424664 * t51 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t70 / minus_s2_leg2;
+        let t72 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t76 = 2.5471335405424664 * t35 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t76 / minus_s2_leg3;
+        let t78 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t79 = actuator_velocities[0] + t72 + t78;
+        let t83 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t106 = t105 * t84;
-        let t115 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t79 * t106;
-        let t116 = t115 * t88;
-        let t118 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t105 * t106 - t115 * t116;
-        ::overact::guard::platform(t118, 0.0192, "actuators")?;
-        ::overact::guard::platform(t118, 0.0192, "actuators")?;
-        let t119 = 1.0 / t118;
-        let t120 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t122 = g1_wz_leg3 * actuator_velocities[2];
-        let t124 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t126 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t127 = actuator_velocities[0] + t124 + t126;
-        let t130 = g1_vy_leg3 * actuator_velocities[2];
-        let t131 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t135 = t130 - (t17 + t131) + t127 * t85;
-        let rate_3_leg1 = t119 * (t18 - t120 + t122 + t127 * t106 - t116 * t135);
-        let t139 = t34 * rate_3_leg1;
-        let t140 = rate_3_leg1 * t139;
-        let t142 = t26 * rate_3_leg1;
-        let t143 = rate_3_leg1 * t142;
-        let g2_vx_leg3 = 2.5471335405424664 * t64;
-        let t150 = t88 * t135 - t116 * rate_3_leg1;
-        let t154 = t127 * t84 + t85 * t150 + t106 * rate_3_leg1;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t64;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t154 + t139)
-            + minus_g2_vy_leg3 * (t150 + t142);
-        let t161 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t64 * (t63 * t140 - t76 * t143 + 0.34 * t161);
-        let t165 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t167 = t13 * rate_3_leg1;
-        let t168 = rate_3_leg1 * t167;
-        let t169 = t35 * rate_3_leg1;
-        let t170 = rate_3_leg1 * t169;
-        let t171 = t170 - t140;
-        let rate_2_leg1 = g2_vy_leg1 * (t150 - t167);
-        let t178 = rate_2_leg1 * rate_2_leg1 * (0.34 * t9);
-        let minus_rate_dot_1_leg1 = t168 - minus_g1_vy_leg1 * t171 + t178;
-        let t180 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t182 = t27 * rate_3_leg1;
-        let t183 = rate_3_leg1 * t182;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t47;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t47;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t169 - t154)
-            + minus_g2_vy_leg2 * (t150 + t182);
-        let t194 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let rate_dot_1_leg2 = t47 * (t70 * t183 - t46 * t170 - 0.34 * t194);
-        let t198 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t205 = t180 + minus_g1_vx_leg2 * t198 + minus_g1_vx_leg3 * t165;
-        let t207 = g1_vy_leg3 * t165
-            - (minus_g1_vy_leg1 * t180 + minus_g1_vy_leg2 * t198) + t85 * t205;
-        let rate_dot_3_leg1 = t119
-            * (g1_wz_leg1 * t180 - minus_g1_wz_leg2 * t198 + g1_wz_leg3 * t165
-                + t106 * t205 - t116 * t207);
-        let t220 = t88 * t207 - t116 * rate_dot_3_leg1;
-        let t222 = t171 + t13 * rate_dot_3_leg1;
-        let t223 = t220 - t222;
-        let t224 = 2.9411764705882355 * t223;
-        let t225 = minus_g1_vy_leg1 * t223;
-        let t226 = t178 + t225;
-        let t227 = 2.9411764705882355 * t226;
-        let t228 = minus_g1_vy_leg1 * t227;
-        let rate_dot_2_leg1 = minus_s2_leg1 * (t224 + t228);
-        let minus_g2_wz_leg1 = t13 * g2_vy_leg1;
-        let t234 = 2.9411764705882355 * t12;
-        let t247 = rate_3_leg1 - rate_2_leg1;
-        let t251 = minus_g1_vx_leg2 * actuator_accelerations[1];
-        let t252 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t253 = minus_g1_wz_leg2 * actuator_accelerations[1];
-        let t259 = t168 - t2 * rate_dot_3_leg1;
-        let t261 = t226 + actuator_accelerations[0] + t259;
-        let t268 = 0.5 * (t220 + t27 * rate_dot_3_leg1 + t170);
-        let t269 = 0.8660254037844386 * (t35 * rate_dot_3_leg1 - t261 - t183) + t268;
-        let minus_rate_dot_2_leg2 = t90 * (t269 + t39 * t194);
-        let t276 = minus_c2_leg2 * actuator_accelerations[1];
-        let t280 = minus_s2_leg2 * t194 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t289 = 2.9411764705882355 * t269;
-        let t291 = minus_s2_leg2 * actuator_accelerations[1];
-        let t303 = minus_rate_2_leg2 + rate_3_leg1;
-        let t308 = minus_g1_vx_leg3 * actuator_accelerations[2];
-        let t309 = g1_vy_leg3 * actuator_accelerations[2];
-        let t310 = g1_wz_leg3 * actuator_accelerations[2];
-        let t320 = 0.8660254037844386 * (t261 + t34 * rate_dot_3_leg1 + t143) + t268
-            - 0.8660254037844386 * t259;
-        let minus_rate_dot_2_leg3 = t96 * (t320 - t56 * t161);
-        let t327 = c2_leg3 * actuator_accelerations[2];
-        let t331 = minus_s2_leg3 * t161 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t340 = 2.9411764705882355 * t320;
-        let t342 = minus_s2_leg3 * actuator_accelerations[2];
-        let t354 = minus_rate_2_leg3 + rate_3_leg1;
-        let t359 = 12.5 * t222;
-        let t360 = 12.5 * t259;
+        let t87 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+            + minus_g1_vx_leg3 * minus_g1_vx_leg3;
+        ::overact::guard::platform(t87, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t87, 2.5803571428571423, "actuators")?;
+        let t88 = t83 / t87;
+        let t93 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t51;
+        let minus_g1_vy_leg2 = t93 / minus_s2_leg2;
+        let t103 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+            - minus_g1_vx_leg3 * g1_vy_leg3;
+        let t105 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t103 * t88;
+        let t111 = t103 / t87;
+        let t113 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t103 * t111;
+        ::overact::guard::platform(t113, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t113, 2.580357142857142, "actuators")?;
+        let t114 = t105 / t113;
+        let t115 = g1_vy_leg3 * actuator_velocities[2];
+        let t116 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t120 = t115 - (t16 + t116) + t79 * t111;
+        let t131 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t83 * t88 - t105 * t114;
+        ::overact::guard::platform(t131, 0.0192, "actuators")?;
+        ::overact::guard::platform(t131, 0.0192, "actuators")?;
+        let rate_3_leg1 = (t17 - t60 + t66 + t79 * t88 - t114 * t120) / t131;
+        let t133 = t31 * rate_3_leg1;
+        let t134 = rate_3_leg1 * t133;
+        let t136 = t24 * rate_3_leg1;
+        let t137 = rate_3_leg1 * t136;
+        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
+        let t141 = minus_g2_vy_leg3 + minus_g2_vy_leg3;
+        let g2_vx_leg3 = 0.8660254037844386 * t141;
+        let t146 = t120 / t113 - t114 * rate_3_leg1;
+        let t150 = t79 / t87 + t111 * t146 + t88 * rate_3_leg1;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t150 + t133)
+            + minus_g2_vy_leg3 * (t146 + t136);
+        let t156 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = (t42 * t134 - t76 * t137 + 0.34 * t156)
+            / minus_s2_leg3;
+        let t160 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t162 = t12 * rate_3_leg1;
+        let t163 = rate_3_leg1 * t162;
+        let t164 = t48 * rate_3_leg1;
+        let t165 = rate_3_leg1 * t164;
+        let t166 = t165 - t134;
+        let rate_2_leg1 = g2_vy_leg1 * (t146 - t162);
+        let t173 = rate_2_leg1 * rate_2_leg1 * (0.34 / minus_s2_leg1);
+        let minus_rate_dot_1_leg1 = t163 - minus_g1_vy_leg1 * t166 + t173;
+        let t175 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t177 = t44 * rate_3_leg1;
+        let t178 = rate_3_leg1 * t177;
+        let minus_g2_vx_leg2 = 2.5471335405424664 / minus_s2_leg2;
+        let minus_g2_vy_leg2 = 1.4705882352941178 / minus_s2_leg2;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t164 - t150)
+            + minus_g2_vy_leg2 * (t146 + t177);
+        let t189 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = (t70 * t178 - t93 * t165 - 0.34 * t189) / minus_s2_leg2;
+        let t193 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t200 = t175 + minus_g1_vx_leg2 * t193 + minus_g1_vx_leg3 * t160;
+        let t202 = g1_vy_leg3 * t160
+            - (minus_g1_vy_leg1 * t175 + minus_g1_vy_leg2 * t193) + t111 * t200;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t175 - minus_g1_wz_leg2 * t193
+            + g1_wz_leg3 * t160 + t88 * t200 - t114 * t202) / t131;
+        let t215 = t202 / t113 - t114 * rate_dot_3_leg1;
+        let t217 = t166 + t12 * rate_dot_3_leg1;
+        let t218 = t215 - t217;
+        let t219 = 2.9411764705882355 * t218;
+        let t220 = minus_g1_vy_leg1 * t218;
+        let t221 = t173 + t220;
+        let t222 = 2.9411764705882355 * t221;
+        let t223 = minus_g1_vy_leg1 * t222;
+        let t225 = 2.9411764705882355 * (t219 + t223);
+        let t227 = 2.9411764705882355 * t11;
+        let minus_g2_wz_leg1 = t62 / minus_s2_leg1;
+        let t240 = rate_3_leg1 - rate_2_leg1;
+        let t244 = minus_g1_vx_leg2 * actuator_accelerations[1];
+        let t245 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t246 = minus_g1_wz_leg2 * actuator_accelerations[1];
+        let t252 = t163 - t2 * rate_dot_3_leg1;
+        let t254 = t221 + actuator_accelerations[0] + t252;
+        let t261 = 0.5 * (t215 + t44 * rate_dot_3_leg1 + t165);
+        let t262 = 0.8660254037844386 * (t48 * rate_dot_3_leg1 - t254 - t178) + t261;
+        let minus_rate_dot_2_leg2 = t56 * (t262 + t51 * t189);
+        let t269 = minus_c2_leg2 * actuator_accelerations[1];
+        let t273 = minus_s2_leg2 * t189 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t282 = 2.9411764705882355 * t262;
+        let t295 = minus_rate_2_leg2 + rate_3_leg1;
+        let t300 = minus_g1_vx_leg3 * actuator_accelerations[2];
+        let t301 = g1_vy_leg3 * actuator_accelerations[2];
+        let t302 = g1_wz_leg3 * actuator_accelerations[2];
+        let t312 = 0.8660254037844386 * (t254 + t31 * rate_dot_3_leg1 + t137) + t261
+            - 0.8660254037844386 * t252;
+        let minus_rate_dot_2_leg3 = t141 * (t312 - t35 * t156);
+        let t319 = c2_leg3 * actuator_accelerations[2];
+        let t323 = minus_s2_leg3 * t156 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t332 = 2.9411764705882355 * t312;
+        let t345 = minus_rate_2_leg3 + rate_3_leg1;
+        let t350 = 12.5 * t217;
+        let t351 = 12.5 * t252;
         Ok([
             [
                 -actuator_accelerations[0], -actuator_accelerations[0], -actuator_velocities[0],
-                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t227, -t224,
-                -actuator_accelerations[0], 0.0, 0.0, -t251, -t251, -t124,
+                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t222, -t219,
+                -actuator_accelerations[0], 0.0, 0.0, -t244, -t244, -t72,
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -minus_g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vx_leg2 * t276 - minus_g1_vx_leg2 * t280,
-                minus_g1_vx_leg2 * t289 - minus_g2_vx_leg2 * t291, -t251,
+                minus_g2_vx_leg2 * t269 - minus_g1_vx_leg2 * t273,
+                minus_g1_vx_leg2 * t282 - 2.5471335405424664 * actuator_accelerations[1], -t244,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t303), -t308, -t308, -t126,
+                ::overact::math::signed(minus_g2_vx_leg2, t295), -t300, -t300, -t78,
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]),
                 -minus_g1_vx_leg3, -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                g2_vx_leg3 * t327 - minus_g1_vx_leg3 * t331,
-                minus_g1_vx_leg3 * t340 + g2_vx_leg3 * t342, -t308,
+                g2_vx_leg3 * t319 - minus_g1_vx_leg3 * t323,
+                minus_g1_vx_leg3 * t332 + 2.5471335405424664 * actuator_accelerations[2], -t300,
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t354), 0.0, -t359, t360, -t261,
+                -::overact::math::signed(g2_vx_leg3, t345), 0.0, -t350, t351, -t254,
             ],
             [
-                -t12, -t12, -t17,
+                -t11, -t11, -t16,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
-                -minus_g1_vy_leg1, g2_vy_leg1 * rate_dot_2_leg1, t234 - t228,
-                2.9411764705882355 * (actuator_accelerations[0] - t225), -t12,
+                -minus_g1_vy_leg1, t225, t227 - t223,
+                2.9411764705882355 * (actuator_accelerations[0] - t220), -t11,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t247), -t252, -t252, -t131,
+                -::overact::math::signed(g2_vy_leg1, t240), -t245, -t245, -t116,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vy_leg2 * t276 - minus_g1_vy_leg2 * t280,
-                minus_g1_vy_leg2 * t289 - 1.4705882352941178 * actuator_accelerations[1], -t252,
+                minus_g2_vy_leg2 * t269 - minus_g1_vy_leg2 * t273,
+                minus_g1_vy_leg2 * t282 - 1.4705882352941178 * actuator_accelerations[1], -t245,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t303), t309, t309, t130,
+                ::overact::math::signed(minus_g2_vy_leg2, t295), t301, t301, t115,
                 ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), g1_vy_leg3,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t331 - minus_g2_vy_leg3 * t327,
-                -(g1_vy_leg3 * t340 + 1.4705882352941178 * actuator_accelerations[2]), t309,
+                g1_vy_leg3 * t323 - minus_g2_vy_leg3 * t319,
+                -(g1_vy_leg3 * t332 + 1.4705882352941178 * actuator_accelerations[2]), t301,
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t354), 0.0, -t360, -t359, t220,
+                ::overact::math::signed(minus_g2_vy_leg3, t345), 0.0, -t351, -t350, t215,
             ],
             [
-                t16, t16, t18, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
-                g1_wz_leg1, -(minus_g2_wz_leg1 * rate_dot_2_leg1), g1_wz_leg1 * t227 - t13 * t234,
-                g1_wz_leg1 * t224
-                    - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
-                t16,
+                t15, t15, t17, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
+                g1_wz_leg1, -(t12 * t225), g1_wz_leg1 * t222 - t12 * t227,
+                g1_wz_leg1 * t219 - actuator_accelerations[0] * t62, t15,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t247),
-                -t253,
-                -t253,
-                -t120,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t240), -t246, -t246, -t60,
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
-                -minus_g1_wz_leg2,
-                minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_wz_leg2 * t276 - minus_g1_wz_leg2 * t280,
-                minus_g1_wz_leg2 * t289 - minus_g2_wz_leg2 * t291,
-                -t253,
+                -minus_g1_wz_leg2, minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                minus_g2_wz_leg2 * t269 - minus_g1_wz_leg2 * t273,
+                minus_g1_wz_leg2 * t282 - actuator_accelerations[1] * t62, -t246,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t303),
-                t310,
-                t310,
-                t122,
-                ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]),
-                g1_wz_leg3,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t295), t302, t302, t66,
+                ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg3,
                 minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t331 - minus_g2_wz_leg3 * t327,
-                -(minus_g2_wz_leg3 * t342 + g1_wz_leg3 * t340),
-                t310,
+                g1_wz_leg3 * t323 - minus_g2_wz_leg3 * t319,
+                -(actuator_accelerations[2] * t62 + g1_wz_leg3 * t332), t302,
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t354),
-                rate_dot_3_leg1,
-                c_phi * t220 + s_phi * t261,
-                c_phi * t261 - s_phi * t220,
-                0.0,
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t345), rate_dot_3_leg1,
+                c_phi * t215 + s_phi * t254, c_phi * t254 - s_phi * t215, 0.0,
             ],
         ])
     }
@@ -2358,7 +2316,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 223 operations (75 additions, 145 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 181 intermediates.
+    /// 220 operations (76 additions, 134 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 178 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2381,90 +2339,88 @@ impl Planar3Prr {
         ::overact::guard::reach(t25, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t27 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t27;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
         let minus_g1_vy_leg1 = t22 * g2_vy_leg1;
-        let t30 = acceleration[1] - t7;
-        let t31 = minus_g1_vy_leg1 * t30;
-        let t33 = twist[1] - t9;
-        let rate_2_leg1 = g2_vy_leg1 * t33;
-        let t35 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t12 + acceleration[0] + t31 + t35 * (0.34 * t27);
+        let t29 = acceleration[1] - t7;
+        let t30 = minus_g1_vy_leg1 * t29;
+        let t32 = twist[1] - t9;
+        let rate_2_leg1 = g2_vy_leg1 * t32;
+        let t34 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t12 + acceleration[0] + t30
+            + t34 * (0.1156 * g2_vy_leg1);
         let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t46 = 0.08 * minus_c23_leg2;
-        let t47 = t5 - t46;
+        let t45 = 0.08 * minus_c23_leg2;
+        let t46 = t5 - t45;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t54 = 0.08 * minus_s23_leg2;
-        let t55 = t2 + t54;
-        let t56 = pose[1] + 0.15;
-        let t59 = 0.8660254037844386 * (pose[0] + t47 + 0.25980762113533157)
-            + 0.5 * (t56 - t55);
-        let t63 = 8.650519031141869 * (0.1156 - t59 * t59);
-        ::overact::guard::reach(t63, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t63);
+        let t53 = 0.08 * minus_s23_leg2;
+        let t54 = t2 + t53;
+        let t55 = pose[1] + 0.15;
+        let t58 = 0.8660254037844386 * (pose[0] + t46 + 0.25980762113533157)
+            + 0.5 * (t55 - t54);
+        let t62 = 8.650519031141869 * (0.1156 - t58 * t58);
+        ::overact::guard::reach(t62, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t66 = 2.5471335405424664 * t59 - 0.5 * minus_s2_leg2;
-        let t67 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t66 * t67;
-        let t71 = t47 * twist[2];
-        let t73 = acceleration[0] + t55 * acceleration[2] - twist[2] * t71;
-        let t77 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t59;
-        let t80 = t55 * twist[2];
-        let t82 = acceleration[1] + t47 * acceleration[2] + twist[2] * t80;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t67;
-        let t86 = twist[0] + t80;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t67;
-        let t89 = twist[1] + t71;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t86 + minus_g2_vy_leg2 * t89;
-        let t92 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t94 = t66 * t73 + t77 * t82 + 0.34 * t92;
-        let minus_rate_dot_1_leg2 = t67 * t94;
-        let minus_g1_vy_leg2 = t77 * t67;
-        let t99 = 2.9411764705882355 * t67;
-        let minus_g2_wz_leg2 = t5 * t99;
-        let minus_g1_wz_leg2 = t59 * minus_g2_wz_leg2 - t2;
-        let t109 = 0.8660254037844386 * (pose[0] + t46 + -0.25980762113533157)
-            - 0.5 * (t54 + t56);
-        let t113 = 8.650519031141869 * (0.1156 - t109 * t109);
-        ::overact::guard::reach(t113, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t113);
+        let t65 = 2.5471335405424664 * t58 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t65 / minus_s2_leg2;
+        let t69 = t46 * twist[2];
+        let t71 = acceleration[0] + t54 * acceleration[2] - twist[2] * t69;
+        let t75 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t58;
+        let t78 = t54 * twist[2];
+        let t80 = acceleration[1] + t46 * acceleration[2] + twist[2] * t78;
+        let t83 = 2.9411764705882355 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 0.8660254037844386 * t83;
+        let t85 = twist[0] + t78;
+        let minus_g2_vy_leg2 = 0.5 * t83;
+        let t88 = twist[1] + t69;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t85 + minus_g2_vy_leg2 * t88;
+        let t91 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t93 = t65 * t71 + t75 * t80 + 0.34 * t91;
+        let minus_rate_dot_1_leg2 = t93 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t75 / minus_s2_leg2;
+        let minus_g2_wz_leg2 = t5 * t83;
+        let minus_g1_wz_leg2 = t58 * minus_g2_wz_leg2 - t2;
+        let t107 = 0.8660254037844386 * (pose[0] + t45 - 0.25980762113533157)
+            - 0.5 * (t53 + t55);
+        let t111 = 8.650519031141869 * (0.1156 - t107 * t107);
+        ::overact::guard::reach(t111, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t111);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t116 = 2.5471335405424664 * t109 - 0.5 * minus_s2_leg3;
-        let t117 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t116 * t117;
-        let t121 = t46 * twist[2];
-        let t123 = acceleration[0] - t54 * acceleration[2] - twist[2] * t121;
-        let t127 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t109;
-        let t130 = t54 * twist[2];
-        let t132 = acceleration[1] + t46 * acceleration[2] - twist[2] * t130;
-        let g2_vx_leg3 = 2.5471335405424664 * t117;
-        let t136 = twist[0] - t130;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t117;
-        let t139 = twist[1] + t121;
-        let rate_2_leg3 = g2_vx_leg3 * t136 - minus_g2_vy_leg3 * t139;
-        let t142 = rate_2_leg3 * rate_2_leg3;
-        let t144 = t116 * t123 - t127 * t132 + 0.34 * t142;
-        let minus_rate_dot_1_leg3 = t117 * t144;
-        let g1_vy_leg3 = t127 * t117;
-        let t149 = 2.9411764705882355 * t117;
-        let minus_g2_wz_leg3 = t5 * t149;
-        let g1_wz_leg3 = t2 + t109 * minus_g2_wz_leg3;
-        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t33;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t86 + minus_g1_vy_leg2 * t89;
-        let rate_1_leg3 = g1_vy_leg3 * t139 - minus_g1_vx_leg3 * t136;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t30 + t22 * t35);
+        let t114 = 2.5471335405424664 * t107 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t114 / minus_s2_leg3;
+        let t118 = t45 * twist[2];
+        let t120 = acceleration[0] - t53 * acceleration[2] - twist[2] * t118;
+        let t124 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t107;
+        let t127 = t53 * twist[2];
+        let t129 = acceleration[1] + t45 * acceleration[2] - twist[2] * t127;
+        let g2_vx_leg3 = 2.5471335405424664 / minus_s2_leg3;
+        let t133 = twist[0] - t127;
+        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
+        let t136 = twist[1] + t118;
+        let rate_2_leg3 = g2_vx_leg3 * t133 - minus_g2_vy_leg3 * t136;
+        let t139 = rate_2_leg3 * rate_2_leg3;
+        let t141 = t114 * t120 - t124 * t129 + 0.34 * t139;
+        let minus_rate_dot_1_leg3 = t141 / minus_s2_leg3;
+        let g1_vy_leg3 = t124 / minus_s2_leg3;
+        let t146 = minus_g2_vy_leg3 + minus_g2_vy_leg3;
+        let minus_g2_wz_leg3 = t5 * t146;
+        let g1_wz_leg3 = t2 + t107 * minus_g2_wz_leg3;
+        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t32;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t85 + minus_g1_vy_leg2 * t88;
+        let rate_1_leg3 = g1_vy_leg3 * t136 - minus_g1_vx_leg3 * t133;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t29 + t22 * t34);
         let minus_g2_wz_leg1 = t5 * g2_vy_leg1;
-        let t188 = 0.8660254037844386 * t73 + 0.5 * t82;
-        let minus_rate_dot_2_leg2 = t99 * (t188 + t59 * t92);
-        let t197 = 0.5 * t132 - 0.8660254037844386 * t123;
-        let minus_rate_dot_2_leg3 = t149 * (t197 - t109 * t142);
-        let t204 = 2.9411764705882355 * t30;
-        let t211 = 2.9411764705882355 * t188;
-        let t221 = 2.9411764705882355 * t197;
-        let t239 = twist[2] - rate_2_leg1;
-        let t243 = minus_rate_2_leg2 + twist[2];
-        let t248 = twist[2] - rate_2_leg3;
+        let t185 = 0.8660254037844386 * t71 + 0.5 * t80;
+        let minus_rate_dot_2_leg2 = t83 * (t185 + t58 * t91);
+        let t194 = 0.5 * t129 - 0.8660254037844386 * t120;
+        let minus_rate_dot_2_leg3 = t146 * (t194 - t107 * t139);
+        let t201 = 2.9411764705882355 * t29;
+        let t208 = 2.9411764705882355 * t185;
+        let t218 = 2.9411764705882355 * t194;
+        let t236 = twist[2] - rate_2_leg1;
+        let t240 = minus_rate_2_leg2 + twist[2];
+        let t245 = twist[2] - rate_2_leg3;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
@@ -2474,13 +2430,13 @@ impl Planar3Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -1.0, -minus_g1_vx_leg2,
                 -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t204,
-                minus_g1_vx_leg2 * t211 + minus_g2_vx_leg2 * t94,
-                minus_g1_vx_leg3 * t221 - g2_vx_leg3 * t144, 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t201,
+                minus_g1_vx_leg2 * t208 + minus_g2_vx_leg2 * t93,
+                minus_g1_vx_leg3 * t218 - g2_vx_leg3 * t141, 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t243),
-                -::overact::math::signed(g2_vx_leg3, t248),
+                ::overact::math::signed(minus_g2_vx_leg2, t240),
+                -::overact::math::signed(g2_vx_leg3, t245),
             ],
             [
                 0.0, -t13, -t8, acceleration[1], minus_g1_vy_leg1 * minus_rate_dot_1_leg1,
@@ -2492,15 +2448,15 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(2.9411764705882355 * (t31 + minus_rate_dot_1_leg1)),
-                minus_g1_vy_leg2 * t211 + 1.4705882352941178 * minus_rate_dot_1_leg2,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t221,
+                -(2.9411764705882355 * (t30 + minus_rate_dot_1_leg1)),
+                minus_g1_vy_leg2 * t208 + 1.4705882352941178 * minus_rate_dot_1_leg2,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t218,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t239),
-                ::overact::math::signed(minus_g2_vy_leg2, t243),
-                ::overact::math::signed(minus_g2_vy_leg3, t248),
+                -::overact::math::signed(g2_vy_leg1, t236),
+                ::overact::math::signed(minus_g2_vy_leg2, t240),
+                ::overact::math::signed(minus_g2_vy_leg3, t245),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -2513,16 +2469,16 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg1, -minus_g1_wz_leg2,
                 g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t204
+                g1_wz_leg1 * t201
                     + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_wz_leg2 * t211 + minus_g2_wz_leg2 * t94,
-                minus_g2_wz_leg3 * t144 - g1_wz_leg3 * t221,
+                minus_g1_wz_leg2 * t208 + minus_g2_wz_leg2 * t93,
+                minus_g2_wz_leg3 * t141 - g1_wz_leg3 * t218,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t239),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t243),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t248),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t236),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t240),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t245),
             ],
         ])
     }
@@ -2537,7 +2493,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 199 operations (61 additions, 135 multiplications, 3 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 160 intermediates.
+    /// 196 operations (61 additions, 124 multiplications, 11 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 157 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2560,80 +2516,77 @@ impl Planar3Prr {
         let t9 = t5 * twist[2];
         let t12 = twist[2] * t9 - t2 * acceleration[2];
         let t13 = 12.5 * t12;
-        let t23 = 1.0 / s2_leg1;
-        let g1_vy_leg1 = c2_leg1 * t23;
-        let t25 = acceleration[1] - t7;
-        let t26 = g1_vy_leg1 * t25;
-        let minus_g2_vy_leg1 = 2.9411764705882355 * t23;
-        let t29 = twist[1] - t9;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t29;
-        let minus_rate_dot_1_leg1 = t12 + acceleration[0] - t26
-            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 * t23);
+        let g1_vy_leg1 = c2_leg1 / s2_leg1;
+        let t24 = acceleration[1] - t7;
+        let t25 = g1_vy_leg1 * t24;
+        let minus_g2_vy_leg1 = 2.9411764705882355 / s2_leg1;
+        let t28 = twist[1] - t9;
+        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t28;
+        let minus_rate_dot_1_leg1 = t12 + acceleration[0] - t25
+            - minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 / s2_leg1);
         let g1_wz_leg1 = t2 - g1_vy_leg1 * t5;
-        let t43 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let t44 = 1.0 / s2_leg2;
-        let g1_vx_leg2 = t43 * t44;
-        let t48 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t49 = 0.04 * s_phi;
-        let t50 = 0.06928203230275509 * c_phi;
-        let t51 = t49 - t50;
-        let t54 = 0.06928203230275509 * s_phi;
-        let t55 = 0.04 * c_phi;
-        let t56 = t54 + t55;
-        let t57 = t56 * twist[2];
-        let t59 = acceleration[1] + t51 * acceleration[2] + twist[2] * t57;
-        let t63 = t51 * twist[2];
-        let t65 = acceleration[0] + t56 * acceleration[2] - twist[2] * t63;
-        let g2_vx_leg2 = 2.5471335405424664 * t44;
-        let t69 = twist[0] + t57;
-        let g2_vy_leg2 = 1.4705882352941178 * t44;
-        let t72 = twist[1] + t63;
-        let rate_2_leg2 = g2_vx_leg2 * t69 + g2_vy_leg2 * t72;
-        let t76 = 0.34 * (rate_2_leg2 * rate_2_leg2);
-        let t77 = t48 * t59 - t43 * t65 - t76;
-        let minus_rate_dot_1_leg2 = t44 * t77;
-        let minus_g1_vy_leg2 = t48 * t44;
-        let g1_wz_leg2 = g1_vx_leg2 * t56 - minus_g1_vy_leg2 * t51;
-        let t90 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let t91 = 1.0 / s2_leg3;
-        let g1_vx_leg3 = t90 * t91;
-        let t93 = t54 - t55;
-        let t96 = t50 + t49;
-        let t97 = t96 * twist[2];
-        let t99 = acceleration[0] - t93 * acceleration[2] - twist[2] * t97;
-        let t103 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t106 = t93 * twist[2];
-        let t108 = acceleration[1] + t96 * acceleration[2] - twist[2] * t106;
-        let g2_vy_leg3 = 1.4705882352941178 * t91;
-        let t112 = twist[1] + t97;
-        let minus_g2_vx_leg3 = 2.5471335405424664 * t91;
-        let t115 = twist[0] - t106;
-        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t115;
-        let t119 = 0.34 * (rate_2_leg3 * rate_2_leg3);
-        let t120 = t90 * t99 - t103 * t108 + t119;
-        let rate_dot_1_leg3 = t91 * t120;
-        let minus_g1_vy_leg3 = t103 * t91;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t96 + g1_vx_leg3 * t93;
-        let t129 = g1_vy_leg1 * t29;
-        let rate_1_leg1 = t129 - (twist[0] - t3);
-        let rate_1_leg2 = g1_vx_leg2 * t69 - minus_g1_vy_leg2 * t72;
-        let rate_1_leg3 = g1_vx_leg3 * t115 - minus_g1_vy_leg3 * t112;
-        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t25 + minus_rate_2_leg1 * t129);
+        let t42 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
+        let g1_vx_leg2 = t42 / s2_leg2;
+        let t46 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
+        let t47 = 0.04 * s_phi;
+        let t48 = t2 * 0.8660254037844386;
+        let t49 = t47 - t48;
+        let t52 = t5 * 0.8660254037844386;
+        let t53 = 0.04 * c_phi;
+        let t54 = t52 + t53;
+        let t55 = t54 * twist[2];
+        let t57 = acceleration[1] + t49 * acceleration[2] + twist[2] * t55;
+        let t61 = t49 * twist[2];
+        let t63 = acceleration[0] + t54 * acceleration[2] - twist[2] * t61;
+        let t66 = 2.9411764705882355 / s2_leg2;
+        let g2_vx_leg2 = 0.8660254037844386 * t66;
+        let t68 = twist[0] + t55;
+        let g2_vy_leg2 = 0.5 * t66;
+        let t71 = twist[1] + t61;
+        let rate_2_leg2 = g2_vx_leg2 * t68 + g2_vy_leg2 * t71;
+        let t75 = 0.34 * (rate_2_leg2 * rate_2_leg2);
+        let t76 = t46 * t57 - t42 * t63 - t75;
+        let minus_rate_dot_1_leg2 = t76 / s2_leg2;
+        let minus_g1_vy_leg2 = t46 / s2_leg2;
+        let g1_wz_leg2 = g1_vx_leg2 * t54 - minus_g1_vy_leg2 * t49;
+        let t89 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
+        let g1_vx_leg3 = t89 / s2_leg3;
+        let t91 = t52 - t53;
+        let t94 = t48 + t47;
+        let t95 = t94 * twist[2];
+        let t97 = acceleration[0] - t91 * acceleration[2] - twist[2] * t95;
+        let t101 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
+        let t104 = t91 * twist[2];
+        let t106 = acceleration[1] + t94 * acceleration[2] - twist[2] * t104;
+        let t109 = 2.9411764705882355 / s2_leg3;
+        let g2_vy_leg3 = 0.5 * t109;
+        let t111 = twist[1] + t95;
+        let minus_g2_vx_leg3 = 0.8660254037844386 * t109;
+        let t114 = twist[0] - t104;
+        let rate_2_leg3 = g2_vy_leg3 * t111 - minus_g2_vx_leg3 * t114;
+        let t118 = 0.34 * (rate_2_leg3 * rate_2_leg3);
+        let t119 = t89 * t97 - t101 * t106 + t118;
+        let rate_dot_1_leg3 = t119 / s2_leg3;
+        let minus_g1_vy_leg3 = t101 / s2_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t94 + g1_vx_leg3 * t91;
+        let t128 = g1_vy_leg1 * t28;
+        let rate_1_leg1 = t128 - (twist[0] - t3);
+        let rate_1_leg2 = g1_vx_leg2 * t68 - minus_g1_vy_leg2 * t71;
+        let rate_1_leg3 = g1_vx_leg3 * t114 - minus_g1_vy_leg3 * t111;
+        let minus_rate_dot_2_leg1 = minus_g2_vy_leg1 * (t24 + minus_rate_2_leg1 * t128);
         let g2_wz_leg1 = t5 * minus_g2_vy_leg1;
-        let t161 = 2.9411764705882355 * t44;
-        let t165 = 0.8660254037844386 * t65 + 0.5 * t59;
-        let minus_rate_dot_2_leg2 = t161 * (c2_leg2 * t76 - t165);
-        let g2_wz_leg2 = t5 * t161;
-        let t172 = 2.9411764705882355 * t91;
-        let t175 = 0.5 * t108 - 0.8660254037844386 * t99;
-        let rate_dot_2_leg3 = t172 * (t175 - c2_leg3 * t119);
-        let g2_wz_leg3 = t5 * t172;
-        let t183 = 2.9411764705882355 * t25;
-        let t191 = 2.9411764705882355 * t165;
-        let t201 = 2.9411764705882355 * t175;
-        let t218 = minus_rate_2_leg1 + twist[2];
-        let t222 = twist[2] - rate_2_leg2;
-        let t227 = twist[2] - rate_2_leg3;
+        let t163 = 0.8660254037844386 * t63 + 0.5 * t57;
+        let minus_rate_dot_2_leg2 = t66 * (c2_leg2 * t75 - t163);
+        let g2_wz_leg2 = t5 * t66;
+        let t172 = 0.5 * t106 - 0.8660254037844386 * t97;
+        let rate_dot_2_leg3 = t109 * (t172 - c2_leg3 * t118);
+        let g2_wz_leg3 = t5 * t109;
+        let t180 = 2.9411764705882355 * t24;
+        let t188 = 2.9411764705882355 * t163;
+        let t198 = 2.9411764705882355 * t172;
+        let t215 = minus_rate_2_leg1 + twist[2];
+        let t219 = twist[2] - rate_2_leg2;
+        let t224 = twist[2] - rate_2_leg3;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
@@ -2642,12 +2595,12 @@ impl Planar3Prr {
                 -::overact::math::sign(rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -1.0, g1_vx_leg2, g1_vx_leg3, 0.0,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(minus_g2_vx_leg3 * rate_dot_2_leg3), -t183,
-                g2_vx_leg2 * t77 - g1_vx_leg2 * t191, minus_g2_vx_leg3 * t120 - g1_vx_leg3 * t201,
+                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(minus_g2_vx_leg3 * rate_dot_2_leg3), -t180,
+                g2_vx_leg2 * t76 - g1_vx_leg2 * t188, minus_g2_vx_leg3 * t119 - g1_vx_leg3 * t198,
                 0.0, ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
                 -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3), 0.0,
-                -::overact::math::signed(g2_vx_leg2, t222),
-                ::overact::math::signed(minus_g2_vx_leg3, t227),
+                -::overact::math::signed(g2_vx_leg2, t219),
+                ::overact::math::signed(minus_g2_vx_leg3, t224),
             ],
             [
                 0.0, -t13, -t8, acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2658,15 +2611,15 @@ impl Planar3Prr {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                2.9411764705882355 * (t26 - minus_rate_dot_1_leg1),
-                minus_g1_vy_leg2 * t191 + 1.4705882352941178 * minus_rate_dot_1_leg2,
-                minus_g1_vy_leg3 * t201 - 1.4705882352941178 * rate_dot_1_leg3,
+                2.9411764705882355 * (t25 - minus_rate_dot_1_leg1),
+                minus_g1_vy_leg2 * t188 + g2_vy_leg2 * t76,
+                minus_g1_vy_leg3 * t198 - g2_vy_leg3 * t119,
                 ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
                 ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
                 ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg1, t218),
-                -::overact::math::signed(g2_vy_leg2, t222),
-                -::overact::math::signed(g2_vy_leg3, t227),
+                ::overact::math::signed(minus_g2_vy_leg1, t215),
+                -::overact::math::signed(g2_vy_leg2, t219),
+                -::overact::math::signed(g2_vy_leg3, t224),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -2679,14 +2632,14 @@ impl Planar3Prr {
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), g1_wz_leg1, g1_wz_leg2,
                 -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                g1_wz_leg1 * t183 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1),
-                g2_wz_leg2 * t77 - g1_wz_leg2 * t191, minus_g1_wz_leg3 * t201 - g2_wz_leg3 * t120,
+                g1_wz_leg1 * t180 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1),
+                g2_wz_leg2 * t76 - g1_wz_leg2 * t188, minus_g1_wz_leg3 * t198 - g2_wz_leg3 * t119,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t218),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t222),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t227),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t215),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t219),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t224),
             ],
         ])
     }
@@ -2701,7 +2654,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 307 operations (113 additions, 188 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 264 intermediates.
+    /// 301 operations (113 additions, 175 multiplications, 13 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 258 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2720,10 +2673,11 @@ impl Planar3Prr {
         ::overact::guard::reach(t8, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t8);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t10 = 1.0 / minus_s2_leg1;
-        let g2_vy_leg1 = 2.9411764705882355 * t10;
+        let t10 = 0.34 / minus_s2_leg1;
+        let g2_vy_leg1 = 8.650519031141869 * t10;
         let minus_g1_vy_leg1 = t5 * g2_vy_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t3;
+        let t15 = g1_wz_leg1 * actuator_velocities[0];
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t19 = 0.08 * minus_c23_leg2;
         let t20 = t2 - t19;
@@ -2733,184 +2687,175 @@ impl Planar3Prr {
         let t29 = pose[1] + 0.15;
         let t32 = 0.8660254037844386 * (pose[0] + t20 + 0.25980762113533157)
             + 0.5 * (t29 - t28);
-        let t35 = 8.650519031141869 * (0.1156 - t32 * t32);
-        ::overact::guard::reach(t35, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t35);
+        let t33 = t2 * 2.9411764705882355;
+        let t36 = 8.650519031141869 * (0.1156 - t32 * t32);
+        ::overact::guard::reach(t36, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t36);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t37 = 1.0 / minus_s2_leg2;
-        let t38 = 2.9411764705882355 * t37;
-        let minus_g2_wz_leg2 = t2 * t38;
+        let minus_g2_wz_leg2 = t33 / minus_s2_leg2;
         let minus_g1_wz_leg2 = t32 * minus_g2_wz_leg2 - t3;
-        let t49 = 0.8660254037844386 * (pose[0] + t19 + -0.25980762113533157)
+        let t41 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t48 = 0.8660254037844386 * (pose[0] + t19 - 0.25980762113533157)
             - 0.5 * (t27 + t29);
-        let t52 = 8.650519031141869 * (0.1156 - t49 * t49);
-        ::overact::guard::reach(t52, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t52);
+        let t51 = 8.650519031141869 * (0.1156 - t48 * t48);
+        ::overact::guard::reach(t51, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t54 = 1.0 / minus_s2_leg3;
-        let t55 = 2.9411764705882355 * t54;
-        let minus_g2_wz_leg3 = t2 * t55;
-        let g1_wz_leg3 = t3 + t49 * minus_g2_wz_leg3;
-        let t63 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t63 * t37;
-        let t69 = 2.5471335405424664 * t49 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t69 * t54;
-        let t72 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t53 = 1.0 / minus_s2_leg3;
+        let minus_g2_wz_leg3 = t53 * t33;
+        let g1_wz_leg3 = t3 + t48 * minus_g2_wz_leg3;
+        let t57 = g1_wz_leg3 * actuator_velocities[2];
+        let t61 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
+        let t62 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t61 * t62;
+        let t64 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t68 = 2.5471335405424664 * t48 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t68 * t53;
+        let t70 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t71 = actuator_velocities[0] + t64 + t70;
+        let t75 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t76 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t79 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t76, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t76, 2.5803571428571423, "actuators")?;
-        let t77 = 1.0 / t76;
-        let t78 = t72 * t77;
-        let t83 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
-        let minus_g1_vy_leg2 = t83 * t37;
-        let t90 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t49;
-        let g1_vy_leg3 = t90 * t54;
-        let t97 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t79, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t79, 2.5803571428571423, "actuators")?;
+        let t80 = t75 / t79;
+        let t85 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
+        let minus_g1_vy_leg2 = t85 * t62;
+        let t92 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t48;
+        let g1_vy_leg3 = t92 * t53;
+        let t99 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t99 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t97 * t78;
-        let t105 = t97 * t77;
-        let t107 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t97 * t105;
-        ::overact::guard::platform(t107, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t107, 2.580357142857142, "actuators")?;
-        let t108 = 1.0 / t107;
-        let t109 = t99 * t108;
-        let t111 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t72 * t78 - t99 * t109;
-        ::overact::guard::platform(t111, 0.0192, "actuators")?;
-        ::overact::guard::platform(t111, 0.0192, "actuators")?;
-        let t112 = 1.0 / t111;
-        let t113 = g1_wz_leg1 * actuator_velocities[0];
-        let t114 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t116 = g1_wz_leg3 * actuator_velocities[2];
-        let t118 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t120 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t121 = actuator_velocities[0] + t118 + t120;
-        let t124 = g1_vy_leg3 * actuator_velocities[2];
-        let t125 = minus_g1_vy_leg1 * actuator_velocities[0];
-        let t126 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t130 = t124 - (t125 + t126) + t121 * t105;
-        let rate_3_leg1 = t112 * (t113 - t114 + t116 + t121 * t78 - t109 * t130);
-        let t134 = t2 * rate_3_leg1;
+        let t101 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t99 * t80;
+        let t107 = t99 / t79;
+        let t109 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t99 * t107;
+        ::overact::guard::platform(t109, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t109, 2.580357142857142, "actuators")?;
+        let t110 = t101 / t109;
+        let t111 = g1_vy_leg3 * actuator_velocities[2];
+        let t112 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t113 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t117 = t111 - (t112 + t113) + t71 * t107;
+        let t128 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t75 * t80 - t101 * t110;
+        ::overact::guard::platform(t128, 0.0192, "actuators")?;
+        ::overact::guard::platform(t128, 0.0192, "actuators")?;
+        let rate_3_leg1 = (t15 - t41 + t57 + t71 * t80 - t110 * t117) / t128;
+        let t130 = t2 * rate_3_leg1;
+        let t131 = rate_3_leg1 * t130;
+        let t132 = t28 * rate_3_leg1;
+        let t133 = rate_3_leg1 * t132;
+        let t134 = t27 * rate_3_leg1;
         let t135 = rate_3_leg1 * t134;
-        let t136 = t28 * rate_3_leg1;
-        let t137 = rate_3_leg1 * t136;
-        let t138 = t27 * rate_3_leg1;
-        let t139 = rate_3_leg1 * t138;
-        let t140 = t137 - t139;
-        let t145 = t108 * t130 - t109 * rate_3_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (t145 - t134);
-        let t148 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t135 - minus_g1_vy_leg1 * t140 + t148 * (0.34 * t10);
-        let t152 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t154 = t20 * rate_3_leg1;
-        let t155 = rate_3_leg1 * t154;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t37;
-        let t164 = t121 * t77 + t105 * t145 + t78 * rate_3_leg1;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t37;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t136 - t164)
-            + minus_g2_vy_leg2 * (t145 + t154);
-        let t171 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let rate_dot_1_leg2 = t37 * (t63 * t155 - t83 * t137 - 0.34 * t171);
-        let t175 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t179 = t19 * rate_3_leg1;
-        let t180 = rate_3_leg1 * t179;
-        let g2_vx_leg3 = 2.5471335405424664 * t54;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t54;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t164 + t138)
-            + minus_g2_vy_leg3 * (t145 + t179);
-        let t190 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t54 * (t90 * t139 - t69 * t180 + 0.34 * t190);
-        let t194 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t200 = t152 + minus_g1_vx_leg2 * t175 + minus_g1_vx_leg3 * t194;
-        let t209 = g1_vy_leg3 * t194
-            - (minus_g1_vy_leg1 * t152 + minus_g1_vy_leg2 * t175) + t105 * t200;
-        let rate_dot_3_leg1 = t112
-            * (g1_wz_leg1 * t152 - minus_g1_wz_leg2 * t175 + g1_wz_leg3 * t194
-                + t78 * t200 - t109 * t209);
-        let t214 = t140 + t2 * rate_dot_3_leg1;
-        let t215 = 12.5 * t214;
-        let t217 = t135 - t3 * rate_dot_3_leg1;
-        let t218 = 12.5 * t217;
-        let t221 = t108 * t209 - t109 * rate_dot_3_leg1;
-        let t227 = t77 * t200 + t105 * t221 + t78 * rate_dot_3_leg1;
-        let t250 = t221 - t214;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t250 + t5 * t148);
+        let t136 = t133 - t135;
+        let t141 = t117 / t109 - t110 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t141 - t130);
+        let t144 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t131 - minus_g1_vy_leg1 * t136 + t144 * t10;
+        let t147 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t149 = t20 * rate_3_leg1;
+        let t150 = rate_3_leg1 * t149;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t62;
+        let t159 = t71 / t79 + t107 * t141 + t80 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t62;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t132 - t159)
+            + minus_g2_vy_leg2 * (t141 + t149);
+        let t166 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t62 * (t61 * t150 - t85 * t133 - 0.34 * t166);
+        let t170 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t174 = t19 * rate_3_leg1;
+        let t175 = rate_3_leg1 * t174;
+        let g2_vx_leg3 = 2.5471335405424664 * t53;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t53;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t159 + t134)
+            + minus_g2_vy_leg3 * (t141 + t174);
+        let t185 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t53 * (t92 * t135 - t68 * t175 + 0.34 * t185);
+        let t189 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t195 = t147 + minus_g1_vx_leg2 * t170 + minus_g1_vx_leg3 * t189;
+        let t204 = g1_vy_leg3 * t189
+            - (minus_g1_vy_leg1 * t147 + minus_g1_vy_leg2 * t170) + t107 * t195;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t147 - minus_g1_wz_leg2 * t170
+            + g1_wz_leg3 * t189 + t80 * t195 - t110 * t204) / t128;
+        let t209 = t136 + t2 * rate_dot_3_leg1;
+        let t210 = 12.5 * t209;
+        let t212 = t131 - t3 * rate_dot_3_leg1;
+        let t213 = 12.5 * t212;
+        let t216 = t204 / t109 - t110 * rate_dot_3_leg1;
+        let t222 = t195 / t79 + t107 * t216 + t80 * rate_dot_3_leg1;
+        let t245 = t216 - t209;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t245 + t5 * t144);
         let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
-        let t264 = 0.5 * (t221 + t20 * rate_dot_3_leg1 + t137);
-        let t265 = 0.8660254037844386 * (t28 * rate_dot_3_leg1 - t227 - t155) + t264;
-        let minus_rate_dot_2_leg2 = t38 * (t265 + t32 * t171);
-        let t278 = 0.8660254037844386 * (t227 + t27 * rate_dot_3_leg1 + t180) + t264
-            - 0.8660254037844386 * t217;
-        let minus_rate_dot_2_leg3 = t55 * (t278 - t49 * t190);
-        let t285 = 2.9411764705882355 * t250;
-        let t293 = 2.9411764705882355 * t265;
-        let t295 = minus_s2_leg2 * actuator_accelerations[1];
-        let t304 = 2.9411764705882355 * t278;
-        let t306 = minus_s2_leg3 * actuator_accelerations[2];
-        let t323 = rate_3_leg1 - rate_2_leg1;
-        let t327 = minus_rate_2_leg2 + rate_3_leg1;
-        let t332 = minus_rate_2_leg3 + rate_3_leg1;
+        let t260 = 0.5 * (t216 + t20 * rate_dot_3_leg1 + t133);
+        let t261 = 0.8660254037844386 * (t28 * rate_dot_3_leg1 - t222 - t150) + t260;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t62 * (t261 + t32 * t166);
+        let t275 = 0.8660254037844386 * (t222 + t27 * rate_dot_3_leg1 + t175) + t260
+            - 0.8660254037844386 * t212;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t53 * (t275 - t48 * t185);
+        let t282 = 2.9411764705882355 * t245;
+        let t289 = 2.9411764705882355 * t261;
+        let t299 = 2.9411764705882355 * t275;
+        let t317 = rate_3_leg1 - rate_2_leg1;
+        let t321 = minus_rate_2_leg2 + rate_3_leg1;
+        let t326 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                0.0, -t215, t218, -t227, -actuator_accelerations[0],
+                0.0, -t210, t213, -t222, -actuator_accelerations[0],
                 -(minus_g1_vx_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t118,
-                -t120, -::overact::math::sign(actuator_velocities[0]),
+                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t64,
+                -t70, -::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]), -1.0,
                 -minus_g1_vx_leg2, -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t285,
-                minus_g1_vx_leg2 * t293 - minus_g2_vx_leg2 * t295,
-                minus_g1_vx_leg3 * t304 + g2_vx_leg3 * t306, 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t282,
+                minus_g1_vx_leg2 * t289 - 2.5471335405424664 * actuator_accelerations[1],
+                minus_g1_vx_leg3 * t299 + 2.5471335405424664 * actuator_accelerations[2], 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t327),
-                -::overact::math::signed(g2_vx_leg3, t332),
+                ::overact::math::signed(minus_g2_vx_leg2, t321),
+                -::overact::math::signed(g2_vx_leg3, t326),
             ],
             [
-                0.0, -t218, -t215, t221, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
+                0.0, -t213, -t210, t216, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                g1_vy_leg3 * actuator_accelerations[2], -t125, -t126, t124,
+                g1_vy_leg3 * actuator_accelerations[2], -t112, -t113, t111,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 2.9411764705882355
-                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t250),
-                minus_g1_vy_leg2 * t293 - 1.4705882352941178 * actuator_accelerations[1],
-                -(g1_vy_leg3 * t304 + 1.4705882352941178 * actuator_accelerations[2]),
+                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t245),
+                minus_g1_vy_leg2 * t289 - 1.4705882352941178 * actuator_accelerations[1],
+                -(g1_vy_leg3 * t299 + 1.4705882352941178 * actuator_accelerations[2]),
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t323),
-                ::overact::math::signed(minus_g2_vy_leg2, t327),
-                ::overact::math::signed(minus_g2_vy_leg3, t332),
+                -::overact::math::signed(g2_vy_leg1, t317),
+                ::overact::math::signed(minus_g2_vy_leg2, t321),
+                ::overact::math::signed(minus_g2_vy_leg3, t326),
             ],
             [
-                rate_dot_3_leg1, c_phi * t221 + s_phi * t227, c_phi * t227 - s_phi * t221, 0.0,
+                rate_dot_3_leg1, c_phi * t216 + s_phi * t222, c_phi * t222 - s_phi * t216, 0.0,
                 g1_wz_leg1 * actuator_accelerations[0],
                 -(minus_g1_wz_leg2 * actuator_accelerations[1]),
-                g1_wz_leg3 * actuator_accelerations[2], t113, -t114, t116,
+                g1_wz_leg3 * actuator_accelerations[2], t15, -t41, t57,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 -minus_g1_wz_leg2, g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t285
-                    - minus_g2_wz_leg1 * (minus_s2_leg1 * actuator_accelerations[0]),
-                minus_g1_wz_leg2 * t293 - minus_g2_wz_leg2 * t295,
-                -(minus_g2_wz_leg3 * t306 + g1_wz_leg3 * t304),
+                g1_wz_leg1 * t282 - actuator_accelerations[0] * t33,
+                minus_g1_wz_leg2 * t289 - actuator_accelerations[1] * t33,
+                -(actuator_accelerations[2] * t33 + g1_wz_leg3 * t299),
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t323),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t327),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t332),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t317),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t321),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t326),
             ],
         ])
     }

@@ -1221,7 +1221,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 376 operations (137 additions, 233 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 316 intermediates.
+    /// 374 operations (135 additions, 231 multiplications, 8 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 314 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1310,117 +1310,117 @@ impl Planar3Rrr {
         let t181 = t166 + 5.0 * t140;
         let minus_g2_vy_leg2 = t181 * t162;
         let t183 = twist[1] + t175;
-        let t186 = 5.0 * t132 - t160;
-        let minus_g2_vx_leg2 = t186 * t162;
-        let t188 = twist[0] + t169;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * t183 + minus_g2_vx_leg2 * t188;
-        let t191 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t193 = t166 * t171 - t160 * t177 - 0.2 * t191;
+        let t185 = t132 / t161;
+        let minus_g2_vx_leg2 = t185 - g1_vx_leg2;
+        let t187 = twist[0] + t169;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * t183 + minus_g2_vx_leg2 * t187;
+        let t190 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t192 = t166 * t171 - t160 * t177 - 0.2 * t190;
         let minus_g1_vy_leg2 = t166 * t162;
-        let rate_1_leg2 = g1_vx_leg2 * t188 - minus_g1_vy_leg2 * t183;
-        let t198 = rate_1_leg2 * rate_1_leg2;
-        let t200 = 2.5 * (t148 - 0.08);
-        let minus_rate_dot_1_leg2 = t162 * (t193 - t198 * t200);
-        let t204 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t205 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * t187 - minus_g1_vy_leg2 * t183;
+        let t197 = rate_1_leg2 * rate_1_leg2;
+        let t199 = 2.5 * (t148 - 0.08);
+        let minus_rate_dot_1_leg2 = t162 * (t192 - t197 * t199);
+        let t203 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t204 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
         let g1_wz_leg2 = t138 * g1_vx_leg2 - t130 * minus_g1_vy_leg2;
-        let t209 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t220 = t186 * t177 + t181 * t171 + 0.2 * t198;
-        let minus_rate_dot_2_leg2 = t162 * (t220 + t191 * t200);
+        let t208 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t215 = 5.0 * t161;
+        let t221 = minus_g2_vx_leg2 * t215 * t177 + t181 * t171 + 0.2 * t197;
+        let minus_rate_dot_2_leg2 = t162 * (t221 + t190 * t199);
         let minus_g2_wz_leg2 = t130 * minus_g2_vy_leg2 + t138 * minus_g2_vx_leg2;
-        let t230 = 5.0 * t161;
-        let t233 = t191 * t230 + t200 * minus_rate_dot_2_leg2;
-        let t237 = t198 * t230 - t200 * minus_rate_dot_1_leg2;
-        let t260 = -(minus_rate_2_leg2 + rate_1_leg2);
-        let t266 = twist[2] + minus_rate_2_leg2;
-        let t272 = pose[0] + t129 + -0.3031088913245535;
-        let t274 = t137 + t139;
-        let t276 = 0.8660254037844386 * t272 - 0.5 * t274;
-        let t280 = 0.5 * t272 + 0.8660254037844386 * t274;
-        let t283 = t276 * t276 + t280 * t280;
-        let t285 = 0.04 / t283 - 0.25;
-        ::overact::guard::reach(t285, "leg3")?;
-        let t286 = ::overact::math::sqrt(t285);
-        let t288 = 0.5 * t276 - t280 * t286;
-        let t292 = 0.5 * t280 + t276 * t286;
-        let t294 = 4.330127018922193 * t288 + 2.5 * t292;
-        let t295 = t283 * t286;
-        ::overact::guard::leg(t295, 0.03903123748998999, "leg3")?;
-        let t296 = 0.2 / t295;
-        let g1_vx_leg3 = t294 * t296;
-        let t300 = t129 * twist[2];
-        let t302 = acceleration[0] - t137 * acceleration[2] - twist[2] * t300;
-        let t306 = 2.5 * t288 - 4.330127018922193 * t292;
-        let t309 = t137 * twist[2];
-        let t311 = acceleration[1] + t129 * acceleration[2] - twist[2] * t309;
-        let t315 = t306 + 5.0 * t274;
-        let minus_g2_vy_leg3 = t315 * t296;
-        let t317 = twist[1] + t300;
-        let t320 = 5.0 * t272 - t294;
-        let minus_g2_vx_leg3 = t320 * t296;
-        let t322 = twist[0] - t309;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t317 + minus_g2_vx_leg3 * t322;
-        let t325 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t327 = t294 * t302 - t306 * t311 + 0.2 * t325;
-        let minus_g1_vy_leg3 = t306 * t296;
-        let rate_1_leg3 = g1_vx_leg3 * t322 - minus_g1_vy_leg3 * t317;
-        let t332 = rate_1_leg3 * rate_1_leg3;
-        let t334 = 2.5 * (t283 - 0.08);
-        let rate_dot_1_leg3 = t296 * (t327 + t332 * t334);
-        let t338 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t339 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let t233 = t190 * t215 + t199 * minus_rate_dot_2_leg2;
+        let t237 = t197 * t215 - t199 * minus_rate_dot_1_leg2;
+        let t259 = -(minus_rate_2_leg2 + rate_1_leg2);
+        let t265 = twist[2] + minus_rate_2_leg2;
+        let t271 = pose[0] + t129 - 0.3031088913245535;
+        let t273 = t137 + t139;
+        let t275 = 0.8660254037844386 * t271 - 0.5 * t273;
+        let t279 = 0.5 * t271 + 0.8660254037844386 * t273;
+        let t282 = t275 * t275 + t279 * t279;
+        let t284 = 0.04 / t282 - 0.25;
+        ::overact::guard::reach(t284, "leg3")?;
+        let t285 = ::overact::math::sqrt(t284);
+        let t287 = 0.5 * t275 - t279 * t285;
+        let t291 = 0.5 * t279 + t275 * t285;
+        let t293 = 4.330127018922193 * t287 + 2.5 * t291;
+        let t294 = t282 * t285;
+        ::overact::guard::leg(t294, 0.03903123748998999, "leg3")?;
+        let t295 = 0.2 / t294;
+        let g1_vx_leg3 = t293 * t295;
+        let t299 = t129 * twist[2];
+        let t301 = acceleration[0] - t137 * acceleration[2] - twist[2] * t299;
+        let t305 = 2.5 * t287 - 4.330127018922193 * t291;
+        let t308 = t137 * twist[2];
+        let t310 = acceleration[1] + t129 * acceleration[2] - twist[2] * t308;
+        let minus_g1_vy_leg3 = t305 * t295;
+        let t314 = t273 / t294;
+        let minus_g2_vy_leg3 = minus_g1_vy_leg3 + t314;
+        let t316 = twist[1] + t299;
+        let t319 = 5.0 * t271 - t293;
+        let minus_g2_vx_leg3 = t319 * t295;
+        let t321 = twist[0] - t308;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t316 + minus_g2_vx_leg3 * t321;
+        let t324 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t326 = t293 * t301 - t305 * t310 + 0.2 * t324;
+        let rate_1_leg3 = g1_vx_leg3 * t321 - minus_g1_vy_leg3 * t316;
+        let t330 = rate_1_leg3 * rate_1_leg3;
+        let t332 = 2.5 * (t282 - 0.08);
+        let rate_dot_1_leg3 = t295 * (t326 + t330 * t332);
+        let t336 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t337 = minus_g1_vy_leg3 * rate_dot_1_leg3;
         let minus_g1_wz_leg3 = t129 * minus_g1_vy_leg3 + t137 * g1_vx_leg3;
-        let t343 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let t354 = t315 * t311 + t320 * t302 + 0.2 * t332;
-        let minus_rate_dot_2_leg3 = t296 * (t354 + t325 * t334);
+        let t341 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let t348 = 5.0 * t294;
+        let t354 = minus_g2_vy_leg3 * t348 * t310 + t319 * t301 + 0.2 * t330;
+        let minus_rate_dot_2_leg3 = t295 * (t354 + t324 * t332);
         let g2_wz_leg3 = t137 * minus_g2_vx_leg3 - t129 * minus_g2_vy_leg3;
-        let t365 = 5.0 * t295;
-        let t367 = t334 * minus_rate_dot_2_leg3 + t325 * t365;
-        let t371 = t332 * t365 + t334 * rate_dot_1_leg3;
-        let t394 = -(minus_rate_2_leg3 + rate_1_leg3);
-        let t400 = twist[2] + minus_rate_2_leg3;
-        let t405 = 10.0 * t27;
-        let t406 = 10.0 * t33;
+        let t366 = t332 * minus_rate_dot_2_leg3 + t324 * t348;
+        let t370 = t330 * t348 + t332 * rate_dot_1_leg3;
+        let t393 = -(minus_rate_2_leg3 + rate_1_leg3);
+        let t398 = twist[2] + minus_rate_2_leg3;
+        let t403 = 10.0 * t27;
+        let t404 = 10.0 * t33;
         Ok([
             [
                 -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t77,
                 5.0 * t34 - 0.2 * (t77 - t57), minus_g2_vx_leg1 * t100 - minus_g1_vx_leg1 * t102,
                 -(0.04 * t57), -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t115),
-                ::overact::math::signed(minus_g2_vx_leg1, t121), -t204, -t204,
+                ::overact::math::signed(minus_g2_vx_leg1, t121), -t203, -t203,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
                 -(g1_vx_leg2 * t233 + minus_g2_vx_leg2 * t237),
-                g1_vx_leg2 * t220 - minus_g2_vx_leg2 * t193, -(0.04 * t204),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t260),
-                ::overact::math::signed(minus_g2_vx_leg2, t266), t338, t338,
+                g1_vx_leg2 * t221 - minus_g2_vx_leg2 * t192, -(0.04 * t203),
+                -::overact::math::signed(t185, t259),
+                ::overact::math::signed(minus_g2_vx_leg2, t265), t336, t336,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 g1_vx_leg3, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t367 + minus_g2_vx_leg3 * t371),
-                minus_g2_vx_leg3 * t327 + g1_vx_leg3 * t354, 0.04 * t338,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t394),
-                ::overact::math::signed(minus_g2_vx_leg3, t400), 0.0, -t405, t406, acceleration[0],
+                -(g1_vx_leg3 * t366 + minus_g2_vx_leg3 * t370),
+                minus_g2_vx_leg3 * t326 + g1_vx_leg3 * t354, 0.04 * t336,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t393),
+                ::overact::math::signed(minus_g2_vx_leg3, t398), 0.0, -t403, t404, acceleration[0],
             ],
             [
                 t58, t58, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t78,
                 5.0 * t28 - 0.2 * (t58 + t78), g1_vy_leg1 * t102 + minus_g2_vy_leg1 * t100,
                 0.04 * t58, ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t115),
-                ::overact::math::signed(minus_g2_vy_leg1, t121), t205, t205,
+                ::overact::math::signed(minus_g2_vy_leg1, t121), t204, t204,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
                 minus_g1_vy_leg2 * t233 - minus_g2_vy_leg2 * t237,
-                -(minus_g2_vy_leg2 * t193 + minus_g1_vy_leg2 * t220), 0.04 * t205,
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t260),
-                ::overact::math::signed(minus_g2_vy_leg2, t266), -t339, -t339,
+                -(minus_g2_vy_leg2 * t192 + minus_g1_vy_leg2 * t221), 0.04 * t204,
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t259),
+                ::overact::math::signed(minus_g2_vy_leg2, t265), -t337, -t337,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                minus_g1_vy_leg3 * t367 - minus_g2_vy_leg3 * t371,
-                minus_g2_vy_leg3 * t327 - minus_g1_vy_leg3 * t354, -(0.04 * t339),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t394),
-                ::overact::math::signed(minus_g2_vy_leg3, t400), 0.0, -t406, -t405, acceleration[1],
+                minus_g1_vy_leg3 * t366 - minus_g2_vy_leg3 * t370,
+                minus_g2_vy_leg3 * t326 - minus_g1_vy_leg3 * t354, -(0.04 * t337),
+                -::overact::math::signed(t314, t393),
+                ::overact::math::signed(minus_g2_vy_leg3, t398), 0.0, -t404, -t403, acceleration[1],
             ],
             [
                 t62, t62, g1_wz_leg1 * rate_1_leg1,
@@ -1428,19 +1428,19 @@ impl Planar3Rrr {
                 -(0.5 * (t93 - 0.1 * acceleration[2]) + 0.2 * (t62 - t82)),
                 g1_wz_leg1 * t102 - g2_wz_leg1 * t100, 0.04 * t62,
                 -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t115),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t121), -t209, -t209,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t121), -t208, -t208,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
                 -(minus_g2_wz_leg2 * t237 + g1_wz_leg2 * t233),
-                g1_wz_leg2 * t220 - minus_g2_wz_leg2 * t193, -(0.04 * t209),
-                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t260),
-                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t266), -t343, -t343,
+                g1_wz_leg2 * t221 - minus_g2_wz_leg2 * t192, -(0.04 * t208),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t259),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t265), -t341, -t341,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g2_wz_leg3 * t371 + minus_g1_wz_leg3 * t367,
-                -(minus_g1_wz_leg3 * t354 + g2_wz_leg3 * t327), -(0.04 * t343),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t394),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t400), acceleration[2],
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g2_wz_leg3 * t370 + minus_g1_wz_leg3 * t366,
+                -(minus_g1_wz_leg3 * t354 + g2_wz_leg3 * t326), -(0.04 * t341),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t393),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t398), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0], -t93, 0.0,
             ],
         ])
@@ -1456,7 +1456,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 329 operations (112 additions, 214 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 276 intermediates.
+    /// 328 operations (112 additions, 213 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 275 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1490,168 +1490,167 @@ impl Planar3Rrr {
         let minus_g2_vy_leg1 = c1_leg1 * t10;
         let t33 = twist[1] - t22;
         let rate_2_leg1 = g2_vx_leg1 * t30 - minus_g2_vy_leg1 * t33;
-        let t36 = rate_2_leg1 * rate_2_leg1;
-        let t38 = c12_leg1 * t20 - s12_leg1 * t26 + 0.2 * t36;
+        let t37 = 0.2 * (rate_2_leg1 * rate_2_leg1);
+        let t38 = c12_leg1 * t20 - s12_leg1 * t26 + t37;
         let g1_vy_leg1 = c12_leg1 * t10;
         let rate_1_leg1 = g1_vy_leg1 * t33 - minus_g1_vx_leg1 * t30;
-        let t43 = rate_1_leg1 * rate_1_leg1;
-        let t44 = 0.2 * c2_leg1;
-        let rate_dot_1_leg1 = t10 * (t38 + t43 * t44);
+        let t44 = 0.2 * (rate_1_leg1 * rate_1_leg1);
+        let rate_dot_1_leg1 = t10 * (t38 + c2_leg1 * t44);
         let t48 = minus_g1_vx_leg1 * rate_dot_1_leg1;
         let t49 = g1_vy_leg1 * rate_dot_1_leg1;
         let g1_wz_leg1 = minus_g1_vx_leg1 * t14 - g1_vy_leg1 * t17;
         let t53 = g1_wz_leg1 * rate_dot_1_leg1;
-        let t64 = s1_leg1 * t26 - c1_leg1 * t20 - 0.2 * t43;
-        let rate_dot_2_leg1 = t10 * (t64 - t36 * t44);
-        let t68 = g2_vx_leg1 * rate_dot_2_leg1;
-        let t69 = minus_g2_vy_leg1 * rate_dot_2_leg1;
+        let t63 = s1_leg1 * t26 - c1_leg1 * t20 - t44;
+        let rate_dot_2_leg1 = t10 * (t63 - t37 * c2_leg1);
+        let t67 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t68 = minus_g2_vy_leg1 * rate_dot_2_leg1;
         let g2_wz_leg1 = minus_g2_vy_leg1 * t17 - g2_vx_leg1 * t14;
-        let t73 = g2_wz_leg1 * rate_dot_2_leg1;
-        let t84 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t104 = rate_2_leg1 - rate_1_leg1;
-        let t110 = twist[2] - rate_2_leg1;
+        let t72 = g2_wz_leg1 * rate_dot_2_leg1;
+        let t83 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t103 = rate_2_leg1 - rate_1_leg1;
+        let t109 = twist[2] - rate_2_leg1;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t127 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t128 = 5.0 / s2_leg2;
-        let g1_vx_leg2 = t127 * t128;
-        let t132 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t133 = 0.05 * s_phi;
-        let t134 = 0.08660254037844387 * c_phi;
-        let t135 = t133 - t134;
-        let t138 = 0.08660254037844387 * s_phi;
-        let t139 = 0.05 * c_phi;
-        let t140 = t138 + t139;
-        let t141 = t140 * twist[2];
-        let t143 = acceleration[1] + t135 * acceleration[2] + twist[2] * t141;
-        let t147 = t135 * twist[2];
-        let t149 = acceleration[0] + t140 * acceleration[2] - twist[2] * t147;
-        let t154 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t154 * t128;
-        let t156 = twist[1] + t147;
-        let t160 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t160 * t128;
-        let t162 = twist[0] + t141;
-        let rate_2_leg2 = g2_vy_leg2 * t156 - minus_g2_vx_leg2 * t162;
-        let t165 = rate_2_leg2 * rate_2_leg2;
-        let t166 = 0.2 * t165;
-        let t167 = t132 * t143 - t127 * t149 - t166;
-        let minus_g1_vy_leg2 = t132 * t128;
-        let rate_1_leg2 = g1_vx_leg2 * t162 - minus_g1_vy_leg2 * t156;
-        let t172 = rate_1_leg2 * rate_1_leg2;
-        let t173 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t128 * (t167 - t172 * t173);
-        let t177 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t178 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = g1_vx_leg2 * t140 - minus_g1_vy_leg2 * t135;
-        let t182 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t192 = 0.2 * t172;
-        let t193 = t160 * t149 - t154 * t143 + t192;
-        let minus_rate_dot_2_leg2 = t128 * (t193 + t165 * t173);
-        let g2_wz_leg2 = g2_vy_leg2 * t135 - minus_g2_vx_leg2 * t140;
-        let t205 = s2_leg2 * t166 + t173 * minus_rate_dot_2_leg2;
-        let t209 = s2_leg2 * t192 - t173 * minus_rate_dot_1_leg2;
-        let t231 = rate_2_leg2 - rate_1_leg2;
-        let t237 = twist[2] - rate_2_leg2;
+        let t126 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let t127 = 5.0 / s2_leg2;
+        let g1_vx_leg2 = t126 * t127;
+        let t131 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let t132 = 0.05 * s_phi;
+        let t133 = t14 * 0.8660254037844386;
+        let t134 = t132 - t133;
+        let t137 = t17 * 0.8660254037844386;
+        let t138 = 0.05 * c_phi;
+        let t139 = t137 + t138;
+        let t140 = t139 * twist[2];
+        let t142 = acceleration[1] + t134 * acceleration[2] + twist[2] * t140;
+        let t146 = t134 * twist[2];
+        let t148 = acceleration[0] + t139 * acceleration[2] - twist[2] * t146;
+        let t153 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t153 * t127;
+        let t155 = twist[1] + t146;
+        let t159 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t159 * t127;
+        let t161 = twist[0] + t140;
+        let rate_2_leg2 = g2_vy_leg2 * t155 - minus_g2_vx_leg2 * t161;
+        let t164 = rate_2_leg2 * rate_2_leg2;
+        let t165 = 0.2 * t164;
+        let t166 = t131 * t142 - t126 * t148 - t165;
+        let minus_g1_vy_leg2 = t131 * t127;
+        let rate_1_leg2 = g1_vx_leg2 * t161 - minus_g1_vy_leg2 * t155;
+        let t171 = rate_1_leg2 * rate_1_leg2;
+        let t172 = 0.2 * c2_leg2;
+        let minus_rate_dot_1_leg2 = t127 * (t166 - t171 * t172);
+        let t176 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t177 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = g1_vx_leg2 * t139 - minus_g1_vy_leg2 * t134;
+        let t181 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t191 = 0.2 * t171;
+        let t192 = t159 * t148 - t153 * t142 + t191;
+        let minus_rate_dot_2_leg2 = t127 * (t192 + t164 * t172);
+        let g2_wz_leg2 = g2_vy_leg2 * t134 - minus_g2_vx_leg2 * t139;
+        let t204 = s2_leg2 * t165 + t172 * minus_rate_dot_2_leg2;
+        let t208 = s2_leg2 * t191 - t172 * minus_rate_dot_1_leg2;
+        let t230 = rate_2_leg2 - rate_1_leg2;
+        let t236 = twist[2] - rate_2_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t254 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t255 = 5.0 / s2_leg3;
-        let g1_vx_leg3 = t254 * t255;
-        let t257 = t138 - t139;
-        let t260 = t134 + t133;
-        let t261 = t260 * twist[2];
-        let t263 = acceleration[0] - t257 * acceleration[2] - twist[2] * t261;
-        let t267 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t270 = t257 * twist[2];
-        let t272 = acceleration[1] + t260 * acceleration[2] - twist[2] * t270;
-        let t277 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t277 * t255;
-        let t279 = twist[1] + t261;
-        let t283 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t283 * t255;
-        let t285 = twist[0] - t270;
-        let rate_2_leg3 = g2_vy_leg3 * t279 - minus_g2_vx_leg3 * t285;
-        let t288 = rate_2_leg3 * rate_2_leg3;
-        let t289 = 0.2 * t288;
-        let t290 = t254 * t263 - t267 * t272 + t289;
-        let minus_g1_vy_leg3 = t267 * t255;
-        let rate_1_leg3 = g1_vx_leg3 * t285 - minus_g1_vy_leg3 * t279;
-        let t295 = rate_1_leg3 * rate_1_leg3;
-        let t296 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t255 * (t290 + t295 * t296);
-        let t300 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t301 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t260 + g1_vx_leg3 * t257;
-        let t305 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let t315 = 0.2 * t295;
-        let t316 = t277 * t272 - t283 * t263 - t315;
-        let rate_dot_2_leg3 = t255 * (t316 - t288 * t296);
-        let g2_wz_leg3 = g2_vy_leg3 * t260 + minus_g2_vx_leg3 * t257;
-        let t328 = t296 * rate_dot_2_leg3 - s2_leg3 * t289;
-        let t332 = s2_leg3 * t315 + t296 * rate_dot_1_leg3;
-        let t354 = rate_2_leg3 - rate_1_leg3;
-        let t360 = twist[2] - rate_2_leg3;
-        let t365 = 10.0 * t19;
-        let t366 = 10.0 * t25;
+        let t253 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let t254 = 5.0 / s2_leg3;
+        let g1_vx_leg3 = t253 * t254;
+        let t256 = t137 - t138;
+        let t259 = t133 + t132;
+        let t260 = t259 * twist[2];
+        let t262 = acceleration[0] - t256 * acceleration[2] - twist[2] * t260;
+        let t266 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let t269 = t256 * twist[2];
+        let t271 = acceleration[1] + t259 * acceleration[2] - twist[2] * t269;
+        let t276 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t276 * t254;
+        let t278 = twist[1] + t260;
+        let t282 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t282 * t254;
+        let t284 = twist[0] - t269;
+        let rate_2_leg3 = g2_vy_leg3 * t278 - minus_g2_vx_leg3 * t284;
+        let t287 = rate_2_leg3 * rate_2_leg3;
+        let t288 = 0.2 * t287;
+        let t289 = t253 * t262 - t266 * t271 + t288;
+        let minus_g1_vy_leg3 = t266 * t254;
+        let rate_1_leg3 = g1_vx_leg3 * t284 - minus_g1_vy_leg3 * t278;
+        let t294 = rate_1_leg3 * rate_1_leg3;
+        let t295 = 0.2 * c2_leg3;
+        let rate_dot_1_leg3 = t254 * (t289 + t294 * t295);
+        let t299 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t300 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t259 + g1_vx_leg3 * t256;
+        let t304 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let t314 = 0.2 * t294;
+        let t315 = t276 * t271 - t282 * t262 - t314;
+        let rate_dot_2_leg3 = t254 * (t315 - t287 * t295);
+        let g2_wz_leg3 = g2_vy_leg3 * t259 + minus_g2_vx_leg3 * t256;
+        let t327 = t295 * rate_dot_2_leg3 - s2_leg3 * t288;
+        let t331 = s2_leg3 * t314 + t295 * rate_dot_1_leg3;
+        let t353 = rate_2_leg3 - rate_1_leg3;
+        let t359 = twist[2] - rate_2_leg3;
+        let t364 = 10.0 * t19;
+        let t365 = 10.0 * t25;
         Ok([
             [
                 -t48, -t48, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t68,
-                5.0 * t26 - 0.2 * (t68 - t48), minus_g1_vx_leg1 * t64 - g2_vx_leg1 * t38,
-                -(0.04 * t48), ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t104),
-                -::overact::math::signed(g2_vx_leg1, t110), -t177, -t177, g1_vx_leg2 * rate_1_leg2,
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t67,
+                5.0 * t26 - 0.2 * (t67 - t48), minus_g1_vx_leg1 * t63 - g2_vx_leg1 * t38,
+                -(0.04 * t48), ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t103),
+                -::overact::math::signed(g2_vx_leg1, t109), -t176, -t176, g1_vx_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t205 + minus_g2_vx_leg2 * t209),
-                g1_vx_leg2 * t193 - minus_g2_vx_leg2 * t167, -(0.04 * t177),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t231),
-                ::overact::math::signed(minus_g2_vx_leg2, t237), t300, t300,
+                -(g1_vx_leg2 * t204 + minus_g2_vx_leg2 * t208),
+                g1_vx_leg2 * t192 - minus_g2_vx_leg2 * t166, -(0.04 * t176),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t230),
+                ::overact::math::signed(minus_g2_vx_leg2, t236), t299, t299,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 g1_vx_leg3, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g1_vx_leg3 * t328 - minus_g2_vx_leg3 * t332,
-                minus_g2_vx_leg3 * t290 - g1_vx_leg3 * t316, 0.04 * t300,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t354),
-                ::overact::math::signed(minus_g2_vx_leg3, t360), 0.0, -t365, t366, acceleration[0],
+                g1_vx_leg3 * t327 - minus_g2_vx_leg3 * t331,
+                minus_g2_vx_leg3 * t289 - g1_vx_leg3 * t315, 0.04 * t299,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t353),
+                ::overact::math::signed(minus_g2_vx_leg3, t359), 0.0, -t364, t365, acceleration[0],
             ],
             [
                 t49, t49, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, -t69,
-                5.0 * t20 - 0.2 * (t49 - t69), minus_g2_vy_leg1 * t38 - g1_vy_leg1 * t64,
-                0.04 * t49, -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t104),
-                ::overact::math::signed(minus_g2_vy_leg1, t110), t178, t178,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, -t68,
+                5.0 * t20 - 0.2 * (t49 - t68), minus_g2_vy_leg1 * t38 - g1_vy_leg1 * t63,
+                0.04 * t49, -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t103),
+                ::overact::math::signed(minus_g2_vy_leg1, t109), t177, t177,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t205 + g2_vy_leg2 * t209,
-                g2_vy_leg2 * t167 - minus_g1_vy_leg2 * t193, 0.04 * t178,
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t231),
-                -::overact::math::signed(g2_vy_leg2, t237), -t301, -t301,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t204 + g2_vy_leg2 * t208,
+                g2_vy_leg2 * t166 - minus_g1_vy_leg2 * t192, 0.04 * t177,
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t230),
+                -::overact::math::signed(g2_vy_leg2, t236), -t300, -t300,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
-                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t332 - minus_g1_vy_leg3 * t328,
-                minus_g1_vy_leg3 * t316 - g2_vy_leg3 * t290, -(0.04 * t301),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t354),
-                -::overact::math::signed(g2_vy_leg3, t360), 0.0, -t366, -t365, acceleration[1],
+                g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t331 - minus_g1_vy_leg3 * t327,
+                minus_g1_vy_leg3 * t315 - g2_vy_leg3 * t289, -(0.04 * t300),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t353),
+                -::overact::math::signed(g2_vy_leg3, t359), 0.0, -t365, -t364, acceleration[1],
             ],
             [
                 t53, t53, g1_wz_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, t73,
-                0.05 * (acceleration[2] - 10.0 * t84) - 0.2 * (t53 + t73),
-                -(g1_wz_leg1 * t64 + g2_wz_leg1 * t38), 0.04 * t53,
-                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t104),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t110), -t182, -t182,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, t72,
+                0.05 * (acceleration[2] - 10.0 * t83) - 0.2 * (t53 + t72),
+                -(g1_wz_leg1 * t63 + g2_wz_leg1 * t38), 0.04 * t53,
+                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t103),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t109), -t181, -t181,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                g2_wz_leg2 * t209 - g1_wz_leg2 * t205, g1_wz_leg2 * t193 + g2_wz_leg2 * t167,
-                -(0.04 * t182), ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t231),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t237), -t305, -t305,
+                g2_wz_leg2 * t208 - g1_wz_leg2 * t204, g1_wz_leg2 * t192 + g2_wz_leg2 * t166,
+                -(0.04 * t181), ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t230),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t236), -t304, -t304,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
-                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t332 - minus_g1_wz_leg3 * t328,
-                minus_g1_wz_leg3 * t316 - g2_wz_leg3 * t290, -(0.04 * t305),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t354),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t360), acceleration[2],
-                c_phi * acceleration[1] - s_phi * acceleration[0], -t84, 0.0,
+                g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t331 - minus_g1_wz_leg3 * t327,
+                minus_g1_wz_leg3 * t315 - g2_wz_leg3 * t289, -(0.04 * t304),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t353),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t359), acceleration[2],
+                c_phi * acceleration[1] - s_phi * acceleration[0], -t83, 0.0,
             ],
         ])
     }
@@ -1666,7 +1665,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 474 operations (178 additions, 287 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 411 intermediates.
+    /// 472 operations (179 additions, 281 multiplications, 12 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 409 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1707,11 +1706,11 @@ impl Planar3Rrr {
         let t42 = 0.1 * minus_c123_leg2;
         let t43 = t2 - t42;
         let t45 = pose[0] + t43 + 0.3031088913245535;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t47 = 0.8660254037844386 * s_phi;
+        let minus_s123_leg2 = t47 - 0.5 * c_phi;
         let t50 = 0.1 * minus_s123_leg2;
         let t51 = t5 + t50;
-        let t52 = pose[1] + 0.175;
-        let t53 = t52 - t51;
+        let t53 = pose[1] + 0.175 - t51;
         let t55 = 0.5 * t45 - 0.8660254037844386 * t53;
         let t58 = 0.8660254037844386 * t45 + 0.5 * t53;
         let t61 = t58 * t58 + t55 * t55;
@@ -1725,218 +1724,217 @@ impl Planar3Rrr {
         ::overact::guard::leg(t74, 0.03903123748998999, "leg2")?;
         let t75 = 0.2 / t74;
         let g1_vx_leg2 = t73 * t75;
-        let t80 = pose[0] + t42 + -0.3031088913245535;
-        let t82 = t50 + t52;
-        let t84 = 0.8660254037844386 * t80 - 0.5 * t82;
-        let t88 = 0.5 * t80 + 0.8660254037844386 * t82;
-        let t91 = t84 * t84 + t88 * t88;
-        let t93 = 0.04 / t91 - 0.25;
-        ::overact::guard::reach(t93, "leg3")?;
-        let t94 = ::overact::math::sqrt(t93);
-        let t96 = 0.5 * t84 - t88 * t94;
-        let t100 = 0.5 * t88 + t84 * t94;
-        let t102 = 4.330127018922193 * t96 + 2.5 * t100;
-        let t103 = t91 * t94;
-        ::overact::guard::leg(t103, 0.03903123748998999, "leg3")?;
-        let t104 = 0.2 / t103;
-        let g1_vx_leg3 = t102 * t104;
-        let t107 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t80 = pose[0] + t42 - 0.3031088913245535;
+        let t82 = t53 * 5.0;
+        let t83 = t47 + t82;
+        let t84 = 0.1 * t83;
+        let t85 = 0.8660254037844386 * t80 - t84;
+        let t90 = 0.5 * t80 + 0.8660254037844386 * (t84 + t84);
+        let t93 = t85 * t85 + t90 * t90;
+        let t95 = 0.04 / t93 - 0.25;
+        ::overact::guard::reach(t95, "leg3")?;
+        let t96 = ::overact::math::sqrt(t95);
+        let t98 = 0.5 * t85 - t90 * t96;
+        let t102 = 0.5 * t90 + t85 * t96;
+        let t104 = 4.330127018922193 * t98 + 2.5 * t102;
+        let t105 = t93 * t96;
+        ::overact::guard::leg(t105, 0.03903123748998999, "leg3")?;
+        let t106 = 0.2 / t105;
+        let g1_vx_leg3 = t104 * t106;
+        let t109 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t107, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t107, 39.38461538461539, "actuators")?;
-        let t108 = 1.0 / t107;
-        let t113 = 4.330127018922193 * t71 - 2.5 * t67;
-        let minus_g1_vy_leg2 = t113 * t75;
+        ::overact::guard::platform(t109, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t109, 39.38461538461539, "actuators")?;
+        let t110 = 1.0 / t109;
+        let t114 = 4.330127018922193 * t71 - 2.5 * t67;
+        let minus_g1_vy_leg2 = t114 * t75;
         let g1_wz_leg2 = t51 * g1_vx_leg2 - t43 * minus_g1_vy_leg2;
-        let t121 = 2.5 * t96 - 4.330127018922193 * t100;
-        let minus_g1_vy_leg3 = t121 * t104;
+        let t118 = g1_wz_leg2 * actuator_velocities[1];
+        let t122 = 2.5 * t98 - 4.330127018922193 * t102;
+        let minus_g1_vy_leg3 = t122 * t106;
         let minus_g1_wz_leg3 = t42 * minus_g1_vy_leg3 + t50 * g1_vx_leg3;
-        let t132 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t127 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let t129 = g1_vx_leg2 * actuator_velocities[1];
+        let t131 = g1_vx_leg3 * actuator_velocities[2];
+        let t132 = t129 - t31 + t131;
+        let t137 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t133 = t132 * t108;
-        let t145 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t138 = t137 * t110;
+        let t150 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t147 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t145 * t133;
-        let t153 = t145 * t108;
-        let t155 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t145 * t153;
-        ::overact::guard::platform(t155, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t155, 39.384615384615394, "actuators")?;
-        let t156 = 1.0 / t155;
-        let t157 = t147 * t156;
-        let t159 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t132 * t133 - t147 * t157;
-        ::overact::guard::platform(t159, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t159, 0.4800000000000003, "actuators")?;
-        let t160 = 1.0 / t159;
-        let t161 = g1_wz_leg2 * actuator_velocities[1];
-        let t163 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t165 = g1_vx_leg2 * actuator_velocities[1];
-        let t167 = g1_vx_leg3 * actuator_velocities[2];
-        let t168 = t165 - t31 + t167;
-        let t171 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t173 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t176 = t32 - t171 - t173 + t168 * t153;
-        let rate_3_leg1 = t160 * (t33 + t161 - t163 - t168 * t133 - t157 * t176);
+        let t152 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t150 * t138;
+        let t158 = t150 * t110;
+        let t160 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t150 * t158;
+        ::overact::guard::platform(t160, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t160, 39.384615384615394, "actuators")?;
+        let t161 = t152 / t160;
+        let t162 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t164 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t167 = t32 - t162 - t164 + t132 * t158;
+        let t178 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t137 * t138 - t152 * t161;
+        ::overact::guard::platform(t178, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t178, 0.4800000000000003, "actuators")?;
+        let rate_3_leg1 = (t33 + t118 - t127 - t132 * t138 - t161 * t167) / t178;
         let t180 = t43 * rate_3_leg1;
         let t181 = rate_3_leg1 * t180;
         let t183 = t51 * rate_3_leg1;
         let t184 = rate_3_leg1 * t183;
-        let t188 = t113 + t53 * 5.0;
-        let minus_g2_vy_leg2 = t188 * t75;
-        let t192 = t156 * t176 - t157 * rate_3_leg1;
-        let t196 = t45 * 5.0 - t73;
-        let minus_g2_vx_leg2 = t196 * t75;
-        let t202 = t168 * t108 + t153 * t192 - t133 * rate_3_leg1;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t192 + t180)
-            + minus_g2_vx_leg2 * (t202 + t183);
-        let t206 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t208 = t73 * t181 + t113 * t184 - 0.2 * t206;
-        let t209 = actuator_velocities[1] * actuator_velocities[1];
-        let t211 = 2.5 * (t61 - 0.08);
-        let minus_rate_dot_1_leg2 = t75 * (t208 - t209 * t211);
-        let t215 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t217 = t5 * rate_3_leg1;
+        let t187 = t114 + t82;
+        let minus_g2_vy_leg2 = t187 * t75;
+        let t191 = t167 / t160 - t161 * rate_3_leg1;
+        let t195 = t45 * 5.0 - t73;
+        let minus_g2_vx_leg2 = t195 * t75;
+        let t201 = t132 * t110 + t158 * t191 - t138 * rate_3_leg1;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t191 + t180)
+            + minus_g2_vx_leg2 * (t201 + t183);
+        let t205 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t207 = t73 * t181 + t114 * t184 - 0.2 * t205;
+        let t208 = actuator_velocities[1] * actuator_velocities[1];
+        let t210 = 2.5 * (t61 - 0.08);
+        let minus_rate_dot_1_leg2 = t75 * (t207 - t208 * t210);
+        let t214 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t216 = t5 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
-        let t221 = t2 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t202 - t217)
-            + minus_g2_vy_leg1 * (t192 - t221);
-        let t225 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t227 = rate_3_leg1 * t221;
-        let t229 = rate_3_leg1 * t217;
-        let t232 = 0.04 * t225 - (t16 * t227 + t24 * t229);
-        let t233 = actuator_velocities[0] * actuator_velocities[0];
-        let t234 = t10 - 0.08;
-        let t235 = 0.5 * t234;
-        let rate_dot_1_leg1 = t18 * (t232 + t233 * t235);
-        let t239 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t242 = t50 * rate_3_leg1;
-        let t243 = rate_3_leg1 * t242;
-        let t245 = t42 * rate_3_leg1;
-        let t246 = rate_3_leg1 * t245;
-        let t250 = t121 + t82 * 5.0;
-        let minus_g2_vy_leg3 = t250 * t104;
-        let t255 = t80 * 5.0 - t102;
-        let minus_g2_vx_leg3 = t255 * t104;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t192 + t245)
-            + minus_g2_vx_leg3 * (t202 - t242);
-        let t260 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t262 = t121 * t243 - t102 * t246 + 0.2 * t260;
-        let t263 = actuator_velocities[2] * actuator_velocities[2];
-        let t265 = 2.5 * (t91 - 0.08);
-        let rate_dot_1_leg3 = t104 * (t262 + t263 * t265);
-        let t269 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t271 = g1_vx_leg2 * t215 - minus_g1_vx_leg1 * t239 + g1_vx_leg3 * t269;
-        let t279 = g1_vy_leg1 * t239 - minus_g1_vy_leg2 * t215 - minus_g1_vy_leg3 * t269
-            + t153 * t271;
-        let rate_dot_3_leg1 = t160
-            * (g1_wz_leg1 * t239 + g1_wz_leg2 * t215 - minus_g1_wz_leg3 * t269
-                - t133 * t271 - t157 * t279);
-        let t292 = t156 * t279 - t157 * rate_dot_3_leg1;
-        let t296 = t108 * t271 + t153 * t292 - t133 * rate_dot_3_leg1;
-        let t298 = t227 - t5 * rate_dot_3_leg1;
-        let t302 = t229 + t2 * rate_dot_3_leg1;
-        let t307 = t15 * (t296 + t298) + t23 * (t292 - t302) + 0.04 * t233;
-        let minus_rate_dot_2_leg1 = t18 * (t307 + t225 * t235);
+        let t220 = t2 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t201 - t216)
+            + minus_g2_vy_leg1 * (t191 - t220);
+        let t224 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t226 = rate_3_leg1 * t220;
+        let t228 = rate_3_leg1 * t216;
+        let t231 = 0.04 * t224 - (t16 * t226 + t24 * t228);
+        let t232 = actuator_velocities[0] * actuator_velocities[0];
+        let t233 = t10 - 0.08;
+        let t234 = 0.5 * t233;
+        let rate_dot_1_leg1 = t18 * (t231 + t232 * t234);
+        let t238 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t241 = t50 * rate_3_leg1;
+        let t242 = rate_3_leg1 * t241;
+        let t244 = t42 * rate_3_leg1;
+        let t245 = rate_3_leg1 * t244;
+        let t248 = t122 + t83;
+        let minus_g2_vy_leg3 = t248 * t106;
+        let t253 = t80 * 5.0 - t104;
+        let minus_g2_vx_leg3 = t253 * t106;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t191 + t244)
+            + minus_g2_vx_leg3 * (t201 - t241);
+        let t258 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t260 = t122 * t242 - t104 * t245 + 0.2 * t258;
+        let t261 = actuator_velocities[2] * actuator_velocities[2];
+        let t263 = 2.5 * (t93 - 0.08);
+        let rate_dot_1_leg3 = t106 * (t260 + t261 * t263);
+        let t267 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t269 = g1_vx_leg2 * t214 - minus_g1_vx_leg1 * t238 + g1_vx_leg3 * t267;
+        let t277 = g1_vy_leg1 * t238 - minus_g1_vy_leg2 * t214 - minus_g1_vy_leg3 * t267
+            + t158 * t269;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t238 + g1_wz_leg2 * t214
+            - minus_g1_wz_leg3 * t267 - t138 * t269 - t161 * t277) / t178;
+        let t290 = t277 / t160 - t161 * rate_dot_3_leg1;
+        let t294 = t110 * t269 + t158 * t290 - t138 * rate_dot_3_leg1;
+        let t296 = t226 - t5 * rate_dot_3_leg1;
+        let t300 = t228 + t2 * rate_dot_3_leg1;
+        let t305 = t15 * (t294 + t296) + t23 * (t290 - t300) + 0.04 * t232;
+        let minus_rate_dot_2_leg1 = t18 * (t305 + t224 * t234);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t5 * minus_g2_vx_leg1;
-        let t317 = 5.0 * t17;
-        let t319 = 2.5 * t234;
-        let t321 = t225 * t317 + t319 * minus_rate_dot_2_leg1;
-        let t325 = t233 * t317 + actuator_accelerations[0] * t319;
-        let t336 = 5.0 * (t232 + t17 * t239);
-        let t338 = 5.0 * t307;
-        let t351 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t357 = minus_rate_2_leg1 + rate_3_leg1;
-        let t362 = g1_vx_leg2 * actuator_accelerations[1];
-        let t363 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t364 = g1_wz_leg2 * actuator_accelerations[1];
-        let t378 = t196 * (t296 + t51 * rate_dot_3_leg1 - t181)
-            + t188 * (t292 + t43 * rate_dot_3_leg1 + t184) + 0.2 * t209;
-        let minus_rate_dot_2_leg2 = t75 * (t378 + t206 * t211);
+        let t315 = 5.0 * t17;
+        let t317 = 2.5 * t233;
+        let t319 = t224 * t315 + t317 * minus_rate_dot_2_leg1;
+        let t323 = t232 * t315 + actuator_accelerations[0] * t317;
+        let t334 = 5.0 * (t231 + t17 * t238);
+        let t336 = 5.0 * t305;
+        let t349 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t355 = minus_rate_2_leg1 + rate_3_leg1;
+        let t360 = g1_vx_leg2 * actuator_accelerations[1];
+        let t361 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t362 = g1_wz_leg2 * actuator_accelerations[1];
+        let t376 = t195 * (t294 + t51 * rate_dot_3_leg1 - t181)
+            + t187 * (t290 + t43 * rate_dot_3_leg1 + t184) + 0.2 * t208;
+        let minus_rate_dot_2_leg2 = t75 * (t376 + t205 * t210);
         let minus_g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t51 * minus_g2_vx_leg2;
-        let t388 = 5.0 * t74;
-        let t391 = t206 * t388 + t211 * minus_rate_dot_2_leg2;
-        let t395 = t209 * t388 + actuator_accelerations[1] * t211;
-        let t406 = t208 - t215 * t388;
-        let t420 = -(minus_rate_2_leg2 + actuator_velocities[1]);
-        let t426 = rate_3_leg1 + minus_rate_2_leg2;
-        let t431 = g1_vx_leg3 * actuator_accelerations[2];
-        let t432 = minus_g1_vy_leg3 * actuator_accelerations[2];
-        let t433 = minus_g1_wz_leg3 * actuator_accelerations[2];
-        let t447 = t250 * (t292 + t42 * rate_dot_3_leg1 - t243)
-            + t255 * (t296 - t50 * rate_dot_3_leg1 - t246) + 0.2 * t263;
-        let minus_rate_dot_2_leg3 = t104 * (t447 + t260 * t265);
+        let t386 = 5.0 * t74;
+        let t389 = t205 * t386 + t210 * minus_rate_dot_2_leg2;
+        let t393 = t208 * t386 + actuator_accelerations[1] * t210;
+        let t404 = t207 - t214 * t386;
+        let t418 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t424 = rate_3_leg1 + minus_rate_2_leg2;
+        let t429 = g1_vx_leg3 * actuator_accelerations[2];
+        let t430 = minus_g1_vy_leg3 * actuator_accelerations[2];
+        let t431 = minus_g1_wz_leg3 * actuator_accelerations[2];
+        let t445 = t248 * (t290 + t42 * rate_dot_3_leg1 - t242)
+            + t253 * (t294 - t50 * rate_dot_3_leg1 - t245) + 0.2 * t261;
+        let minus_rate_dot_2_leg3 = t106 * (t445 + t258 * t263);
         let g2_wz_leg3 = t50 * minus_g2_vx_leg3 - t42 * minus_g2_vy_leg3;
-        let t458 = 5.0 * t103;
-        let t460 = t265 * minus_rate_dot_2_leg3 + t260 * t458;
-        let t464 = t263 * t458 + actuator_accelerations[2] * t265;
-        let t474 = t262 + t269 * t458;
-        let t489 = -(minus_rate_2_leg3 + actuator_velocities[2]);
-        let t495 = rate_3_leg1 + minus_rate_2_leg3;
-        let t500 = 10.0 * t302;
-        let t501 = 10.0 * t298;
+        let t456 = 5.0 * t105;
+        let t458 = t263 * minus_rate_dot_2_leg3 + t258 * t456;
+        let t462 = t261 * t456 + actuator_accelerations[2] * t263;
+        let t472 = t260 + t267 * t456;
+        let t487 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t493 = rate_3_leg1 + minus_rate_2_leg3;
+        let t498 = 10.0 * t300;
+        let t499 = 10.0 * t296;
         Ok([
             [
                 -t20, -t20, -t31,
                 -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 -minus_g1_vx_leg1, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g1_vx_leg1 * t321 - minus_g2_vx_leg1 * t325,
-                minus_g2_vx_leg1 * t336 - minus_g1_vx_leg1 * t338, -(0.04 * t20),
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t351),
-                ::overact::math::signed(minus_g2_vx_leg1, t357), t362, t362, t165,
+                minus_g1_vx_leg1 * t319 - minus_g2_vx_leg1 * t323,
+                minus_g2_vx_leg1 * t334 - minus_g1_vx_leg1 * t336, -(0.04 * t20),
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t349),
+                ::overact::math::signed(minus_g2_vx_leg1, t355), t360, t360, t129,
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]), g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t391 + minus_g2_vx_leg2 * t395),
-                g1_vx_leg2 * t378 - minus_g2_vx_leg2 * t406, 0.04 * t362,
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t420),
-                ::overact::math::signed(minus_g2_vx_leg2, t426), t431, t431, t167,
+                -(g1_vx_leg2 * t389 + minus_g2_vx_leg2 * t393),
+                g1_vx_leg2 * t376 - minus_g2_vx_leg2 * t404, 0.04 * t360,
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t418),
+                ::overact::math::signed(minus_g2_vx_leg2, t424), t429, t429, t131,
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), g1_vx_leg3,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t460 + minus_g2_vx_leg3 * t464),
-                minus_g2_vx_leg3 * t474 + g1_vx_leg3 * t447, 0.04 * t431,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t489),
-                ::overact::math::signed(minus_g2_vx_leg3, t495), 0.0, -t500, t501, t296,
+                -(g1_vx_leg3 * t458 + minus_g2_vx_leg3 * t462),
+                minus_g2_vx_leg3 * t472 + g1_vx_leg3 * t445, 0.04 * t429,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t487),
+                ::overact::math::signed(minus_g2_vx_leg3, t493), 0.0, -t498, t499, t294,
             ],
             [
                 t26, t26, t32, ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 g1_vy_leg1, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t321 + minus_g2_vy_leg1 * t325),
-                g1_vy_leg1 * t338 + minus_g2_vy_leg1 * t336, 0.04 * t26,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t351),
-                ::overact::math::signed(minus_g2_vy_leg1, t357), -t363, -t363, -t171,
+                -(g1_vy_leg1 * t319 + minus_g2_vy_leg1 * t323),
+                g1_vy_leg1 * t336 + minus_g2_vy_leg1 * t334, 0.04 * t26,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t349),
+                ::overact::math::signed(minus_g2_vy_leg1, t355), -t361, -t361, -t162,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                minus_g1_vy_leg2 * t391 - minus_g2_vy_leg2 * t395,
-                -(minus_g2_vy_leg2 * t406 + minus_g1_vy_leg2 * t378), -(0.04 * t363),
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t420),
-                ::overact::math::signed(minus_g2_vy_leg2, t426), -t432, -t432, -t173,
+                minus_g1_vy_leg2 * t389 - minus_g2_vy_leg2 * t393,
+                -(minus_g2_vy_leg2 * t404 + minus_g1_vy_leg2 * t376), -(0.04 * t361),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t418),
+                ::overact::math::signed(minus_g2_vy_leg2, t424), -t430, -t430, -t164,
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]),
                 -minus_g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                minus_g1_vy_leg3 * t460 - minus_g2_vy_leg3 * t464,
-                minus_g2_vy_leg3 * t474 - minus_g1_vy_leg3 * t447, -(0.04 * t432),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t489),
-                ::overact::math::signed(minus_g2_vy_leg3, t495), 0.0, -t501, -t500, t292,
+                minus_g1_vy_leg3 * t458 - minus_g2_vy_leg3 * t462,
+                minus_g2_vy_leg3 * t472 - minus_g1_vy_leg3 * t445, -(0.04 * t430),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t487),
+                ::overact::math::signed(minus_g2_vy_leg3, t493), 0.0, -t499, -t498, t290,
             ],
             [
                 t30, t30, t33, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 g1_wz_leg1, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                g2_wz_leg1 * t325 - g1_wz_leg1 * t321, g1_wz_leg1 * t338 - g2_wz_leg1 * t336,
-                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t351),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t357), t364, t364, t161,
+                g2_wz_leg1 * t323 - g1_wz_leg1 * t319, g1_wz_leg1 * t336 - g2_wz_leg1 * t334,
+                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t349),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t355), t362, t362, t118,
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]), g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g2_wz_leg2 * t395 + g1_wz_leg2 * t391),
-                g1_wz_leg2 * t378 - minus_g2_wz_leg2 * t406, 0.04 * t364,
-                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t420),
-                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t426), -t433, -t433, -t163,
+                -(minus_g2_wz_leg2 * t393 + g1_wz_leg2 * t389),
+                g1_wz_leg2 * t376 - minus_g2_wz_leg2 * t404, 0.04 * t362,
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t418),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t424), -t431, -t431, -t127,
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]),
                 -minus_g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg3 * t464 + minus_g1_wz_leg3 * t460,
-                -(minus_g1_wz_leg3 * t447 + g2_wz_leg3 * t474), -(0.04 * t433),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t489),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t495), rate_dot_3_leg1,
-                c_phi * t292 - s_phi * t296, -(s_phi * t292 + c_phi * t296), 0.0,
+                g2_wz_leg3 * t462 + minus_g1_wz_leg3 * t458,
+                -(minus_g1_wz_leg3 * t445 + g2_wz_leg3 * t472), -(0.04 * t431),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t487),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t493), rate_dot_3_leg1,
+                c_phi * t290 - s_phi * t294, -(s_phi * t290 + c_phi * t294), 0.0,
             ],
         ])
     }
@@ -2695,7 +2693,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 321 operations (120 additions, 195 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 279 intermediates.
+    /// 321 operations (121 additions, 194 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 279 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2747,7 +2745,8 @@ impl Planar3Rrr {
         let t75 = t5 - t74;
         let t77 = pose[0] + t75 + 0.3031088913245535;
         let t78 = 0.5 * t77;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t79 = 0.8660254037844386 * s_phi;
+        let minus_s123_leg2 = t79 - 0.5 * c_phi;
         let t82 = 0.1 * minus_s123_leg2;
         let t83 = t2 + t82;
         let t84 = pose[1] + 0.175;
@@ -2771,7 +2770,8 @@ impl Planar3Rrr {
         let t116 = acceleration[1] + t75 * acceleration[2] + twist[2] * t114;
         let t120 = t75 * twist[2];
         let t122 = acceleration[0] + t83 * acceleration[2] - twist[2] * t120;
-        let t126 = t111 + 10.0 * t89;
+        let t125 = 10.0 * t89;
+        let t126 = t111 + t125;
         let minus_g2_vy_leg2 = t126 * t107;
         let t128 = twist[1] + t120;
         let t131 = 10.0 * t78 - t105;
@@ -2786,10 +2786,9 @@ impl Planar3Rrr {
         let t145 = 2.5 * (t93 - 0.08);
         let minus_rate_dot_1_leg2 = t107 * (t138 - t143 * t145);
         let g1_wz_leg2 = t83 * g1_vx_leg2 - t75 * minus_g1_vy_leg2;
-        let t156 = pose[0] + t74 + -0.3031088913245535;
+        let t156 = pose[0] + t74 - 0.3031088913245535;
         let t158 = t82 + t84;
-        let t159 = 0.5 * t158;
-        let t160 = 0.8660254037844386 * t156 - t159;
+        let t160 = 0.8660254037844386 * t156 - 0.5 * t158;
         let t162 = 0.5 * t156;
         let t164 = t162 + 0.8660254037844386 * t158;
         let t167 = t160 * t160 + t164 * t164;
@@ -2808,7 +2807,7 @@ impl Planar3Rrr {
         let t190 = 2.5 * t172 - 4.330127018922193 * t176;
         let t193 = t82 * twist[2];
         let t195 = acceleration[1] + t74 * acceleration[2] - twist[2] * t193;
-        let t199 = t190 + 10.0 * t159;
+        let t199 = t190 + t79 + t125;
         let minus_g2_vy_leg3 = t199 * t180;
         let t201 = twist[1] + t184;
         let t204 = 10.0 * t162 - t178;
@@ -2912,7 +2911,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 276 operations (95 additions, 178 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 241 intermediates.
+    /// 273 operations (95 additions, 175 multiplications, 3 divisions), 0 square roots, 7 trigonometric pairs, 27 signs, 238 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2948,13 +2947,12 @@ impl Planar3Rrr {
         let minus_g2_vy_leg1 = c1_leg1 * t30;
         let t41 = twist[1] - t9;
         let rate_2_leg1 = g2_vx_leg1 * t38 - minus_g2_vy_leg1 * t41;
-        let t44 = rate_2_leg1 * rate_2_leg1;
-        let t46 = c12_leg1 * t32 - s12_leg1 * t34 + 0.2 * t44;
+        let t45 = 0.2 * (rate_2_leg1 * rate_2_leg1);
+        let t46 = c12_leg1 * t32 - s12_leg1 * t34 + t45;
         let g1_vy_leg1 = c12_leg1 * t30;
         let rate_1_leg1 = g1_vy_leg1 * t41 - minus_g1_vx_leg1 * t38;
-        let t51 = rate_1_leg1 * rate_1_leg1;
-        let t52 = 0.2 * c2_leg1;
-        let rate_dot_1_leg1 = t30 * (t46 + t51 * t52);
+        let t52 = 0.2 * (rate_1_leg1 * rate_1_leg1);
+        let rate_dot_1_leg1 = t30 * (t46 + c2_leg1 * t52);
         let g1_wz_leg1 = minus_g1_vx_leg1 * t2 - g1_vy_leg1 * t5;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
@@ -2962,11 +2960,11 @@ impl Planar3Rrr {
         let t75 = 5.0 / s2_leg2;
         let g1_vx_leg2 = t74 * t75;
         let t79 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t80 = 0.05 * s_phi;
-        let t81 = 0.08660254037844387 * c_phi;
+        let t80 = t5 * 0.5;
+        let t81 = t2 * 0.8660254037844386;
         let t82 = t80 - t81;
-        let t85 = 0.08660254037844387 * s_phi;
-        let t86 = 0.05 * c_phi;
+        let t85 = t5 * 0.8660254037844386;
+        let t86 = t2 * 0.5;
         let t87 = t85 + t86;
         let t88 = t87 * twist[2];
         let t90 = acceleration[1] + t82 * acceleration[2] + twist[2] * t88;
@@ -2979,13 +2977,12 @@ impl Planar3Rrr {
         let minus_g2_vx_leg2 = t107 * t75;
         let t109 = twist[0] + t88;
         let rate_2_leg2 = g2_vy_leg2 * t103 - minus_g2_vx_leg2 * t109;
-        let t112 = rate_2_leg2 * rate_2_leg2;
-        let t114 = t79 * t90 - t74 * t96 - 0.2 * t112;
+        let t113 = 0.2 * (rate_2_leg2 * rate_2_leg2);
+        let t114 = t79 * t90 - t74 * t96 - t113;
         let minus_g1_vy_leg2 = t79 * t75;
         let rate_1_leg2 = g1_vx_leg2 * t109 - minus_g1_vy_leg2 * t103;
-        let t119 = rate_1_leg2 * rate_1_leg2;
-        let t120 = 0.2 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t75 * (t114 - t119 * t120);
+        let t120 = 0.2 * (rate_1_leg2 * rate_1_leg2);
+        let minus_rate_dot_1_leg2 = t75 * (t114 - c2_leg2 * t120);
         let g1_wz_leg2 = g1_vx_leg2 * t87 - minus_g1_vy_leg2 * t82;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
@@ -3006,29 +3003,28 @@ impl Planar3Rrr {
         let minus_g2_vx_leg3 = t171 * t143;
         let t173 = twist[0] - t158;
         let rate_2_leg3 = g2_vy_leg3 * t167 - minus_g2_vx_leg3 * t173;
-        let t176 = rate_2_leg3 * rate_2_leg3;
-        let t178 = t142 * t151 - t155 * t160 + 0.2 * t176;
+        let t177 = 0.2 * (rate_2_leg3 * rate_2_leg3);
+        let t178 = t142 * t151 - t155 * t160 + t177;
         let minus_g1_vy_leg3 = t155 * t143;
         let rate_1_leg3 = g1_vx_leg3 * t173 - minus_g1_vy_leg3 * t167;
-        let t183 = rate_1_leg3 * rate_1_leg3;
-        let t184 = 0.2 * c2_leg3;
-        let rate_dot_1_leg3 = t143 * (t178 + t183 * t184);
+        let t184 = 0.2 * (rate_1_leg3 * rate_1_leg3);
+        let rate_dot_1_leg3 = t143 * (t178 + c2_leg3 * t184);
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t148 + g1_vx_leg3 * t145;
-        let t216 = s1_leg1 * t34 - c1_leg1 * t32 - 0.2 * t51;
-        let rate_dot_2_leg1 = t30 * (t216 - t44 * t52);
+        let t215 = s1_leg1 * t34 - c1_leg1 * t32 - t52;
+        let rate_dot_2_leg1 = t30 * (t215 - t45 * c2_leg1);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t5 - g2_vx_leg1 * t2;
-        let t230 = t107 * t96 - t101 * t90 + 0.2 * t119;
-        let minus_rate_dot_2_leg2 = t75 * (t230 + t112 * t120);
+        let t228 = t107 * t96 - t101 * t90 + t120;
+        let minus_rate_dot_2_leg2 = t75 * (t228 + t113 * c2_leg2);
         let g2_wz_leg2 = g2_vy_leg2 * t82 - minus_g2_vx_leg2 * t87;
-        let t244 = t165 * t160 - t171 * t151 - 0.2 * t183;
-        let rate_dot_2_leg3 = t143 * (t244 - t176 * t184);
+        let t241 = t165 * t160 - t171 * t151 - t184;
+        let rate_dot_2_leg3 = t143 * (t241 - t177 * c2_leg3);
         let g2_wz_leg3 = g2_vy_leg3 * t148 + minus_g2_vx_leg3 * t145;
-        let t282 = rate_2_leg1 - rate_1_leg1;
-        let t289 = rate_2_leg2 - rate_1_leg2;
-        let t296 = rate_2_leg3 - rate_1_leg3;
-        let t302 = twist[2] - rate_2_leg1;
-        let t307 = twist[2] - rate_2_leg2;
-        let t312 = twist[2] - rate_2_leg3;
+        let t279 = rate_2_leg1 - rate_1_leg1;
+        let t286 = rate_2_leg2 - rate_1_leg2;
+        let t293 = rate_2_leg3 - rate_1_leg3;
+        let t299 = twist[2] - rate_2_leg1;
+        let t304 = twist[2] - rate_2_leg2;
+        let t309 = twist[2] - rate_2_leg3;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
@@ -3038,15 +3034,15 @@ impl Planar3Rrr {
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, g2_vx_leg1 * rate_dot_2_leg1, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g2_vx_leg3 * rate_dot_2_leg3), minus_g1_vx_leg1 * t216 - g2_vx_leg1 * t46,
-                g1_vx_leg2 * t230 - minus_g2_vx_leg2 * t114,
-                minus_g2_vx_leg3 * t178 - g1_vx_leg3 * t244,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t282),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t289),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t296),
-                -::overact::math::signed(g2_vx_leg1, t302),
-                ::overact::math::signed(minus_g2_vx_leg2, t307),
-                ::overact::math::signed(minus_g2_vx_leg3, t312),
+                -(minus_g2_vx_leg3 * rate_dot_2_leg3), minus_g1_vx_leg1 * t215 - g2_vx_leg1 * t46,
+                g1_vx_leg2 * t228 - minus_g2_vx_leg2 * t114,
+                minus_g2_vx_leg3 * t178 - g1_vx_leg3 * t241,
+                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t279),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t286),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t293),
+                -::overact::math::signed(g2_vx_leg1, t299),
+                ::overact::math::signed(minus_g2_vx_leg2, t304),
+                ::overact::math::signed(minus_g2_vx_leg3, t309),
             ],
             [
                 0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3057,15 +3053,15 @@ impl Planar3Rrr {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, -(minus_g2_vy_leg1 * rate_dot_2_leg1),
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                minus_g2_vy_leg1 * t46 - g1_vy_leg1 * t216,
-                g2_vy_leg2 * t114 - minus_g1_vy_leg2 * t230,
-                minus_g1_vy_leg3 * t244 - g2_vy_leg3 * t178,
-                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t282),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t289),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t296),
-                ::overact::math::signed(minus_g2_vy_leg1, t302),
-                -::overact::math::signed(g2_vy_leg2, t307),
-                -::overact::math::signed(g2_vy_leg3, t312),
+                minus_g2_vy_leg1 * t46 - g1_vy_leg1 * t215,
+                g2_vy_leg2 * t114 - minus_g1_vy_leg2 * t228,
+                minus_g1_vy_leg3 * t241 - g2_vy_leg3 * t178,
+                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t279),
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t286),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t293),
+                ::overact::math::signed(minus_g2_vy_leg1, t299),
+                -::overact::math::signed(g2_vy_leg2, t304),
+                -::overact::math::signed(g2_vy_leg3, t309),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3078,14 +3074,14 @@ impl Planar3Rrr {
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), g1_wz_leg1, g1_wz_leg2,
                 -minus_g1_wz_leg3, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), g2_wz_leg3 * rate_dot_2_leg3,
-                -(g1_wz_leg1 * t216 + g2_wz_leg1 * t46), g1_wz_leg2 * t230 + g2_wz_leg2 * t114,
-                minus_g1_wz_leg3 * t244 - g2_wz_leg3 * t178,
-                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t282),
-                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t289),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t296),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t302),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t307),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t312),
+                -(g1_wz_leg1 * t215 + g2_wz_leg1 * t46), g1_wz_leg2 * t228 + g2_wz_leg2 * t114,
+                minus_g1_wz_leg3 * t241 - g2_wz_leg3 * t178,
+                ::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t279),
+                ::overact::math::signed(g2_wz_leg2 - g1_wz_leg2, t286),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t293),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t299),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t304),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t309),
             ],
         ])
     }
@@ -3100,7 +3096,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 420 operations (165 additions, 246 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 375 intermediates.
+    /// 418 operations (166 additions, 240 multiplications, 12 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 373 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3130,92 +3126,91 @@ impl Planar3Rrr {
         let t24 = t7 - t23;
         let g1_vy_leg1 = t24 * t18;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t3 * g1_vy_leg1;
-        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t32 = 0.1 * minus_s123_leg2;
-        let t33 = t2 + t32;
-        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t37 = 0.1 * minus_c123_leg2;
-        let t38 = t3 - t37;
-        let t40 = pose[0] + t38 + 0.3031088913245535;
-        let t41 = 0.5 * t40;
-        let t42 = pose[1] + 0.175;
-        let t43 = t42 - t33;
-        let t45 = t41 - 0.8660254037844386 * t43;
-        let t47 = 0.5 * t43;
-        let t48 = 0.8660254037844386 * t40 + t47;
-        let t51 = t48 * t48 + t45 * t45;
-        let t53 = 0.04 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t57 = t45 * t54 + 0.5 * t48;
-        let t61 = 0.5 * t45 - t48 * t54;
-        let t63 = 4.330127018922193 * t57 + 2.5 * t61;
-        let t64 = t51 * t54;
-        ::overact::guard::leg(t64, 0.03903123748998999, "leg2")?;
-        let t65 = 0.2 / t64;
-        let g1_vx_leg2 = t63 * t65;
-        let t70 = 4.330127018922193 * t61 - 2.5 * t57;
-        let minus_g1_vy_leg2 = t70 * t65;
-        let g1_wz_leg2 = t33 * g1_vx_leg2 - t38 * minus_g1_vy_leg2;
-        let t77 = pose[0] + t37 + -0.3031088913245535;
-        let t79 = t32 + t42;
-        let t80 = 0.5 * t79;
-        let t81 = 0.8660254037844386 * t77 - t80;
-        let t83 = 0.5 * t77;
-        let t85 = t83 + 0.8660254037844386 * t79;
-        let t88 = t81 * t81 + t85 * t85;
-        let t90 = 0.04 / t88 - 0.25;
-        ::overact::guard::reach(t90, "leg3")?;
-        let t91 = ::overact::math::sqrt(t90);
-        let t93 = 0.5 * t81 - t85 * t91;
-        let t97 = 0.5 * t85 + t81 * t91;
-        let t99 = 2.5 * t93 - 4.330127018922193 * t97;
-        let t100 = t88 * t91;
-        ::overact::guard::leg(t100, 0.03903123748998999, "leg3")?;
-        let t101 = 0.2 / t100;
-        let minus_g1_vy_leg3 = t99 * t101;
-        let t106 = 4.330127018922193 * t93 + 2.5 * t97;
-        let g1_vx_leg3 = t106 * t101;
-        let minus_g1_wz_leg3 = t37 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
-        let t116 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
-            - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t121 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t123 = t116 * t122;
-        let t135 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t137 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t135 * t123;
-        let t143 = t135 * t122;
-        let t145 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t135 * t143;
-        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
-        let t146 = 1.0 / t145;
-        let t147 = t137 * t146;
-        let t149 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t116 * t123 - t137 * t147;
-        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
-        let t150 = 1.0 / t149;
         let minus_g2_vx_leg1 = t15 * t18;
-        let t152 = g1_vx_leg2 * actuator_velocities[1];
-        let t153 = minus_g1_vx_leg1 * actuator_velocities[0];
-        let t155 = g1_vx_leg3 * actuator_velocities[2];
-        let t156 = t152 - t153 + t155;
-        let t158 = g1_vy_leg1 * actuator_velocities[0];
-        let t159 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t161 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t164 = t158 - t159 - t161 + t156 * t143;
-        let t166 = g1_wz_leg1 * actuator_velocities[0];
-        let t167 = g1_wz_leg2 * actuator_velocities[1];
-        let t169 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let rate_3_leg1 = t150 * (t166 + t167 - t169 - t156 * t123 - t147 * t164);
-        let t177 = t146 * t164 - t147 * rate_3_leg1;
-        let t181 = t156 * t122 + t143 * t177 - t123 * rate_3_leg1;
+        let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t32 = 0.1 * minus_c123_leg2;
+        let t33 = t3 - t32;
+        let t35 = pose[0] + t33 + 0.3031088913245535;
+        let t37 = 0.8660254037844386 * s_phi;
+        let minus_s123_leg2 = t37 - 0.5 * c_phi;
+        let t40 = 0.1 * minus_s123_leg2;
+        let t41 = pose[1] + 0.175;
+        let t42 = t40 + t41;
+        let t43 = 0.5 * t42;
+        let t44 = 10.0 * t43;
+        let t45 = t44 - t37;
+        let t46 = 0.1 * t45;
+        let t47 = t46 + t46;
+        let t49 = 0.5 * t35 - 0.8660254037844386 * t47;
+        let t51 = 0.8660254037844386 * t35 + t46;
+        let t54 = t51 * t51 + t49 * t49;
+        let t56 = 0.04 / t54 - 0.25;
+        ::overact::guard::reach(t56, "leg2")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t60 = t49 * t57 + 0.5 * t51;
+        let t64 = 0.5 * t49 - t51 * t57;
+        let t66 = 4.330127018922193 * t60 + 2.5 * t64;
+        let t67 = t54 * t57;
+        ::overact::guard::leg(t67, 0.03903123748998999, "leg2")?;
+        let t68 = 0.2 / t67;
+        let g1_vx_leg2 = t66 * t68;
+        let t70 = g1_vx_leg2 * actuator_velocities[1];
+        let t71 = minus_g1_vx_leg1 * actuator_velocities[0];
+        let t74 = pose[0] + t32 - 0.3031088913245535;
+        let t76 = 0.8660254037844386 * t74 - t43;
+        let t80 = 0.5 * t74 + 0.8660254037844386 * t42;
+        let t83 = t76 * t76 + t80 * t80;
+        let t85 = 0.04 / t83 - 0.25;
+        ::overact::guard::reach(t85, "leg3")?;
+        let t86 = ::overact::math::sqrt(t85);
+        let t88 = 0.5 * t76 - t80 * t86;
+        let t92 = 0.5 * t80 + t76 * t86;
+        let t94 = 4.330127018922193 * t88 + 2.5 * t92;
+        let t95 = t83 * t86;
+        ::overact::guard::leg(t95, 0.03903123748998999, "leg3")?;
+        let t96 = 0.2 / t95;
+        let g1_vx_leg3 = t94 * t96;
+        let t98 = g1_vx_leg3 * actuator_velocities[2];
+        let t99 = t70 - t71 + t98;
+        let t104 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t104, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t104, 39.38461538461539, "actuators")?;
+        let t105 = 1.0 / t104;
+        let t110 = 4.330127018922193 * t64 - 2.5 * t60;
+        let minus_g1_vy_leg2 = t110 * t68;
+        let t116 = 2.5 * t88 - 4.330127018922193 * t92;
+        let minus_g1_vy_leg3 = t116 * t96;
+        let t119 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t120 = t119 * t105;
+        let t121 = g1_vy_leg1 * actuator_velocities[0];
+        let t122 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t124 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t127 = t121 - t122 - t124 + t99 * t120;
+        let t134 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t119 * t120;
+        ::overact::guard::platform(t134, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t134, 39.384615384615394, "actuators")?;
+        let t137 = t41 - t47;
+        let g1_wz_leg2 = t137 * g1_vx_leg2 - t33 * minus_g1_vy_leg2;
+        let minus_g1_wz_leg3 = t32 * minus_g1_vy_leg3 + t40 * g1_vx_leg3;
+        let t152 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+            - g1_vx_leg3 * minus_g1_wz_leg3;
+        let t153 = t152 * t105;
+        let t155 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t119 * t153;
+        let t156 = t155 / t134;
+        let t157 = g1_wz_leg1 * actuator_velocities[0];
+        let t158 = g1_wz_leg2 * actuator_velocities[1];
+        let t160 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let t174 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t152 * t153 - t155 * t156;
+        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
+        let rate_3_leg1 = (t157 + t158 - t160 - t99 * t153 - t156 * t127) / t174;
+        let t177 = t127 / t134 - t156 * rate_3_leg1;
+        let t181 = t99 * t105 + t120 * t177 - t153 * rate_3_leg1;
         let t182 = t2 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
         let t186 = t3 * rate_3_leg1;
@@ -3229,129 +3224,128 @@ impl Planar3Rrr {
         let t200 = 0.5 * (t10 - 0.08);
         let rate_dot_1_leg1 = t18 * (t197 + t198 * t200);
         let t204 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t206 = t38 * rate_3_leg1;
+        let t206 = t33 * rate_3_leg1;
         let t207 = rate_3_leg1 * t206;
-        let t209 = t33 * rate_3_leg1;
+        let t209 = t137 * rate_3_leg1;
         let t210 = rate_3_leg1 * t209;
-        let t214 = t70 + 10.0 * t47;
-        let minus_g2_vy_leg2 = t214 * t65;
-        let t219 = 10.0 * t41 - t63;
-        let minus_g2_vx_leg2 = t219 * t65;
+        let t213 = t110 + t45;
+        let minus_g2_vy_leg2 = t213 * t68;
+        let t218 = t35 * 5.0 - t66;
+        let minus_g2_vx_leg2 = t218 * t68;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t177 + t206)
             + minus_g2_vx_leg2 * (t181 + t209);
-        let t224 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t225 = 0.2 * t224;
-        let t227 = actuator_velocities[1] * actuator_velocities[1];
-        let t229 = 2.5 * (t51 - 0.08);
-        let minus_rate_dot_1_leg2 = t65 * (t63 * t207 + t70 * t210 - t225 - t227 * t229);
-        let t233 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t236 = t32 * rate_3_leg1;
-        let t237 = rate_3_leg1 * t236;
-        let t239 = t37 * rate_3_leg1;
-        let t240 = rate_3_leg1 * t239;
-        let t244 = t99 + 10.0 * t80;
-        let minus_g2_vy_leg3 = t244 * t101;
-        let t249 = 10.0 * t83 - t106;
-        let minus_g2_vx_leg3 = t249 * t101;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t177 + t239)
-            + minus_g2_vx_leg3 * (t181 - t236);
-        let t254 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t255 = 0.2 * t254;
-        let t257 = actuator_velocities[2] * actuator_velocities[2];
-        let t259 = 2.5 * (t88 - 0.08);
-        let rate_dot_1_leg3 = t101 * (t99 * t237 - t106 * t240 + t255 + t257 * t259);
-        let t263 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t270 = g1_vx_leg2 * t233 - minus_g1_vx_leg1 * t204 + g1_vx_leg3 * t263;
-        let t279 = g1_vy_leg1 * t204 - minus_g1_vy_leg2 * t233 - minus_g1_vy_leg3 * t263
-            + t143 * t270;
-        let rate_dot_3_leg1 = t150
-            * (g1_wz_leg1 * t204 + g1_wz_leg2 * t233 - minus_g1_wz_leg3 * t263
-                - t123 * t270 - t147 * t279);
-        let t284 = t194 + t3 * rate_dot_3_leg1;
-        let t285 = 10.0 * t284;
-        let t287 = t192 - t2 * rate_dot_3_leg1;
-        let t288 = 10.0 * t287;
-        let t291 = t146 * t279 - t147 * rate_dot_3_leg1;
-        let t297 = t122 * t270 + t143 * t291 - t123 * rate_dot_3_leg1;
-        let t327 = t15 * (t287 + t297) + t23 * (t291 - t284) + 0.04 * t198;
-        let minus_rate_dot_2_leg1 = t18 * (t327 + t190 * t200);
+        let t223 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t224 = 0.2 * t223;
+        let t226 = actuator_velocities[1] * actuator_velocities[1];
+        let t228 = 2.5 * (t54 - 0.08);
+        let minus_rate_dot_1_leg2 = t68
+            * (t66 * t207 + t110 * t210 - t224 - t226 * t228);
+        let t232 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t235 = t40 * rate_3_leg1;
+        let t236 = rate_3_leg1 * t235;
+        let t238 = t32 * rate_3_leg1;
+        let t239 = rate_3_leg1 * t238;
+        let t242 = t116 + t44;
+        let minus_g2_vy_leg3 = t242 * t96;
+        let t247 = t74 * 5.0 - t94;
+        let minus_g2_vx_leg3 = t247 * t96;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t177 + t238)
+            + minus_g2_vx_leg3 * (t181 - t235);
+        let t252 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t253 = 0.2 * t252;
+        let t255 = actuator_velocities[2] * actuator_velocities[2];
+        let t257 = 2.5 * (t83 - 0.08);
+        let rate_dot_1_leg3 = t96 * (t116 * t236 - t94 * t239 + t253 + t255 * t257);
+        let t261 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t268 = g1_vx_leg2 * t232 - minus_g1_vx_leg1 * t204 + g1_vx_leg3 * t261;
+        let t277 = g1_vy_leg1 * t204 - minus_g1_vy_leg2 * t232 - minus_g1_vy_leg3 * t261
+            + t120 * t268;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t204 + g1_wz_leg2 * t232
+            - minus_g1_wz_leg3 * t261 - t153 * t268 - t156 * t277) / t174;
+        let t282 = t194 + t3 * rate_dot_3_leg1;
+        let t283 = 10.0 * t282;
+        let t285 = t192 - t2 * rate_dot_3_leg1;
+        let t286 = 10.0 * t285;
+        let t289 = t277 / t134 - t156 * rate_dot_3_leg1;
+        let t295 = t105 * t268 + t120 * t289 - t153 * rate_dot_3_leg1;
+        let t325 = t15 * (t285 + t295) + t23 * (t289 - t282) + 0.04 * t198;
+        let minus_rate_dot_2_leg1 = t18 * (t325 + t190 * t200);
         let g2_wz_leg1 = t3 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t339 = t297 + t33 * rate_dot_3_leg1 - t207;
-        let t343 = t291 + t38 * rate_dot_3_leg1 + t210;
-        let t347 = t219 * t339 + t214 * t343 + 0.2 * t227;
-        let minus_rate_dot_2_leg2 = t65 * (t347 + t224 * t229);
-        let minus_g2_wz_leg2 = t38 * minus_g2_vy_leg2 + t33 * minus_g2_vx_leg2;
-        let t359 = t291 + t37 * rate_dot_3_leg1 - t237;
-        let t363 = t297 - t32 * rate_dot_3_leg1 - t240;
-        let t367 = t244 * t359 + t249 * t363 + 0.2 * t257;
-        let minus_rate_dot_2_leg3 = t101 * (t367 + t254 * t259);
-        let g2_wz_leg3 = t32 * minus_g2_vx_leg3 - t37 * minus_g2_vy_leg3;
-        let t379 = 5.0 * (t197 + t17 * t204);
-        let t381 = 5.0 * t327;
-        let t394 = t70 * t343 - t63 * t339 - t225;
-        let t406 = t106 * t363 - t99 * t359 + t255;
-        let t417 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t425 = -(minus_rate_2_leg2 + actuator_velocities[1]);
-        let t433 = -(minus_rate_2_leg3 + actuator_velocities[2]);
-        let t439 = minus_rate_2_leg1 + rate_3_leg1;
-        let t444 = rate_3_leg1 + minus_rate_2_leg2;
-        let t449 = rate_3_leg1 + minus_rate_2_leg3;
+        let t337 = t295 + t137 * rate_dot_3_leg1 - t207;
+        let t341 = t289 + t33 * rate_dot_3_leg1 + t210;
+        let t345 = t218 * t337 + t213 * t341 + 0.2 * t226;
+        let minus_rate_dot_2_leg2 = t68 * (t345 + t223 * t228);
+        let minus_g2_wz_leg2 = t33 * minus_g2_vy_leg2 + t137 * minus_g2_vx_leg2;
+        let t357 = t289 + t32 * rate_dot_3_leg1 - t236;
+        let t361 = t295 - t40 * rate_dot_3_leg1 - t239;
+        let t365 = t242 * t357 + t247 * t361 + 0.2 * t255;
+        let minus_rate_dot_2_leg3 = t96 * (t365 + t252 * t257);
+        let g2_wz_leg3 = t40 * minus_g2_vx_leg3 - t32 * minus_g2_vy_leg3;
+        let t377 = 5.0 * (t197 + t17 * t204);
+        let t379 = 5.0 * t325;
+        let t392 = t110 * t341 - t66 * t337 - t224;
+        let t404 = t94 * t361 - t116 * t357 + t253;
+        let t415 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t423 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t431 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t437 = minus_rate_2_leg1 + rate_3_leg1;
+        let t442 = rate_3_leg1 + minus_rate_2_leg2;
+        let t447 = rate_3_leg1 + minus_rate_2_leg3;
         Ok([
             [
-                0.0, -t285, t288, t297, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
+                0.0, -t283, t286, t295, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
                 g1_vx_leg2 * actuator_accelerations[1], g1_vx_leg3 * actuator_accelerations[2],
-                -t153, t152, t155,
-                -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
+                -t71, t70, t98, -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), -minus_g1_vx_leg1,
                 g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                minus_g2_vx_leg1 * t379 - minus_g1_vx_leg1 * t381,
-                g1_vx_leg2 * t347 - minus_g2_vx_leg2 * t394,
-                minus_g2_vx_leg3 * t406 + g1_vx_leg3 * t367,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t417),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t425),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t433),
-                ::overact::math::signed(minus_g2_vx_leg1, t439),
-                ::overact::math::signed(minus_g2_vx_leg2, t444),
-                ::overact::math::signed(minus_g2_vx_leg3, t449),
+                minus_g2_vx_leg1 * t377 - minus_g1_vx_leg1 * t379,
+                g1_vx_leg2 * t345 - minus_g2_vx_leg2 * t392,
+                minus_g2_vx_leg3 * t404 + g1_vx_leg3 * t365,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t415),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t423),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t431),
+                ::overact::math::signed(minus_g2_vx_leg1, t437),
+                ::overact::math::signed(minus_g2_vx_leg2, t442),
+                ::overact::math::signed(minus_g2_vx_leg3, t447),
             ],
             [
-                0.0, -t288, -t285, t291, g1_vy_leg1 * actuator_accelerations[0],
+                0.0, -t286, -t283, t289, g1_vy_leg1 * actuator_accelerations[0],
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t158, -t159, -t161,
+                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t121, -t122, -t124,
                 ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * t381 + minus_g2_vy_leg1 * t379,
-                -(minus_g2_vy_leg2 * t394 + minus_g1_vy_leg2 * t347),
-                minus_g2_vy_leg3 * t406 - minus_g1_vy_leg3 * t367,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t417),
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t425),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t433),
-                ::overact::math::signed(minus_g2_vy_leg1, t439),
-                ::overact::math::signed(minus_g2_vy_leg2, t444),
-                ::overact::math::signed(minus_g2_vy_leg3, t449),
+                g1_vy_leg1 * t379 + minus_g2_vy_leg1 * t377,
+                -(minus_g2_vy_leg2 * t392 + minus_g1_vy_leg2 * t345),
+                minus_g2_vy_leg3 * t404 - minus_g1_vy_leg3 * t365,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t415),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t423),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t431),
+                ::overact::math::signed(minus_g2_vy_leg1, t437),
+                ::overact::math::signed(minus_g2_vy_leg2, t442),
+                ::overact::math::signed(minus_g2_vy_leg3, t447),
             ],
             [
-                rate_dot_3_leg1, c_phi * t291 - s_phi * t297, -(s_phi * t291 + c_phi * t297), 0.0,
+                rate_dot_3_leg1, c_phi * t289 - s_phi * t295, -(s_phi * t289 + c_phi * t295), 0.0,
                 g1_wz_leg1 * actuator_accelerations[0], g1_wz_leg2 * actuator_accelerations[1],
-                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t166, t167, -t169,
+                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t157, t158, -t160,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 g1_wz_leg2, -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g1_wz_leg1 * t381 - g2_wz_leg1 * t379, g1_wz_leg2 * t347 - minus_g2_wz_leg2 * t394,
-                -(minus_g1_wz_leg3 * t367 + g2_wz_leg3 * t406),
-                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t417),
-                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t425),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t433),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t439),
-                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t444),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t449),
+                g1_wz_leg1 * t379 - g2_wz_leg1 * t377, g1_wz_leg2 * t345 - minus_g2_wz_leg2 * t392,
+                -(minus_g1_wz_leg3 * t365 + g2_wz_leg3 * t404),
+                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t415),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t423),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t431),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t437),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t442),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t447),
             ],
         ])
     }

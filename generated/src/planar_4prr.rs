@@ -1267,7 +1267,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 307 operations (111 additions, 192 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 241 intermediates.
+    /// 307 operations (112 additions, 187 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 241 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1278,230 +1278,230 @@ impl Planar4Prr {
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] - (0.21213203435596426 - t3) + t7 + -0.21213203435596426;
-        let t10 = pose[1] + t9;
-        let t11 = 1.4705882352941178 * t10;
-        let c2_leg1 = 2.079725827019258 * t10;
-        let t14 = 1.0 - c2_leg1 * c2_leg1;
-        ::overact::guard::reach(t14, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        let t4 = 0.21213203435596426 - t3;
+        let t8 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = t8 - t3;
+        let t11 = pose[0] - t4 - (pose[1] + t4 - t9);
+        let t13 = t11 + pose[1] + pose[1];
+        let t14 = 1.4705882352941178 * t13;
+        let c2_leg1 = 2.079725827019258 * t13;
+        let t17 = 1.0 - c2_leg1 * c2_leg1;
+        ::overact::guard::reach(t17, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t17);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t16 = 0.7071067811865476 * minus_s2_leg1;
-        let t17 = t11 + t16;
-        let t18 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t17 * t18;
-        let t20 = t16 - t11;
-        let t21 = twist[2] * twist[2];
-        let t24 = c_phi * t21 + s_phi * acceleration[2];
-        let t27 = s_phi * t21 - c_phi * acceleration[2];
-        let t29 = 0.05656854249492381 * (t24 - t27);
-        let t30 = acceleration[1] - t29;
-        let t31 = acceleration[1] + acceleration[0];
-        let t32 = t31 - t30;
+        let t19 = 0.7071067811865476 * minus_s2_leg1;
+        let t20 = t14 + t19;
+        let minus_g1_vx_leg1 = t20 / minus_s2_leg1;
+        let t22 = t19 - t14;
+        let t23 = twist[2] * twist[2];
+        let t26 = c_phi * t23 + s_phi * acceleration[2];
+        let t29 = s_phi * t23 - c_phi * acceleration[2];
+        let t31 = 0.05656854249492381 * (t26 - t29);
+        let t32 = acceleration[0] + t31;
         let t35 = t3 * twist[2];
-        let t37 = acceleration[1] - t7 * acceleration[2] + twist[2] * t35;
+        let t37 = acceleration[1] - t8 * acceleration[2] + twist[2] * t35;
         let t38 = t32 + t37;
-        let t39 = acceleration[1] + t29;
+        let t39 = acceleration[1] + t31;
         let t40 = t38 - t39;
-        let t41 = t40 - t30;
-        let t42 = t32 - t41;
-        let t44 = t31 - t37;
-        let t45 = t39 - t44;
-        let t46 = t37 - t45;
-        let g2_vx_leg1 = 2.079725827019258 * t18;
-        let t50 = twist[0] - t35;
-        let t51 = t7 * twist[2];
-        let t52 = twist[1] + t51;
-        let rate_2_leg1 = g2_vx_leg1 * (t50 + t52);
-        let t55 = rate_2_leg1 * rate_2_leg1;
-        let t56 = 0.34 * t55;
-        let t57 = t20 * t42 - t17 * t46 - t56;
-        let rate_dot_1_leg1 = t18 * t57;
-        let t59 = minus_g1_vx_leg1 * rate_dot_1_leg1;
-        let g1_vy_leg1 = t20 * t18;
-        let t61 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let t65 = g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * t52 - minus_g1_vx_leg1 * t50;
-        let t76 = t46 + t42;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t18
-            * (0.7071067811865476 * t76 + t56 * c2_leg1);
+        let t41 = acceleration[1] + acceleration[0];
+        let t42 = t41 - t40;
+        let t44 = t41 - t39;
+        let g2_vx_leg1 = 2.079725827019258 / minus_s2_leg1;
+        let t48 = twist[1] - t35;
+        let t49 = t8 * twist[2];
+        let t50 = twist[0] + t49;
+        let rate_2_leg1 = g2_vx_leg1 * (t48 + t50);
+        let t53 = rate_2_leg1 * rate_2_leg1;
+        let t54 = 0.34 * t53;
+        let t55 = t22 * t42 - t20 * t44 - t54;
+        let rate_dot_1_leg1 = t55 / minus_s2_leg1;
+        let t57 = minus_g1_vx_leg1 * rate_dot_1_leg1;
+        let g1_vy_leg1 = t22 / minus_s2_leg1;
+        let t59 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = t8 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t63 = g1_wz_leg1 * rate_dot_1_leg1;
+        let t64 = twist[1] + t49;
+        let t66 = twist[0] - t35;
+        let rate_1_leg1 = g1_vy_leg1 * t64 - minus_g1_vx_leg1 * t66;
+        let t76 = t44 + t42;
+        let rate_dot_2_leg1 = 2.9411764705882355 / minus_s2_leg1
+            * (0.7071067811865476 * t76 + t54 * c2_leg1);
         let t81 = g2_vx_leg1 * rate_dot_2_leg1;
-        let t82 = t7 - t3;
-        let g2_wz_leg1 = g2_vx_leg1 * t82;
-        let t85 = c2_leg1 * rate_dot_1_leg1;
-        let t86 = g2_vx_leg1 * t85;
-        let t89 = minus_s2_leg1 * t55 + c2_leg1 * rate_dot_2_leg1;
-        let t97 = g2_vx_leg1 * t57;
-        let t98 = 2.079725827019258 * t76;
-        let t106 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t108 = twist[2] - rate_2_leg1;
-        let t109 = ::overact::math::signed(g2_vx_leg1, t108);
-        let t112 = pose[0] + pose[0];
-        let t113 = t10 - t112;
-        let c2_leg2 = 2.079725827019258 * t113;
-        let t116 = 1.0 - c2_leg2 * c2_leg2;
-        ::overact::guard::reach(t116, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t116);
+        let g2_wz_leg1 = g2_vx_leg1 * t9;
+        let t84 = c2_leg1 * rate_dot_1_leg1;
+        let t85 = g2_vx_leg1 * t84;
+        let t88 = minus_s2_leg1 * t53 + c2_leg1 * rate_dot_2_leg1;
+        let t96 = g2_vx_leg1 * t55;
+        let t97 = 2.079725827019258 * t76;
+        let t105 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t107 = twist[2] - rate_2_leg1;
+        let t108 = ::overact::math::signed(g2_vx_leg1, t107);
+        let t111 = pose[0] + pose[0];
+        let t112 = t13 - t111;
+        let c2_leg2 = 2.079725827019258 * t112;
+        let t115 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t115, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t115);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t118 = 0.7071067811865476 * minus_s2_leg2;
-        let t119 = 1.4705882352941178 * t113;
-        let t120 = t118 - t119;
-        let t121 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t120 * t121;
-        let t124 = t118 + t119;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t121;
+        let t117 = 0.7071067811865476 * minus_s2_leg2;
+        let t118 = 1.4705882352941178 * t112;
+        let t119 = t117 - t118;
+        let t120 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t119 * t120;
+        let t123 = t117 + t118;
+        let t124 = acceleration[1] - t31;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t120;
         let t128 = twist[0] + t35;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t52 - t128);
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t64 - t128);
         let t131 = rate_2_leg2 * rate_2_leg2;
         let t132 = 0.34 * t131;
-        let t133 = t120 * t40 + t124 * t30 + t132;
-        let minus_rate_dot_1_leg2 = t121 * t133;
+        let t133 = t119 * t40 + t123 * t124 + t132;
+        let minus_rate_dot_1_leg2 = t120 * t133;
         let t135 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t124 * t121;
+        let minus_g1_vy_leg2 = t123 * t120;
         let t137 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t8 * minus_g1_vx_leg2;
         let t141 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t142 = twist[0] - t51;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t142
-            + minus_g1_vy_leg2 * (twist[1] - t35);
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t121
-            * (0.7071067811865476 * t41 - t132 * c2_leg2);
+        let t142 = twist[0] - t49;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t142 + minus_g1_vy_leg2 * t48;
+        let t153 = t40 - t124;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t120
+            * (0.7071067811865476 * t153 - t132 * c2_leg2);
         let t158 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t82;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t9;
         let t161 = c2_leg2 * minus_rate_dot_1_leg2;
         let t162 = minus_g2_vx_leg2 * t161;
         let t165 = minus_s2_leg2 * t131 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t173 = 2.079725827019258 * t41;
+        let t173 = 2.079725827019258 * t153;
         let t175 = minus_g2_vx_leg2 * t133;
         let t182 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
         let t184 = twist[2] - rate_2_leg2;
         let t185 = ::overact::math::signed(minus_g2_vx_leg2, t184);
-        let t188 = t9 - pose[1];
-        let t189 = t112 - t188;
-        let t190 = 1.4705882352941178 * t189;
-        let minus_c2_leg3 = 2.079725827019258 * t189;
-        let t193 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
-        ::overact::guard::reach(t193, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t193);
+        let t188 = t111 - t11;
+        let t189 = 1.4705882352941178 * t188;
+        let minus_c2_leg3 = 2.079725827019258 * t188;
+        let t192 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
+        ::overact::guard::reach(t192, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t192);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t195 = 0.7071067811865476 * minus_s2_leg3;
-        let t196 = t190 - t195;
-        let t197 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t196 * t197;
-        let t200 = t195 + t190;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t197;
-        let t204 = twist[1] + t35;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t142 + t204);
-        let t207 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t208 = 0.34 * t207;
-        let t209 = t196 * t32 + t200 * t37 + t208;
-        let minus_rate_dot_1_leg3 = t197 * t209;
-        let t211 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t200 * t197;
-        let t213 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t217 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let t219 = twist[1] - t51;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t128 + minus_g1_vy_leg3 * t219;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t197
-            * (0.7071067811865476 * t38 + t208 * minus_c2_leg3);
-        let t233 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t82;
-        let t238 = minus_s2_leg3 * t207 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t240 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t241 = minus_g2_vx_leg3 * t240;
-        let t248 = 2.079725827019258 * t38;
-        let t250 = minus_g2_vx_leg3 * t209;
-        let t257 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t259 = minus_rate_2_leg3 + twist[2];
-        let t260 = ::overact::math::signed(minus_g2_vx_leg3, t259);
-        let t263 = 1.4705882352941178 * t188;
-        let c2_leg4 = 2.079725827019258 * t188;
-        let t266 = 1.0 - c2_leg4 * c2_leg4;
-        ::overact::guard::reach(t266, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t266);
+        let t194 = 0.7071067811865476 * minus_s2_leg3;
+        let t195 = t189 - t194;
+        let t196 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t195 * t196;
+        let t199 = t194 + t189;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t196;
+        let t203 = twist[1] + t35;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t142 + t203);
+        let t206 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t207 = 0.34 * t206;
+        let t208 = t195 * t32 + t199 * t37 + t207;
+        let minus_rate_dot_1_leg3 = t196 * t208;
+        let t210 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t199 * t196;
+        let t212 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t8 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t216 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let t218 = twist[1] - t49;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t128 + minus_g1_vy_leg3 * t218;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t196
+            * (0.7071067811865476 * t38 + t207 * minus_c2_leg3);
+        let t232 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t9;
+        let t237 = minus_s2_leg3 * t206 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t239 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t240 = minus_g2_vx_leg3 * t239;
+        let t247 = 2.079725827019258 * t38;
+        let t249 = minus_g2_vx_leg3 * t208;
+        let t256 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t258 = minus_rate_2_leg3 + twist[2];
+        let t259 = ::overact::math::signed(minus_g2_vx_leg3, t258);
+        let t262 = 1.4705882352941178 * t11;
+        let c2_leg4 = 2.079725827019258 * t11;
+        let t265 = 1.0 - c2_leg4 * c2_leg4;
+        ::overact::guard::reach(t265, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t265);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t268 = 0.7071067811865476 * minus_s2_leg4;
-        let t269 = t263 - t268;
-        let t270 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t269 * t270;
-        let t273 = t268 + t263;
-        let g2_vx_leg4 = 2.079725827019258 * t270;
-        let rate_2_leg4 = g2_vx_leg4 * (t50 - t219);
+        let t267 = 0.7071067811865476 * minus_s2_leg4;
+        let t268 = t262 - t267;
+        let t269 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t268 * t269;
+        let t271 = t41 - t37;
+        let t273 = t267 + t262;
+        let g2_vx_leg4 = 2.079725827019258 * t269;
+        let rate_2_leg4 = g2_vx_leg4 * (t66 - t218);
         let t279 = rate_2_leg4 * rate_2_leg4;
         let t280 = 0.34 * t279;
-        let t281 = t269 * t44 - t273 * t39 + t280;
-        let minus_rate_dot_1_leg4 = t270 * t281;
+        let t281 = t268 * t271 - t273 * t39 + t280;
+        let minus_rate_dot_1_leg4 = t269 * t281;
         let t283 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let g1_vy_leg4 = t273 * t270;
+        let g1_vy_leg4 = t273 * t269;
         let t285 = g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t8 * minus_g1_vx_leg4;
         let t289 = g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vy_leg4 * t204 - minus_g1_vx_leg4 * (twist[0] + t51);
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t270
-            * (0.7071067811865476 * t45 - t280 * c2_leg4);
+        let rate_1_leg4 = g1_vy_leg4 * t203 - minus_g1_vx_leg4 * t50;
+        let t300 = t39 - t271;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t269
+            * (0.7071067811865476 * t300 - t280 * c2_leg4);
         let t305 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t82;
+        let g2_wz_leg4 = g2_vx_leg4 * t9;
         let t310 = minus_s2_leg4 * t279 - c2_leg4 * minus_rate_dot_2_leg4;
         let t312 = c2_leg4 * minus_rate_dot_1_leg4;
         let t313 = g2_vx_leg4 * t312;
-        let t320 = 2.079725827019258 * t45;
+        let t320 = 2.079725827019258 * t300;
         let t322 = g2_vx_leg4 * t281;
         let t329 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
         let t331 = twist[2] - rate_2_leg4;
         let t332 = ::overact::math::signed(g2_vx_leg4, t331);
         Ok([
             [
-                -t59, -t59, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t81,
-                t86 - minus_g1_vx_leg1 * t89, t97 - minus_g1_vx_leg1 * t98, -t59, t106, -t109, t135,
+                t85 - minus_g1_vx_leg1 * t88, t96 - minus_g1_vx_leg1 * t97, -t57, t105, -t108, t135,
                 t135, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
                 t158, t162 - minus_g1_vx_leg2 * t165, minus_g1_vx_leg2 * t173 + t175, t135, -t182,
-                t185, t211, t211, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t185, t210, t210, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t233, -(minus_g1_vx_leg3 * t238 + t241), minus_g1_vx_leg3 * t248 + t250, t211, t257,
-                t260, t283, t283, -(minus_g1_vx_leg4 * rate_1_leg4),
+                t232, -(minus_g1_vx_leg3 * t237 + t240), minus_g1_vx_leg3 * t247 + t249, t210, t256,
+                t259, t283, t283, -(minus_g1_vx_leg4 * rate_1_leg4),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t305,
                 -(minus_g1_vx_leg4 * t310 + t313), minus_g1_vx_leg4 * t320 - t322, t283, t329,
-                -t332, 0.0, -t24, t27, acceleration[0],
+                -t332, 0.0, -t26, t29, acceleration[0],
             ],
             [
-                t61, t61, g1_vy_leg1 * rate_1_leg1,
+                t59, t59, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t81,
-                g1_vy_leg1 * t89 + t86, g1_vy_leg1 * t98 + t97, t61, t106, -t109, t137, t137,
+                g1_vy_leg1 * t88 + t85, g1_vy_leg1 * t97 + t96, t59, t105, -t108, t137, t137,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
                 -t158, -(minus_g1_vy_leg2 * t165 + t162), minus_g1_vy_leg2 * t173 - t175, t137,
-                t182, -t185, t213, t213, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                t182, -t185, t212, t212, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t233, -(minus_g1_vy_leg3 * t238 + t241), minus_g1_vy_leg3 * t248 + t250, t213, t257,
-                t260, -t285, -t285, g1_vy_leg4 * rate_1_leg4,
+                t232, -(minus_g1_vy_leg3 * t237 + t240), minus_g1_vy_leg3 * t247 + t249, t212, t256,
+                t259, -t285, -t285, g1_vy_leg4 * rate_1_leg4,
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t305,
-                g1_vy_leg4 * t310 + t313, t322 - g1_vy_leg4 * t320, -t285, -t329, t332, 0.0, -t27,
-                -t24, acceleration[1],
+                g1_vy_leg4 * t310 + t313, t322 - g1_vy_leg4 * t320, -t285, -t329, t332, 0.0, -t29,
+                -t26, acceleration[1],
             ],
             [
-                t65, t65, g1_wz_leg1 * rate_1_leg1,
+                t63, t63, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t89 + g2_wz_leg1 * t85,
-                g1_wz_leg1 * t98 + g2_wz_leg1 * t57, t65,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t88 + g2_wz_leg1 * t84,
+                g1_wz_leg1 * t97 + g2_wz_leg1 * t55, t63,
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t108), -t141, -t141,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t107), -t141, -t141,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t165 - g2_wz_leg2 * t161,
                 -(g1_wz_leg2 * t173 + g2_wz_leg2 * t133), -t141,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t184), -t217, -t217,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t184), -t216, -t216,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t238 + g2_wz_leg3 * t240,
-                -(g1_wz_leg3 * t248 + g2_wz_leg3 * t209), -t217,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t237 + g2_wz_leg3 * t239,
+                -(g1_wz_leg3 * t247 + g2_wz_leg3 * t208), -t216,
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t259), -t289, -t289,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t258), -t289, -t289,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
                 g1_wz_leg4 * t310 - g2_wz_leg4 * t312, -(g1_wz_leg4 * t320 + g2_wz_leg4 * t281),
@@ -1523,7 +1523,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 289 operations (100 additions, 185 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 229 intermediates.
+    /// 281 operations (100 additions, 173 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 221 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1542,203 +1542,195 @@ impl Planar4Prr {
         ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg1 - s2_leg1;
-        let t3 = 1.0 / s2_leg1;
-        let t4 = 0.7071067811865476 * t3;
-        let g1_vx_leg1 = t2 * t4;
-        let t9 = 0.05656854249492381 * (c_phi - s_phi);
-        let t13 = 0.05656854249492381 * (s_phi + c_phi);
-        let t14 = t13 * twist[2];
-        let t16 = acceleration[1] - t9 * acceleration[2] + twist[2] * t14;
-        let t17 = twist[2] * twist[2];
-        let t20 = c_phi * t17 + s_phi * acceleration[2];
-        let t23 = s_phi * t17 - c_phi * acceleration[2];
-        let t25 = 0.05656854249492381 * (t20 - t23);
-        let t26 = acceleration[1] + t25;
-        let t27 = acceleration[0] + acceleration[1];
-        let t28 = t27 - t16;
-        let t29 = t26 - t28;
-        let t30 = t16 - t29;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t3;
-        let t32 = twist[0] - t14;
-        let t33 = t9 * twist[2];
-        let t34 = twist[1] + t33;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t32 + t34);
-        let t37 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t38 = 0.2404163056034262 * t37;
-        let t40 = t30 + t2 * t38;
-        let t42 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t42 * t4;
-        let t44 = acceleration[1] - t25;
-        let t45 = t27 - t44;
-        let t46 = t45 + t16;
-        let t47 = t46 - t26;
-        let t48 = t47 - t44;
-        let t49 = t45 - t48;
-        let t51 = t49 + t42 * t38;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t40 + g1_vy_leg1 * t51;
-        let t54 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t55 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = g1_vy_leg1 * t9 - g1_vx_leg1 * t13;
-        let t59 = g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * t32 + g1_vy_leg1 * t34;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t40 + t51);
-        let t71 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t72 = t13 - t9;
-        let g2_wz_leg1 = minus_g2_vx_leg1 * t72;
-        let t77 = s2_leg1 * t37 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t79 = c2_leg1 * rate_dot_1_leg1;
-        let t80 = minus_g2_vx_leg1 * t79;
-        let t88 = 2.079725827019258 * (t30 + t49);
-        let t90 = s2_leg1 * rate_dot_1_leg1;
-        let t91 = minus_g2_vx_leg1 * t90;
-        let t98 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t100 = minus_rate_2_leg1 + twist[2];
-        let t101 = ::overact::math::signed(minus_g2_vx_leg1, t100);
-        let t106 = c2_leg2 + s2_leg2;
-        let t107 = 1.0 / s2_leg2;
-        let t108 = 0.7071067811865476 * t107;
-        let minus_g1_vx_leg2 = t106 * t108;
-        let t110 = 0.2404163056034262 + 0.2404163056034262;
-        let g2_vx_leg2 = 2.079725827019258 * t107;
-        let t112 = twist[0] + t14;
-        let minus_rate_2_leg2 = g2_vx_leg2 * (t34 - t112);
-        let t115 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t118 = s2_leg2 - c2_leg2;
-        let rate_dot_1_leg2 = t108 * (t110 * t115 - (t106 * t47 + t118 * t44));
-        let t123 = minus_g1_vx_leg2 * rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t118 * t108;
-        let t125 = minus_g1_vy_leg2 * rate_dot_1_leg2;
-        let g1_wz_leg2 = t13 * minus_g1_vy_leg2 + t9 * minus_g1_vx_leg2;
-        let t129 = g1_wz_leg2 * rate_dot_1_leg2;
-        let t130 = twist[0] - t33;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t130
-            + minus_g1_vy_leg2 * (twist[1] - t14);
-        let rate_dot_2_leg2 = 2.9411764705882355 * t107
-            * (0.7071067811865476 * t48 - t115 * (0.34 * c2_leg2));
-        let t147 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = g2_vx_leg2 * t72;
-        let t150 = c2_leg2 * rate_dot_1_leg2;
-        let t151 = g2_vx_leg2 * t150;
-        let t154 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t115;
-        let t162 = 2.079725827019258 * t48;
-        let t164 = s2_leg2 * rate_dot_1_leg2;
-        let t165 = g2_vx_leg2 * t164;
-        let t172 = -minus_rate_2_leg2;
-        let t173 = ::overact::math::signed(g2_vx_leg2, t172);
-        let t175 = twist[2] + minus_rate_2_leg2;
-        let t176 = ::overact::math::signed(g2_vx_leg2, t175);
-        let t181 = s2_leg3 - c2_leg3;
-        let t182 = 1.0 / s2_leg3;
-        let t183 = 0.7071067811865476 * t182;
-        let g1_vx_leg3 = t181 * t183;
-        let t185 = s2_leg3 + c2_leg3;
-        let g2_vx_leg3 = 2.079725827019258 * t182;
-        let t190 = twist[1] + t14;
-        let rate_2_leg3 = g2_vx_leg3 * (t130 + t190);
-        let t193 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t183 * (t185 * t16 - t181 * t45 - t110 * t193);
-        let t197 = g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t185 * t183;
-        let t199 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t9 * minus_g1_vy_leg3 + t13 * g1_vx_leg3;
-        let t203 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let t205 = twist[1] - t33;
-        let rate_1_leg3 = g1_vx_leg3 * t112 - minus_g1_vy_leg3 * t205;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t182
-            * (t193 * (0.34 * c2_leg3) - 0.7071067811865476 * t46);
-        let t220 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = g2_vx_leg3 * t72;
-        let t225 = s2_leg3 * t193 + c2_leg3 * minus_rate_dot_2_leg3;
-        let t227 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t228 = g2_vx_leg3 * t227;
-        let t235 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t236 = g2_vx_leg3 * t235;
-        let t237 = 2.079725827019258 * t46;
-        let t245 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t247 = twist[2] - rate_2_leg3;
-        let t248 = ::overact::math::signed(g2_vx_leg3, t247);
-        let t253 = c2_leg4 + s2_leg4;
-        let t254 = 1.0 / s2_leg4;
-        let t255 = 0.7071067811865476 * t254;
-        let g1_vx_leg4 = t253 * t255;
-        let t258 = c2_leg4 - s2_leg4;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t254;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t32 - t205);
-        let t264 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let rate_dot_1_leg4 = t255 * (t253 * t28 - t258 * t26 + t110 * t264);
-        let t268 = g1_vx_leg4 * rate_dot_1_leg4;
-        let minus_g1_vy_leg4 = t258 * t255;
-        let t270 = minus_g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t9 * g1_vx_leg4 - t13 * minus_g1_vy_leg4;
-        let t274 = g1_wz_leg4 * rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vx_leg4 * (twist[0] + t33) - minus_g1_vy_leg4 * t190;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t254
-            * (0.7071067811865476 * t29 - t264 * (0.34 * c2_leg4));
-        let t291 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = minus_g2_vx_leg4 * t72;
-        let t296 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t264;
-        let t298 = c2_leg4 * rate_dot_1_leg4;
-        let t299 = minus_g2_vx_leg4 * t298;
-        let t306 = s2_leg4 * rate_dot_1_leg4;
-        let t307 = minus_g2_vx_leg4 * t306;
-        let t308 = 2.079725827019258 * t29;
-        let t316 = -minus_rate_2_leg4;
-        let t317 = ::overact::math::signed(minus_g2_vx_leg4, t316);
-        let t319 = twist[2] + minus_rate_2_leg4;
-        let t320 = ::overact::math::signed(minus_g2_vx_leg4, t319);
+        let t3 = 0.7071067811865476 / s2_leg1;
+        let g1_vx_leg1 = t2 * t3;
+        let t7 = twist[2] * twist[2];
+        let t10 = c_phi * t7 + s_phi * acceleration[2];
+        let t13 = s_phi * t7 - c_phi * acceleration[2];
+        let t15 = 0.05656854249492381 * (t10 - t13);
+        let t16 = acceleration[1] + t15;
+        let t17 = acceleration[0] + acceleration[1];
+        let t18 = t17 - t16;
+        let minus_g2_vx_leg1 = 2.079725827019258 / s2_leg1;
+        let t21 = 0.05656854249492381 * (s_phi + c_phi);
+        let t22 = t21 * twist[2];
+        let t23 = twist[0] - t22;
+        let t25 = 0.05656854249492381 * (c_phi - s_phi);
+        let t26 = t25 * twist[2];
+        let t27 = twist[1] + t26;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t23 + t27);
+        let t30 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t31 = 0.2404163056034262 * t30;
+        let t33 = t18 + t2 * t31;
+        let t35 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t35 * t3;
+        let t37 = acceleration[0] + t15;
+        let t41 = acceleration[1] - t25 * acceleration[2] + twist[2] * t22;
+        let t42 = t37 + t41;
+        let t43 = t42 - t16;
+        let t44 = t17 - t43;
+        let t46 = t44 + t35 * t31;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t33 + g1_vy_leg1 * t46;
+        let t49 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t50 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = g1_vy_leg1 * t25 - g1_vx_leg1 * t21;
+        let t54 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * t23 + g1_vy_leg1 * t27;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t33 + t46);
+        let t66 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t67 = t21 - t25;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t67;
+        let t72 = s2_leg1 * t30 + c2_leg1 * minus_rate_dot_2_leg1;
+        let t74 = c2_leg1 * rate_dot_1_leg1;
+        let t75 = minus_g2_vx_leg1 * t74;
+        let t83 = 2.079725827019258 * (t18 + t44);
+        let t85 = 2.079725827019258 * rate_dot_1_leg1;
+        let t92 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t94 = minus_rate_2_leg1 + twist[2];
+        let t95 = ::overact::math::signed(minus_g2_vx_leg1, t94);
+        let t100 = c2_leg2 + s2_leg2;
+        let t101 = 0.7071067811865476 / s2_leg2;
+        let minus_g1_vx_leg2 = t100 * t101;
+        let t103 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = t101 * 2.9411764705882355;
+        let t105 = twist[0] + t22;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t27 - t105);
+        let t108 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t111 = s2_leg2 - c2_leg2;
+        let t112 = t17 - t37;
+        let rate_dot_1_leg2 = t101 * (t103 * t108 - (t100 * t43 + t111 * t112));
+        let t117 = minus_g1_vx_leg2 * rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t111 * t101;
+        let t119 = minus_g1_vy_leg2 * rate_dot_1_leg2;
+        let g1_wz_leg2 = t21 * minus_g1_vy_leg2 + t25 * minus_g1_vx_leg2;
+        let t123 = g1_wz_leg2 * rate_dot_1_leg2;
+        let t124 = twist[0] - t26;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t124
+            + minus_g1_vy_leg2 * (twist[1] - t22);
+        let t136 = t43 - t112;
+        let rate_dot_2_leg2 = 2.9411764705882355 / s2_leg2
+            * (0.7071067811865476 * t136 - t108 * (0.34 * c2_leg2));
+        let t142 = g2_vx_leg2 * rate_dot_2_leg2;
+        let g2_wz_leg2 = g2_vx_leg2 * t67;
+        let t145 = c2_leg2 * rate_dot_1_leg2;
+        let t146 = g2_vx_leg2 * t145;
+        let t149 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t108;
+        let t157 = 2.079725827019258 * t136;
+        let t159 = 2.079725827019258 * rate_dot_1_leg2;
+        let t166 = -minus_rate_2_leg2;
+        let t167 = ::overact::math::signed(g2_vx_leg2, t166);
+        let t169 = twist[2] + minus_rate_2_leg2;
+        let t170 = ::overact::math::signed(g2_vx_leg2, t169);
+        let t175 = s2_leg3 - c2_leg3;
+        let t176 = 2.9411764705882355 / s2_leg3;
+        let t177 = 0.2404163056034262 * t176;
+        let g1_vx_leg3 = t175 * t177;
+        let t179 = s2_leg3 + c2_leg3;
+        let g2_vx_leg3 = 2.079725827019258 / s2_leg3;
+        let t184 = twist[1] + t22;
+        let rate_2_leg3 = g2_vx_leg3 * (t124 + t184);
+        let t187 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t177 * (t179 * t41 - t175 * t37 - t103 * t187);
+        let t191 = g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t179 * t177;
+        let t193 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t25 * minus_g1_vy_leg3 + t21 * g1_vx_leg3;
+        let t197 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * t105 - minus_g1_vy_leg3 * (twist[1] - t26);
+        let minus_rate_dot_2_leg3 = t176
+            * (t187 * (0.34 * c2_leg3) - 0.7071067811865476 * t42);
+        let t213 = g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t67;
+        let t218 = s2_leg3 * t187 + c2_leg3 * minus_rate_dot_2_leg3;
+        let t220 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t221 = g2_vx_leg3 * t220;
+        let t228 = 2.079725827019258 * minus_rate_dot_1_leg3;
+        let t229 = 2.079725827019258 * t42;
+        let t237 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
+        let t239 = twist[2] - rate_2_leg3;
+        let t240 = ::overact::math::signed(g2_vx_leg3, t239);
+        let t245 = c2_leg4 + s2_leg4;
+        let t246 = 2.9411764705882355 / s2_leg4;
+        let t247 = 0.2404163056034262 * t246;
+        let g1_vx_leg4 = t245 * t247;
+        let t249 = t17 - t41;
+        let t251 = c2_leg4 - s2_leg4;
+        let minus_g2_vx_leg4 = 2.079725827019258 / s2_leg4;
+        let t255 = twist[0] + t26;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t255 - t184);
+        let t258 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t247 * (t245 * t249 - t251 * t16 + t103 * t258);
+        let t262 = g1_vx_leg4 * rate_dot_1_leg4;
+        let minus_g1_vy_leg4 = t251 * t247;
+        let t264 = minus_g1_vy_leg4 * rate_dot_1_leg4;
+        let g1_wz_leg4 = t25 * g1_vx_leg4 - t21 * minus_g1_vy_leg4;
+        let t268 = g1_wz_leg4 * rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * t255 - minus_g1_vy_leg4 * t184;
+        let t278 = t16 - t249;
+        let rate_dot_2_leg4 = t246
+            * (0.7071067811865476 * t278 - t258 * (0.34 * c2_leg4));
+        let t284 = minus_g2_vx_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t67;
+        let t289 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t258;
+        let t291 = c2_leg4 * rate_dot_1_leg4;
+        let t292 = minus_g2_vx_leg4 * t291;
+        let t299 = 2.079725827019258 * rate_dot_1_leg4;
+        let t300 = 2.079725827019258 * t278;
+        let t308 = -minus_rate_2_leg4;
+        let t309 = ::overact::math::signed(minus_g2_vx_leg4, t308);
+        let t311 = twist[2] + minus_rate_2_leg4;
+        let t312 = ::overact::math::signed(minus_g2_vx_leg4, t311);
         Ok([
             [
-                t54, t54, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t71,
-                -(g1_vx_leg1 * t77 + t80), g1_vx_leg1 * t88 + t91, t54, t98, t101, -t123, -t123,
+                t49, t49, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t66,
+                -(g1_vx_leg1 * t72 + t75), g1_vx_leg1 * t83 + t85, t49, t92, t95, -t117, -t117,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t147, t151 - minus_g1_vx_leg2 * t154, minus_g1_vx_leg2 * t162 - t165, -t123, t173,
-                -t176, -t197, -t197, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t220,
-                -(g1_vx_leg3 * t225 + t228), t236 - g1_vx_leg3 * t237, -t197, t245, -t248, t268,
-                t268, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -t291, g1_vx_leg4 * t296 - t299, t307 - g1_vx_leg4 * t308, t268, -t317,
-                t320, 0.0, -t20, t23, acceleration[0],
+                t142, t146 - minus_g1_vx_leg2 * t149, minus_g1_vx_leg2 * t157 - t159, -t117, t167,
+                -t170, -t191, -t191, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t213,
+                -(g1_vx_leg3 * t218 + t221), t228 - g1_vx_leg3 * t229, -t191, t237, -t240, t262,
+                t262, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
+                g1_vx_leg4, -t284, g1_vx_leg4 * t289 - t292, t299 - g1_vx_leg4 * t300, t262, -t309,
+                t312, 0.0, -t10, t13, acceleration[0],
             ],
             [
-                t55, t55, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t71,
-                -(g1_vy_leg1 * t77 + t80), g1_vy_leg1 * t88 + t91, t55, t98, t101, -t125, -t125,
+                t50, t50, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t66,
+                -(g1_vy_leg1 * t72 + t75), g1_vy_leg1 * t83 + t85, t50, t92, t95, -t119, -t119,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t147, -(minus_g1_vy_leg2 * t154 + t151), minus_g1_vy_leg2 * t162 + t165, -t125,
-                -t173, t176, t199, t199, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t220,
-                minus_g1_vy_leg3 * t225 - t228, minus_g1_vy_leg3 * t237 + t236, t199, t245, -t248,
-                -t270, -t270, -(minus_g1_vy_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t291,
-                t299 - minus_g1_vy_leg4 * t296, minus_g1_vy_leg4 * t308 - t307, -t270, t317, -t320,
-                0.0, -t23, -t20, acceleration[1],
+                -t142, -(minus_g1_vy_leg2 * t149 + t146), minus_g1_vy_leg2 * t157 + t159, -t119,
+                -t167, t170, t193, t193, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t213,
+                minus_g1_vy_leg3 * t218 - t221, minus_g1_vy_leg3 * t229 + t228, t193, t237, -t240,
+                -t264, -t264, -(minus_g1_vy_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t284,
+                t292 - minus_g1_vy_leg4 * t289, minus_g1_vy_leg4 * t300 - t299, -t264, t309, -t312,
+                0.0, -t13, -t10, acceleration[1],
             ],
             [
-                t59, t59, g1_wz_leg1 * rate_1_leg1,
+                t54, t54, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t79 - g1_wz_leg1 * t77,
-                g1_wz_leg1 * t88 - g2_wz_leg1 * t90, t59,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t74 - g1_wz_leg1 * t72,
+                g1_wz_leg1 * t83 - t85 * t67, t54,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t100), t129, t129,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t94), t123, t123,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                g2_wz_leg2 * rate_dot_2_leg2, g1_wz_leg2 * t154 + g2_wz_leg2 * t150,
-                -(g1_wz_leg2 * t162 + g2_wz_leg2 * t164), t129,
-                ::overact::math::signed(g2_wz_leg2, t172),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t175), -t203, -t203,
+                g2_wz_leg2 * rate_dot_2_leg2, g1_wz_leg2 * t149 + g2_wz_leg2 * t145,
+                -(g1_wz_leg2 * t157 + t159 * t67), t123, ::overact::math::signed(g2_wz_leg2, t166),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t169), -t197, -t197,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g1_wz_leg3 * t225 + g2_wz_leg3 * t227), g2_wz_leg3 * t235 - g1_wz_leg3 * t237,
-                -t203, ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t247), t274, t274,
+                -(g1_wz_leg3 * t218 + g2_wz_leg3 * t220), t228 * t67 - g1_wz_leg3 * t229, -t197,
+                ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t239), t268, t268,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t296 + g2_wz_leg4 * t298,
-                -(g1_wz_leg4 * t308 + g2_wz_leg4 * t306), t274,
-                ::overact::math::signed(g2_wz_leg4, t316),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t319), acceleration[2],
+                g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t289 + g2_wz_leg4 * t291,
+                -(g1_wz_leg4 * t300 + t299 * t67), t268, ::overact::math::signed(g2_wz_leg4, t308),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t311), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -1755,7 +1747,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 460 operations (175 additions, 278 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 391 intermediates.
+    /// 455 operations (174 additions, 263 multiplications, 18 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 386 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1768,295 +1760,290 @@ impl Planar4Prr {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t4 = 0.21213203435596426 - t3;
         let t7 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = pose[0] - (0.21213203435596426 - t3) + t7 + -0.21213203435596426;
-        let t10 = pose[1] + t9;
-        let t11 = 1.4705882352941178 * t10;
-        let c2_leg1 = 2.079725827019258 * t10;
-        let t14 = 1.0 - c2_leg1 * c2_leg1;
-        ::overact::guard::reach(t14, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        let t8 = t7 - t3;
+        let t10 = pose[1] + t4 - t8 + t4;
+        let t11 = pose[0] - t10;
+        let t12 = pose[1] + pose[1];
+        let t13 = t11 + t12;
+        let t14 = 1.4705882352941178 * t13;
+        let c2_leg1 = 2.079725827019258 * t13;
+        let t17 = 1.0 - c2_leg1 * c2_leg1;
+        ::overact::guard::reach(t17, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t17);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t16 = 0.7071067811865476 * minus_s2_leg1;
-        let t17 = t11 + t16;
-        let t18 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t17 * t18;
-        let t20 = t16 - t11;
-        let g1_vy_leg1 = t20 * t18;
-        let t23 = pose[0] + pose[0];
-        let t24 = t10 - t23;
-        let c2_leg2 = 2.079725827019258 * t24;
-        let t27 = 1.0 - c2_leg2 * c2_leg2;
-        ::overact::guard::reach(t27, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t27);
-        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t29 = 0.7071067811865476 * minus_s2_leg2;
-        let t30 = 1.4705882352941178 * t24;
-        let t31 = t29 + t30;
-        let t32 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t31 * t32;
-        let t36 = t9 - pose[1];
-        let t37 = t23 - t36;
-        let minus_c2_leg3 = 2.079725827019258 * t37;
-        let t40 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
-        ::overact::guard::reach(t40, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t40);
-        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t42 = 0.7071067811865476 * minus_s2_leg3;
-        let t43 = 1.4705882352941178 * t37;
-        let t44 = t42 + t43;
-        let t45 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t44 * t45;
-        let c2_leg4 = 2.079725827019258 * t36;
-        let t51 = 1.0 - c2_leg4 * c2_leg4;
-        ::overact::guard::reach(t51, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t51);
-        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t53 = 0.7071067811865476 * minus_s2_leg4;
-        let t54 = 1.4705882352941178 * t36;
-        let t55 = t53 + t54;
-        let t56 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t55 * t56;
-        let t60 = t29 - t30;
-        let minus_g1_vx_leg2 = t60 * t32;
-        let t65 = t43 - t42;
-        let minus_g1_vx_leg3 = t65 * t45;
-        let t69 = t54 - t53;
-        let minus_g1_vx_leg4 = t69 * t56;
-        let t72 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t79 = minus_g1_vx_leg1 * minus_g1_vx_leg1
-            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
-            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t79, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t79, 3.440476190476192, "actuators")?;
-        let t80 = 1.0 / t79;
-        let t81 = t72 * t80;
-        let t83 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4 - t72 * t81;
-        ::overact::guard::platform(t83, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t83, 3.440476190476192, "actuators")?;
-        let t84 = 1.0 / t83;
+        let t19 = 0.7071067811865476 * minus_s2_leg1;
+        let t20 = t14 + t19;
+        let t21 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t20 * t21;
+        let t23 = t19 - t14;
+        let g1_vy_leg1 = t23 * t21;
         let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t29 = pose[0] + t10;
+        let t30 = t12 - t29;
+        let c2_leg2 = 2.079725827019258 * t30;
+        let t33 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t33, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t33);
+        ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
+        let t35 = 0.7071067811865476 * minus_s2_leg2;
+        let t36 = 1.4705882352941178 * t30;
+        let t37 = t35 + t36;
+        let t38 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t37 * t38;
+        let t41 = t35 - t36;
+        let minus_g1_vx_leg2 = t41 * t38;
         let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
+        let minus_c2_leg3 = 2.079725827019258 * t29;
+        let t49 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
+        ::overact::guard::reach(t49, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t49);
+        ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
+        let t51 = 0.7071067811865476 * minus_s2_leg3;
+        let t52 = 1.4705882352941178 * t29;
+        let t53 = t51 + t52;
+        let minus_g1_vy_leg3 = t53 / minus_s2_leg3;
+        let t56 = t52 - t51;
+        let minus_g1_vx_leg3 = t56 / minus_s2_leg3;
         let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let c2_leg4 = 2.079725827019258 * t11;
+        let t64 = 1.0 - c2_leg4 * c2_leg4;
+        ::overact::guard::reach(t64, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t64);
+        ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
+        let t66 = 0.7071067811865476 * minus_s2_leg4;
+        let t67 = 1.4705882352941178 * t11;
+        let t68 = t66 + t67;
+        let t69 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t68 * t69;
+        let t72 = t67 - t66;
+        let minus_g1_vx_leg4 = t72 * t69;
         let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t110 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
-            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t111 = t110 * t80;
-        let t122 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t72 * t111;
-        let t123 = t122 * t84;
-        let t125 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t110 * t111
-            - t122 * t123;
-        ::overact::guard::platform(t125, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t125, 0.02560000000000001, "actuators")?;
-        let t126 = 1.0 / t125;
-        let t140 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t84 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t151 = g1_vy_leg1 * actuator_velocities[0]
+        let t91 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
+        let t99 = t91 / t98;
+        let t115 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t117 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t115 * t99;
+        let t125 = t115 / t98;
+        let t127 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t115 * t125;
+        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
+        let t128 = t117 / t127;
+        let t137 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t140 * t81;
-        let t153 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t84 * t125;
+        let t139 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t140 * t111 - t123 * t151;
-        let rate_3_leg1 = t126 * t153;
-        let t155 = t7 * rate_3_leg1;
+            + g1_wz_leg4 * actuator_velocities[3] - t84 * t99 - t128 * t137;
+        let t150 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t91 * t99
+            - t117 * t128;
+        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
+        let rate_3_leg1 = t139 / t150;
+        let t152 = t7 * rate_3_leg1;
+        let t153 = rate_3_leg1 * t152;
+        let t155 = t3 * rate_3_leg1;
         let t156 = rate_3_leg1 * t155;
-        let t158 = t3 * rate_3_leg1;
-        let t159 = rate_3_leg1 * t158;
-        let g2_vx_leg1 = 2.079725827019258 * t18;
-        let t167 = t84 * t151 - t123 * rate_3_leg1;
-        let t170 = t111 * rate_3_leg1 - (t140 * t80 + t81 * t167);
-        let t171 = t170 - t158;
-        let t172 = t167 + t155;
-        let rate_2_leg1 = g2_vx_leg1 * (t171 + t172);
-        let t175 = rate_2_leg1 * rate_2_leg1;
-        let t176 = 0.34 * t175;
-        let rate_dot_1_leg1 = t18 * (t17 * t156 - t20 * t159 - t176);
-        let t179 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t32;
-        let t185 = t170 + t158;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t172 - t185);
-        let t188 = rate_2_leg2 * rate_2_leg2;
-        let t189 = 0.34 * t188;
-        let minus_rate_dot_1_leg2 = t32 * (t60 * t159 - t31 * t156 + t189);
-        let t192 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t45;
-        let t199 = t170 - t155;
-        let t200 = t167 + t158;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t199 + t200);
-        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t204 = 0.34 * t203;
-        let minus_rate_dot_1_leg3 = t45 * (t65 * t156 + t44 * t159 + t204);
-        let t207 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t56;
-        let t211 = t167 - t155;
-        let rate_2_leg4 = g2_vx_leg4 * (t171 - t211);
-        let t214 = rate_2_leg4 * rate_2_leg4;
-        let t215 = 0.34 * t214;
-        let minus_rate_dot_1_leg4 = t56 * (t215 - (t69 * t159 + t55 * t156));
-        let t221 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t230 = minus_g1_vx_leg1 * t179 + minus_g1_vx_leg2 * t192
-            + minus_g1_vx_leg3 * t207 + minus_g1_vx_leg4 * t221;
-        let t232 = g1_vy_leg1 * t179 - minus_g1_vy_leg2 * t192 - minus_g1_vy_leg3 * t207
-            + g1_vy_leg4 * t221 + t81 * t230;
-        let t244 = g1_wz_leg1 * t179 + g1_wz_leg2 * t192 + g1_wz_leg3 * t207
-            + g1_wz_leg4 * t221 - t111 * t230 - t123 * t232;
-        let rate_dot_3_leg1 = t126 * t244;
-        let t247 = t84 * t232 - t123 * rate_dot_3_leg1;
-        let t249 = t156 + t3 * rate_dot_3_leg1;
-        let t250 = t247 - t249;
-        let t255 = t111 * rate_dot_3_leg1 - (t80 * t230 + t81 * t247);
-        let t256 = t247 + t255;
-        let t257 = t256 - t250;
-        let t260 = t247 - t7 * rate_dot_3_leg1 + t159;
-        let t261 = t257 + t260;
-        let t262 = t247 + t249;
-        let t263 = t261 - t262;
-        let t264 = t263 - t250;
-        let t265 = t257 - t264;
-        let t267 = t256 - t260;
-        let t268 = t262 - t267;
-        let t269 = t260 - t268;
-        let t272 = t20 * t265 - t17 * t269 - t176;
-        let rate_dot_1_leg1_2 = t18 * t272;
-        let t274 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t275 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t276 = g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_1_leg1 = g1_vy_leg1 * t172 - minus_g1_vx_leg1 * t171;
-        let t287 = t269 + t265;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t18
-            * (0.7071067811865476 * t287 + t176 * c2_leg1);
-        let t292 = g2_vx_leg1 * rate_dot_2_leg1;
-        let t293 = t7 - t3;
-        let g2_wz_leg1 = g2_vx_leg1 * t293;
-        let t296 = c2_leg1 * rate_dot_1_leg1_2;
-        let t297 = g2_vx_leg1 * t296;
-        let t300 = minus_s2_leg1 * t175 + c2_leg1 * rate_dot_2_leg1;
-        let t308 = g2_vx_leg1 * t272;
-        let t309 = 2.079725827019258 * t287;
-        let t317 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t319 = rate_3_leg1 - rate_2_leg1;
-        let t320 = ::overact::math::signed(g2_vx_leg1, t319);
-        let t326 = t60 * t263 + t31 * t250 + t189;
-        let minus_rate_dot_1_leg2_2 = t32 * t326;
-        let t328 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
-        let t329 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
-        let t330 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t199
-            + minus_g1_vy_leg2 * (t167 - t158);
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t32
-            * (0.7071067811865476 * t264 - t189 * c2_leg2);
-        let t346 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t293;
-        let t349 = c2_leg2 * minus_rate_dot_1_leg2_2;
-        let t350 = minus_g2_vx_leg2 * t349;
-        let t353 = minus_s2_leg2 * t188 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t361 = 2.079725827019258 * t264;
-        let t363 = minus_g2_vx_leg2 * t326;
-        let t370 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t372 = rate_3_leg1 - rate_2_leg2;
-        let t373 = ::overact::math::signed(minus_g2_vx_leg2, t372);
-        let t379 = t65 * t257 + t44 * t260 + t204;
-        let minus_rate_dot_1_leg3_2 = t45 * t379;
-        let t381 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
-        let t382 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
-        let t383 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t185 + minus_g1_vy_leg3 * t211;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t45
-            * (0.7071067811865476 * t261 + t204 * minus_c2_leg3);
-        let t398 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t293;
-        let t403 = minus_s2_leg3 * t203 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t405 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t406 = minus_g2_vx_leg3 * t405;
-        let t413 = 2.079725827019258 * t261;
-        let t415 = minus_g2_vx_leg3 * t379;
-        let t422 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t424 = minus_rate_2_leg3 + rate_3_leg1;
-        let t425 = ::overact::math::signed(minus_g2_vx_leg3, t424);
-        let t431 = t69 * t267 - t55 * t262 + t215;
-        let minus_rate_dot_1_leg4_2 = t56 * t431;
-        let t433 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
-        let t434 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
-        let t435 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vy_leg4 * t200 - minus_g1_vx_leg4 * (t170 + t155);
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t56
-            * (0.7071067811865476 * t268 - t215 * c2_leg4);
-        let t451 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t293;
-        let t456 = minus_s2_leg4 * t214 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t458 = c2_leg4 * minus_rate_dot_1_leg4_2;
-        let t459 = g2_vx_leg4 * t458;
-        let t466 = 2.079725827019258 * t268;
-        let t468 = g2_vx_leg4 * t431;
-        let t475 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t477 = rate_3_leg1 - rate_2_leg4;
-        let t478 = ::overact::math::signed(g2_vx_leg4, t477);
-        let t481 = rate_3_leg1 * rate_3_leg1;
-        let t484 = c_phi * t481 + s_phi * rate_dot_3_leg1;
-        let t487 = s_phi * t481 - c_phi * rate_dot_3_leg1;
+        let g2_vx_leg1 = 2.079725827019258 * t21;
+        let t164 = t137 / t127 - t128 * rate_3_leg1;
+        let t167 = t99 * rate_3_leg1 - (t84 / t98 + t125 * t164);
+        let t168 = t167 - t155;
+        let t169 = t164 + t152;
+        let rate_2_leg1 = g2_vx_leg1 * (t168 + t169);
+        let t172 = rate_2_leg1 * rate_2_leg1;
+        let t173 = 0.34 * t172;
+        let rate_dot_1_leg1 = t21 * (t20 * t153 - t23 * t156 - t173);
+        let t176 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t38;
+        let t182 = t167 + t155;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t169 - t182);
+        let t185 = rate_2_leg2 * rate_2_leg2;
+        let t186 = 0.34 * t185;
+        let minus_rate_dot_1_leg2 = t38 * (t41 * t156 - t37 * t153 + t186);
+        let t189 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 / minus_s2_leg3;
+        let t196 = t164 - t152;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t182 + t196);
+        let t199 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t200 = 0.34 * t199;
+        let minus_rate_dot_1_leg3 = (t56 * t153 + t53 * t156 + t200) / minus_s2_leg3;
+        let t203 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t69;
+        let rate_2_leg4 = g2_vx_leg4 * (t168 - t196);
+        let t209 = rate_2_leg4 * rate_2_leg4;
+        let t210 = 0.34 * t209;
+        let minus_rate_dot_1_leg4 = t69 * (t210 - (t72 * t156 + t68 * t153));
+        let t216 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t225 = minus_g1_vx_leg1 * t176 + minus_g1_vx_leg2 * t189
+            + minus_g1_vx_leg3 * t203 + minus_g1_vx_leg4 * t216;
+        let t227 = g1_vy_leg1 * t176 - minus_g1_vy_leg2 * t189 - minus_g1_vy_leg3 * t203
+            + g1_vy_leg4 * t216 + t125 * t225;
+        let t239 = g1_wz_leg1 * t176 + g1_wz_leg2 * t189 + g1_wz_leg3 * t203
+            + g1_wz_leg4 * t216 - t99 * t225 - t128 * t227;
+        let rate_dot_3_leg1 = t239 / t150;
+        let t242 = t227 / t127 - t128 * rate_dot_3_leg1;
+        let t244 = t156 - t7 * rate_dot_3_leg1;
+        let t245 = t242 - t244;
+        let t247 = t242 + t244;
+        let t249 = t153 + t3 * rate_dot_3_leg1;
+        let t250 = t242 + t249;
+        let t255 = t99 * rate_dot_3_leg1 - (t225 / t98 + t125 * t242);
+        let t256 = t255 - t244;
+        let t257 = t250 - t256;
+        let t258 = t247 - t257;
+        let t261 = t23 * t245 - t20 * t258 - t173;
+        let rate_dot_1_leg1_2 = t21 * t261;
+        let t263 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
+        let t264 = g1_vy_leg1 * rate_dot_1_leg1_2;
+        let t265 = g1_wz_leg1 * rate_dot_1_leg1_2;
+        let rate_1_leg1 = g1_vy_leg1 * t169 - minus_g1_vx_leg1 * t168;
+        let t276 = t258 + t245;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t21
+            * (0.7071067811865476 * t276 + t173 * c2_leg1);
+        let t281 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = g2_vx_leg1 * t8;
+        let t284 = c2_leg1 * rate_dot_1_leg1_2;
+        let t285 = g2_vx_leg1 * t284;
+        let t288 = minus_s2_leg1 * t172 + c2_leg1 * rate_dot_2_leg1;
+        let t296 = g2_vx_leg1 * t261;
+        let t297 = 2.079725827019258 * t276;
+        let t305 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t307 = rate_3_leg1 - rate_2_leg1;
+        let t308 = ::overact::math::signed(g2_vx_leg1, t307);
+        let t311 = t276 - t256;
+        let t312 = t255 + t249;
+        let t313 = t312 - t245;
+        let t318 = t41 * (t311 + t313) + t37 * t311 + t186;
+        let minus_rate_dot_1_leg2_2 = t38 * t318;
+        let t320 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
+        let t321 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
+        let t322 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (t167 - t152)
+            + minus_g1_vy_leg2 * (t164 - t155);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t38
+            * (0.7071067811865476 * t313 - t186 * c2_leg2);
+        let t339 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t8;
+        let t342 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t343 = minus_g2_vx_leg2 * t342;
+        let t346 = minus_s2_leg2 * t185 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t354 = 2.079725827019258 * t313;
+        let t356 = minus_g2_vx_leg2 * t318;
+        let t363 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t365 = rate_3_leg1 - rate_2_leg2;
+        let t366 = ::overact::math::signed(minus_g2_vx_leg2, t365);
+        let t372 = t56 * t312 + t53 * t247 + t200;
+        let minus_rate_dot_1_leg3_2 = t372 / minus_s2_leg3;
+        let t374 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
+        let t375 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
+        let t376 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t182 + minus_g1_vy_leg3 * t196;
+        let t387 = t312 + t247;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 / minus_s2_leg3
+            * (0.7071067811865476 * t387 + t200 * minus_c2_leg3);
+        let t392 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t8;
+        let t397 = minus_s2_leg3 * t199 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t399 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t400 = minus_g2_vx_leg3 * t399;
+        let t407 = 2.079725827019258 * t387;
+        let t409 = minus_g2_vx_leg3 * t372;
+        let t416 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t418 = minus_rate_2_leg3 + rate_3_leg1;
+        let t419 = ::overact::math::signed(minus_g2_vx_leg3, t418);
+        let t425 = t72 * t256 - t68 * t250 + t210;
+        let minus_rate_dot_1_leg4_2 = t69 * t425;
+        let t427 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
+        let t428 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
+        let t429 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * (t164 + t155) - minus_g1_vx_leg4 * (t167 + t152);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t69
+            * (0.7071067811865476 * t257 - t210 * c2_leg4);
+        let t446 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t8;
+        let t451 = minus_s2_leg4 * t209 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t453 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t454 = g2_vx_leg4 * t453;
+        let t461 = 2.079725827019258 * t257;
+        let t463 = g2_vx_leg4 * t425;
+        let t470 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t472 = rate_3_leg1 - rate_2_leg4;
+        let t473 = ::overact::math::signed(g2_vx_leg4, t472);
+        let t476 = rate_3_leg1 * rate_3_leg1;
+        let t479 = c_phi * t476 + s_phi * rate_dot_3_leg1;
+        let t482 = s_phi * t476 - c_phi * rate_dot_3_leg1;
         Ok([
             [
-                -t274, -t274, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t292,
-                t297 - minus_g1_vx_leg1 * t300, t308 - minus_g1_vx_leg1 * t309, -t274, t317, -t320,
-                t328, t328, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t263, -t263, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t281,
+                t285 - minus_g1_vx_leg1 * t288, t296 - minus_g1_vx_leg1 * t297, -t263, t305, -t308,
+                t320, t320, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t346, t350 - minus_g1_vx_leg2 * t353, minus_g1_vx_leg2 * t361 + t363, t328, -t370,
-                t373, t381, t381, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t339, t343 - minus_g1_vx_leg2 * t346, minus_g1_vx_leg2 * t354 + t356, t320, -t363,
+                t366, t374, t374, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t398, -(minus_g1_vx_leg3 * t403 + t406), minus_g1_vx_leg3 * t413 + t415, t381, t422,
-                t425, t433, t433, -(minus_g1_vx_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t451,
-                -(minus_g1_vx_leg4 * t456 + t459), minus_g1_vx_leg4 * t466 - t468, t433, t475,
-                -t478, 0.0, -t484, t487, t255,
+                t392, -(minus_g1_vx_leg3 * t397 + t400), minus_g1_vx_leg3 * t407 + t409, t374, t416,
+                t419, t427, t427, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t446,
+                -(minus_g1_vx_leg4 * t451 + t454), minus_g1_vx_leg4 * t461 - t463, t427, t470,
+                -t473, 0.0, -t479, t482, t255,
             ],
             [
-                t275, t275, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t292,
-                g1_vy_leg1 * t300 + t297, g1_vy_leg1 * t309 + t308, t275, t317, -t320, t329, t329,
+                t264, t264, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t281,
+                g1_vy_leg1 * t288 + t285, g1_vy_leg1 * t297 + t296, t264, t305, -t308, t321, t321,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t346, -(minus_g1_vy_leg2 * t353 + t350), minus_g1_vy_leg2 * t361 - t363, t329,
-                t370, -t373, t382, t382, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                -t339, -(minus_g1_vy_leg2 * t346 + t343), minus_g1_vy_leg2 * t354 - t356, t321,
+                t363, -t366, t375, t375, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t398, -(minus_g1_vy_leg3 * t403 + t406), minus_g1_vy_leg3 * t413 + t415, t382, t422,
-                t425, -t434, -t434, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t451,
-                g1_vy_leg4 * t456 + t459, t468 - g1_vy_leg4 * t466, -t434, -t475, t478, 0.0, -t487,
-                -t484, t247,
+                t392, -(minus_g1_vy_leg3 * t397 + t400), minus_g1_vy_leg3 * t407 + t409, t375, t416,
+                t419, -t428, -t428, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t446,
+                g1_vy_leg4 * t451 + t454, t463 - g1_vy_leg4 * t461, -t428, -t470, t473, 0.0, -t482,
+                -t479, t242,
             ],
             [
-                t276, t276, g1_wz_leg1 * rate_1_leg1,
+                t265, t265, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t300 + g2_wz_leg1 * t296,
-                g1_wz_leg1 * t309 + g2_wz_leg1 * t272, t276,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t288 + g2_wz_leg1 * t284,
+                g1_wz_leg1 * t297 + g2_wz_leg1 * t261, t265,
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t319), -t330, -t330,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t307), -t322, -t322,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t353 - g2_wz_leg2 * t349,
-                -(g1_wz_leg2 * t361 + g2_wz_leg2 * t326), -t330,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t346 - g2_wz_leg2 * t342,
+                -(g1_wz_leg2 * t354 + g2_wz_leg2 * t318), -t322,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t372), -t383, -t383,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t365), -t376, -t376,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t403 + g2_wz_leg3 * t405,
-                -(g1_wz_leg3 * t413 + g2_wz_leg3 * t379), -t383,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t397 + g2_wz_leg3 * t399,
+                -(g1_wz_leg3 * t407 + g2_wz_leg3 * t372), -t376,
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t424), -t435, -t435,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t418), -t429, -t429,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
-                g1_wz_leg4 * t456 - g2_wz_leg4 * t458, -(g1_wz_leg4 * t466 + g2_wz_leg4 * t431),
-                -t435, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t477), rate_dot_3_leg1,
-                c_phi * t247 - s_phi * t255, -(s_phi * t247 + c_phi * t255), 0.0,
+                g1_wz_leg4 * t451 - g2_wz_leg4 * t453, -(g1_wz_leg4 * t461 + g2_wz_leg4 * t425),
+                -t429, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t472), rate_dot_3_leg1,
+                c_phi * t242 - s_phi * t255, -(s_phi * t242 + c_phi * t255), 0.0,
             ],
         ])
     }
@@ -2954,7 +2941,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 263 operations (95 additions, 164 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 209 intermediates.
+    /// 257 operations (94 additions, 146 multiplications, 17 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 203 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2968,149 +2955,143 @@ impl Planar4Prr {
         let t5 = c_phi * t2 + s_phi * acceleration[2];
         let t8 = s_phi * t2 - c_phi * acceleration[2];
         let t16 = 0.05656854249492381 * (s_phi + c_phi);
+        let t17 = 0.21213203435596426 - t16;
         let t20 = 0.05656854249492381 * (c_phi - s_phi);
-        let t22 = pose[0] - (0.21213203435596426 - t16) + t20 + -0.21213203435596426;
-        let t23 = pose[1] + t22;
-        let t24 = 1.4705882352941178 * t23;
-        let t25 = 0.7071067811865476 * t23;
-        let t28 = 8.650519031141869 * (0.1156 - t25 * t25);
-        ::overact::guard::reach(t28, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t28);
+        let t21 = t20 - t16;
+        let t23 = pose[1] + t17 - t21 + t17;
+        let t24 = pose[0] - t23;
+        let t25 = 0.7071067811865476 * t24;
+        let t27 = 0.7071067811865476 * (pose[1] + pose[1]);
+        let t28 = t25 + t27;
+        let t29 = 2.079725827019258 * t28;
+        let t32 = 8.650519031141869 * (0.1156 - t28 * t28);
+        ::overact::guard::reach(t32, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t32);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t30 = 0.7071067811865476 * minus_s2_leg1;
-        let t31 = t24 + t30;
-        let t32 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t31 * t32;
-        let t34 = t30 - t24;
-        let t36 = 0.05656854249492381 * (t5 - t8);
-        let t37 = acceleration[1] - t36;
-        let t38 = acceleration[0] + acceleration[1];
-        let t39 = t38 - t37;
-        let t40 = acceleration[1] + t36;
-        let t43 = t16 * twist[2];
-        let t45 = acceleration[1] - t20 * acceleration[2] + twist[2] * t43;
-        let t46 = t39 + t45;
-        let t47 = t46 - t40;
-        let t48 = t47 - t37;
-        let t49 = t39 - t48;
-        let t51 = t38 - t45;
-        let t52 = t40 - t51;
-        let t53 = t45 - t52;
-        let g2_vx_leg1 = 2.079725827019258 * t32;
-        let t57 = twist[0] - t43;
-        let t58 = t20 * twist[2];
-        let t59 = twist[1] + t58;
-        let rate_2_leg1 = g2_vx_leg1 * (t57 + t59);
-        let t62 = rate_2_leg1 * rate_2_leg1;
-        let t64 = t34 * t49 - t31 * t53 - 0.34 * t62;
-        let rate_dot_1_leg1 = t32 * t64;
-        let g1_vy_leg1 = t34 * t32;
+        let t34 = 0.7071067811865476 * minus_s2_leg1;
+        let t35 = t29 + t34;
+        let minus_g1_vx_leg1 = t35 / minus_s2_leg1;
+        let t37 = t34 - t29;
+        let t39 = 0.05656854249492381 * (t5 - t8);
+        let t40 = acceleration[0] + t39;
+        let t41 = acceleration[1] + t39;
+        let t44 = t16 * twist[2];
+        let t46 = acceleration[1] - t20 * acceleration[2] + twist[2] * t44;
+        let t47 = t40 + t46;
+        let t48 = t47 - t41;
+        let t49 = acceleration[1] - t39;
+        let t50 = t48 - t49;
+        let t51 = t40 - t50;
+        let t53 = acceleration[0] - t39;
+        let t56 = 2.9411764705882355 / minus_s2_leg1;
+        let g2_vx_leg1 = 0.7071067811865476 * t56;
+        let t58 = twist[1] - t44;
+        let t59 = t20 * twist[2];
+        let t60 = twist[0] + t59;
+        let rate_2_leg1 = g2_vx_leg1 * (t58 + t60);
+        let t63 = rate_2_leg1 * rate_2_leg1;
+        let t65 = t37 * t51 - t35 * t53 - 0.34 * t63;
+        let rate_dot_1_leg1 = t65 / minus_s2_leg1;
+        let g1_vy_leg1 = t37 / minus_s2_leg1;
         let g1_wz_leg1 = t20 * g1_vy_leg1 + t16 * minus_g1_vx_leg1;
-        let t73 = pose[0] + pose[0];
-        let t74 = t23 - t73;
+        let t74 = pose[0] + t23;
         let t75 = 0.7071067811865476 * t74;
-        let t78 = 8.650519031141869 * (0.1156 - t75 * t75);
-        ::overact::guard::reach(t78, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t78);
+        let t76 = t27 - t75;
+        let t79 = 8.650519031141869 * (0.1156 - t76 * t76);
+        ::overact::guard::reach(t79, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t79);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t80 = 0.7071067811865476 * minus_s2_leg2;
-        let t81 = 1.4705882352941178 * t74;
-        let t82 = t80 - t81;
-        let t83 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t82 * t83;
-        let t86 = t80 + t81;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t83;
-        let t90 = twist[0] + t43;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t59 - t90);
-        let t93 = rate_2_leg2 * rate_2_leg2;
-        let t95 = t82 * t47 + t86 * t37 + 0.34 * t93;
-        let minus_rate_dot_1_leg2 = t83 * t95;
-        let minus_g1_vy_leg2 = t86 * t83;
+        let t81 = 0.7071067811865476 * minus_s2_leg2;
+        let t82 = 2.079725827019258 * t76;
+        let t83 = t81 - t82;
+        let minus_g1_vx_leg2 = t83 / minus_s2_leg2;
+        let t86 = t81 + t82;
+        let t89 = 2.9411764705882355 / minus_s2_leg2;
+        let minus_g2_vx_leg2 = 0.7071067811865476 * t89;
+        let t91 = twist[1] + t59;
+        let t92 = twist[0] + t44;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t91 - t92);
+        let t95 = rate_2_leg2 * rate_2_leg2;
+        let t97 = t83 * t48 + t86 * t49 + 0.34 * t95;
+        let minus_rate_dot_1_leg2 = t97 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t86 / minus_s2_leg2;
         let g1_wz_leg2 = t16 * minus_g1_vy_leg2 + t20 * minus_g1_vx_leg2;
-        let t104 = t22 - pose[1];
-        let t105 = t73 - t104;
-        let t106 = 1.4705882352941178 * t105;
-        let t107 = 0.7071067811865476 * t105;
-        let t110 = 8.650519031141869 * (0.1156 - t107 * t107);
-        ::overact::guard::reach(t110, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t110);
+        let t106 = 1.4705882352941178 * t74;
+        let t109 = 8.650519031141869 * (0.1156 - t75 * t75);
+        ::overact::guard::reach(t109, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t109);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t112 = 0.7071067811865476 * minus_s2_leg3;
-        let t113 = t106 - t112;
-        let t114 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t113 * t114;
-        let t117 = t112 + t106;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t114;
-        let t121 = twist[0] - t58;
-        let t122 = twist[1] + t43;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t121 + t122);
-        let t125 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t127 = t113 * t39 + t117 * t45 + 0.34 * t125;
-        let minus_rate_dot_1_leg3 = t114 * t127;
-        let minus_g1_vy_leg3 = t117 * t114;
+        let t111 = 0.7071067811865476 * minus_s2_leg3;
+        let t112 = t106 - t111;
+        let minus_g1_vx_leg3 = t112 / minus_s2_leg3;
+        let t115 = t111 + t106;
+        let t118 = 2.9411764705882355 / minus_s2_leg3;
+        let minus_g2_vx_leg3 = 0.7071067811865476 * t118;
+        let t120 = twist[1] - t59;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t92 + t120);
+        let t123 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t125 = t112 * t40 + t115 * t46 + 0.34 * t123;
+        let minus_rate_dot_1_leg3 = t125 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t115 / minus_s2_leg3;
         let g1_wz_leg3 = t20 * minus_g1_vy_leg3 - t16 * minus_g1_vx_leg3;
-        let t136 = 1.4705882352941178 * t104;
-        let t137 = 0.7071067811865476 * t104;
-        let t140 = 8.650519031141869 * (0.1156 - t137 * t137);
-        ::overact::guard::reach(t140, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t140);
+        let t134 = 1.4705882352941178 * t24;
+        let t137 = 8.650519031141869 * (0.1156 - t25 * t25);
+        ::overact::guard::reach(t137, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t137);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t142 = 0.7071067811865476 * minus_s2_leg4;
-        let t143 = t136 - t142;
-        let t144 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t143 * t144;
-        let t147 = t142 + t136;
-        let g2_vx_leg4 = 2.079725827019258 * t144;
-        let t151 = twist[1] - t58;
-        let rate_2_leg4 = g2_vx_leg4 * (t57 - t151);
-        let t154 = rate_2_leg4 * rate_2_leg4;
-        let t156 = t143 * t51 - t147 * t40 + 0.34 * t154;
-        let minus_rate_dot_1_leg4 = t144 * t156;
-        let g1_vy_leg4 = t147 * t144;
+        let t139 = 0.7071067811865476 * minus_s2_leg4;
+        let t140 = t134 - t139;
+        let minus_g1_vx_leg4 = t140 / minus_s2_leg4;
+        let t142 = t53 + t51;
+        let t143 = t142 - t49;
+        let t145 = t139 + t134;
+        let g2_vx_leg4 = 2.079725827019258 / minus_s2_leg4;
+        let t149 = twist[0] - t44;
+        let rate_2_leg4 = g2_vx_leg4 * (t149 - t120);
+        let t152 = rate_2_leg4 * rate_2_leg4;
+        let t154 = t140 * t143 - t145 * t41 + 0.34 * t152;
+        let minus_rate_dot_1_leg4 = t154 / minus_s2_leg4;
+        let g1_vy_leg4 = t145 / minus_s2_leg4;
         let g1_wz_leg4 = t16 * g1_vy_leg4 - t20 * minus_g1_vx_leg4;
-        let rate_1_leg1 = g1_vy_leg1 * t59 - minus_g1_vx_leg1 * t57;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t121
-            + minus_g1_vy_leg2 * (twist[1] - t43);
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t90 + minus_g1_vy_leg3 * t151;
-        let rate_1_leg4 = g1_vy_leg4 * t122 - minus_g1_vx_leg4 * (twist[0] + t58);
-        let t204 = t53 + t49;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t32
-            * (0.7071067811865476 * t204 + t25 * t62);
-        let t209 = g2_vx_leg1 * rate_dot_2_leg1;
-        let t210 = t20 - t16;
-        let g2_wz_leg1 = g2_vx_leg1 * t210;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t83
-            * (0.7071067811865476 * t48 - t75 * t93);
-        let t218 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t210;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t114
-            * (0.7071067811865476 * t46 + t107 * t125);
-        let t226 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t210;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t144
-            * (0.7071067811865476 * t52 - t137 * t154);
-        let t234 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t210;
-        let t237 = g2_vx_leg1 * t64;
-        let t238 = 2.079725827019258 * t204;
-        let t246 = 2.079725827019258 * t48;
-        let t248 = minus_g2_vx_leg2 * t95;
-        let t255 = 2.079725827019258 * t46;
-        let t257 = minus_g2_vx_leg3 * t127;
-        let t264 = 2.079725827019258 * t52;
-        let t266 = g2_vx_leg4 * t156;
-        let t273 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t275 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t277 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t279 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t281 = twist[2] - rate_2_leg1;
-        let t282 = ::overact::math::signed(g2_vx_leg1, t281);
-        let t285 = twist[2] - rate_2_leg2;
-        let t286 = ::overact::math::signed(minus_g2_vx_leg2, t285);
-        let t289 = minus_rate_2_leg3 + twist[2];
-        let t290 = ::overact::math::signed(minus_g2_vx_leg3, t289);
-        let t293 = twist[2] - rate_2_leg4;
-        let t294 = ::overact::math::signed(g2_vx_leg4, t293);
+        let rate_1_leg1 = g1_vy_leg1 * t91 - minus_g1_vx_leg1 * t149;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (twist[0] - t59)
+            + minus_g1_vy_leg2 * t58;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t92 + minus_g1_vy_leg3 * t120;
+        let rate_1_leg4 = g1_vy_leg4 * (twist[1] + t44) - minus_g1_vx_leg4 * t60;
+        let rate_dot_2_leg1 = t56 * (0.7071067811865476 * t142 + t28 * t63);
+        let t205 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = g2_vx_leg1 * t21;
+        let minus_rate_dot_2_leg2 = t89 * (0.7071067811865476 * t50 - t76 * t95);
+        let t212 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t21;
+        let minus_rate_dot_2_leg3 = t118 * (0.7071067811865476 * t47 + t75 * t123);
+        let t219 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t21;
+        let t223 = t41 - t143;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 / minus_s2_leg4
+            * (0.7071067811865476 * t223 - t25 * t152);
+        let t228 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t21;
+        let t231 = g2_vx_leg1 * t65;
+        let t232 = 2.079725827019258 * t142;
+        let t240 = 2.079725827019258 * t50;
+        let t242 = minus_g2_vx_leg2 * t97;
+        let t249 = 2.079725827019258 * t47;
+        let t251 = minus_g2_vx_leg3 * t125;
+        let t258 = 2.079725827019258 * t223;
+        let t260 = g2_vx_leg4 * t154;
+        let t267 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t269 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t271 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t273 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t275 = twist[2] - rate_2_leg1;
+        let t276 = ::overact::math::signed(g2_vx_leg1, t275);
+        let t279 = twist[2] - rate_2_leg2;
+        let t280 = ::overact::math::signed(minus_g2_vx_leg2, t279);
+        let t283 = minus_rate_2_leg3 + twist[2];
+        let t284 = ::overact::math::signed(minus_g2_vx_leg3, t283);
+        let t287 = twist[2] - rate_2_leg4;
+        let t288 = ::overact::math::signed(g2_vx_leg4, t287);
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
@@ -3122,10 +3103,10 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t209, t218, t226, -t234,
-                t237 - minus_g1_vx_leg1 * t238, minus_g1_vx_leg2 * t246 + t248,
-                minus_g1_vx_leg3 * t255 + t257, minus_g1_vx_leg4 * t264 - t266, t273, -t275, t277,
-                t279, -t282, t286, t290, -t294,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t205, t212, t219, -t228,
+                t231 - minus_g1_vx_leg1 * t232, minus_g1_vx_leg2 * t240 + t242,
+                minus_g1_vx_leg3 * t249 + t251, minus_g1_vx_leg4 * t258 - t260, t267, -t269, t271,
+                t273, -t276, t280, t284, -t288,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3136,9 +3117,9 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t209, -t218, t226, t234, g1_vy_leg1 * t238 + t237,
-                minus_g1_vy_leg2 * t246 - t248, minus_g1_vy_leg3 * t255 + t257,
-                t266 - g1_vy_leg4 * t264, t273, t275, t277, -t279, -t282, -t286, t290, t294,
+                -minus_g1_vy_leg3, g1_vy_leg4, t205, -t212, t219, t228, g1_vy_leg1 * t232 + t231,
+                minus_g1_vy_leg2 * t240 - t242, minus_g1_vy_leg3 * t249 + t251,
+                t260 - g1_vy_leg4 * t258, t267, t269, t271, -t273, -t276, -t280, t284, t288,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3153,17 +3134,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t238 + g2_wz_leg1 * t64,
-                -(g1_wz_leg2 * t246 + g2_wz_leg2 * t95), -(g1_wz_leg3 * t255 + g2_wz_leg3 * t127),
-                -(g1_wz_leg4 * t264 + g2_wz_leg4 * t156),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t232 + g2_wz_leg1 * t65,
+                -(g1_wz_leg2 * t240 + g2_wz_leg2 * t97), -(g1_wz_leg3 * t249 + g2_wz_leg3 * t125),
+                -(g1_wz_leg4 * t258 + g2_wz_leg4 * t154),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t281),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t285),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t289),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t293),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t275),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t279),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t283),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t287),
             ],
         ])
     }
@@ -3178,7 +3159,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 241 operations (84 additions, 153 multiplications, 4 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 193 intermediates.
+    /// 232 operations (83 additions, 141 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 184 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3200,122 +3181,116 @@ impl Planar4Prr {
         let t5 = c_phi * t2 + s_phi * acceleration[2];
         let t8 = s_phi * t2 - c_phi * acceleration[2];
         let t17 = c2_leg1 - s2_leg1;
-        let t18 = 1.0 / s2_leg1;
-        let t19 = 0.7071067811865476 * t18;
-        let g1_vx_leg1 = t17 * t19;
-        let t22 = 0.05656854249492381 * (c_phi - s_phi);
-        let t26 = 0.05656854249492381 * (s_phi + c_phi);
-        let t27 = t26 * twist[2];
-        let t29 = acceleration[1] - t22 * acceleration[2] + twist[2] * t27;
-        let t31 = 0.05656854249492381 * (t5 - t8);
-        let t32 = acceleration[1] + t31;
-        let t33 = acceleration[0] + acceleration[1];
-        let t34 = t33 - t29;
-        let t35 = t32 - t34;
-        let t36 = t29 - t35;
-        let minus_g2_vx_leg1 = 2.079725827019258 * t18;
-        let t38 = twist[0] - t27;
-        let t39 = t22 * twist[2];
-        let t40 = twist[1] + t39;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t38 + t40);
-        let t44 = 0.2404163056034262 * (minus_rate_2_leg1 * minus_rate_2_leg1);
-        let t46 = t36 + t17 * t44;
-        let t48 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t48 * t19;
-        let t50 = acceleration[1] - t31;
-        let t51 = t33 - t50;
-        let t52 = t51 + t29;
-        let t53 = t52 - t32;
-        let t54 = t53 - t50;
-        let t55 = t51 - t54;
-        let t57 = t55 + t48 * t44;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t46 + g1_vy_leg1 * t57;
-        let g1_wz_leg1 = g1_vy_leg1 * t22 - g1_vx_leg1 * t26;
-        let t68 = c2_leg2 + s2_leg2;
-        let t69 = 1.0 / s2_leg2;
-        let t70 = 0.7071067811865476 * t69;
-        let minus_g1_vx_leg2 = t68 * t70;
-        let t72 = 0.2404163056034262 + 0.2404163056034262;
-        let g2_vx_leg2 = 2.079725827019258 * t69;
-        let t74 = twist[0] + t27;
-        let minus_rate_2_leg2 = g2_vx_leg2 * (t40 - t74);
-        let t77 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t80 = s2_leg2 - c2_leg2;
-        let rate_dot_1_leg2 = t70 * (t72 * t77 - (t68 * t53 + t80 * t50));
-        let minus_g1_vy_leg2 = t80 * t70;
-        let g1_wz_leg2 = t26 * minus_g1_vy_leg2 + t22 * minus_g1_vx_leg2;
-        let t94 = s2_leg3 - c2_leg3;
-        let t95 = 1.0 / s2_leg3;
-        let t96 = 0.7071067811865476 * t95;
-        let g1_vx_leg3 = t94 * t96;
-        let t98 = s2_leg3 + c2_leg3;
-        let g2_vx_leg3 = 2.079725827019258 * t95;
-        let t103 = twist[0] - t39;
-        let t104 = twist[1] + t27;
-        let rate_2_leg3 = g2_vx_leg3 * (t103 + t104);
-        let t107 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t96 * (t98 * t29 - t94 * t51 - t72 * t107);
-        let minus_g1_vy_leg3 = t98 * t96;
-        let g1_wz_leg3 = t22 * minus_g1_vy_leg3 + t26 * g1_vx_leg3;
-        let t120 = c2_leg4 + s2_leg4;
-        let t121 = 1.0 / s2_leg4;
-        let t122 = 0.7071067811865476 * t121;
-        let g1_vx_leg4 = t120 * t122;
-        let t125 = c2_leg4 - s2_leg4;
-        let minus_g2_vx_leg4 = 2.079725827019258 * t121;
-        let t129 = twist[1] - t39;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t38 - t129);
-        let t132 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let rate_dot_1_leg4 = t122 * (t120 * t34 - t125 * t32 + t72 * t132);
-        let minus_g1_vy_leg4 = t125 * t122;
-        let g1_wz_leg4 = t22 * g1_vx_leg4 - t26 * minus_g1_vy_leg4;
-        let rate_1_leg1 = g1_vx_leg1 * t38 + g1_vy_leg1 * t40;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t103
-            + minus_g1_vy_leg2 * (twist[1] - t27);
-        let rate_1_leg3 = g1_vx_leg3 * t74 - minus_g1_vy_leg3 * t129;
-        let rate_1_leg4 = g1_vx_leg4 * (twist[0] + t39) - minus_g1_vy_leg4 * t104;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t46 + t57);
-        let t183 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t184 = t26 - t22;
-        let g2_wz_leg1 = minus_g2_vx_leg1 * t184;
-        let rate_dot_2_leg2 = 2.9411764705882355 * t69
-            * (0.7071067811865476 * t54 - t77 * (0.34 * c2_leg2));
-        let t193 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = g2_vx_leg2 * t184;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t95
-            * (t107 * (0.34 * c2_leg3) - 0.7071067811865476 * t52);
-        let t202 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = g2_vx_leg3 * t184;
-        let rate_dot_2_leg4 = 2.9411764705882355 * t121
-            * (0.7071067811865476 * t35 - t132 * (0.34 * c2_leg4));
-        let t211 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = minus_g2_vx_leg4 * t184;
-        let t215 = 2.079725827019258 * (t36 + t55);
-        let t217 = s2_leg1 * rate_dot_1_leg1;
-        let t218 = minus_g2_vx_leg1 * t217;
-        let t225 = 2.079725827019258 * t54;
-        let t227 = s2_leg2 * rate_dot_1_leg2;
-        let t228 = g2_vx_leg2 * t227;
-        let t235 = s2_leg3 * minus_rate_dot_1_leg3;
-        let t236 = g2_vx_leg3 * t235;
-        let t237 = 2.079725827019258 * t52;
-        let t245 = s2_leg4 * rate_dot_1_leg4;
-        let t246 = minus_g2_vx_leg4 * t245;
-        let t247 = 2.079725827019258 * t35;
-        let t255 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t257 = -minus_rate_2_leg2;
-        let t258 = ::overact::math::signed(g2_vx_leg2, t257);
-        let t260 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t262 = -minus_rate_2_leg4;
-        let t263 = ::overact::math::signed(minus_g2_vx_leg4, t262);
-        let t265 = minus_rate_2_leg1 + twist[2];
-        let t266 = ::overact::math::signed(minus_g2_vx_leg1, t265);
-        let t269 = twist[2] + minus_rate_2_leg2;
-        let t270 = ::overact::math::signed(g2_vx_leg2, t269);
-        let t273 = twist[2] - rate_2_leg3;
-        let t274 = ::overact::math::signed(g2_vx_leg3, t273);
-        let t277 = twist[2] + minus_rate_2_leg4;
-        let t278 = ::overact::math::signed(minus_g2_vx_leg4, t277);
+        let t18 = 0.7071067811865476 / s2_leg1;
+        let g1_vx_leg1 = t17 * t18;
+        let t21 = 0.05656854249492381 * (t5 - t8);
+        let t22 = acceleration[0] - t21;
+        let minus_g2_vx_leg1 = 2.079725827019258 / s2_leg1;
+        let t25 = 0.05656854249492381 * (s_phi + c_phi);
+        let t26 = t25 * twist[2];
+        let t27 = twist[0] - t26;
+        let t29 = 0.05656854249492381 * (c_phi - s_phi);
+        let t30 = t29 * twist[2];
+        let t31 = twist[1] + t30;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t27 + t31);
+        let t35 = 0.2404163056034262 * (minus_rate_2_leg1 * minus_rate_2_leg1);
+        let t37 = t22 + t17 * t35;
+        let t39 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t39 * t18;
+        let t41 = acceleration[0] + t21;
+        let t42 = acceleration[1] + t21;
+        let t46 = acceleration[1] - t29 * acceleration[2] + twist[2] * t26;
+        let t47 = t41 + t46;
+        let t48 = t47 - t42;
+        let t49 = acceleration[1] - t21;
+        let t50 = t48 - t49;
+        let t51 = t41 - t50;
+        let t53 = t51 + t39 * t35;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t53;
+        let g1_wz_leg1 = g1_vy_leg1 * t29 - g1_vx_leg1 * t25;
+        let t64 = c2_leg2 + s2_leg2;
+        let t65 = 0.7071067811865476 / s2_leg2;
+        let minus_g1_vx_leg2 = t64 * t65;
+        let t67 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = 2.079725827019258 / s2_leg2;
+        let t69 = twist[0] + t26;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t31 - t69);
+        let t72 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t75 = s2_leg2 - c2_leg2;
+        let rate_dot_1_leg2 = t65 * (t67 * t72 - (t64 * t48 + t75 * t49));
+        let minus_g1_vy_leg2 = t75 * t65;
+        let g1_wz_leg2 = t25 * minus_g1_vy_leg2 + t29 * minus_g1_vx_leg2;
+        let t89 = s2_leg3 - c2_leg3;
+        let t90 = 2.9411764705882355 / s2_leg3;
+        let t91 = 0.2404163056034262 * t90;
+        let g1_vx_leg3 = t89 * t91;
+        let t93 = s2_leg3 + c2_leg3;
+        let g2_vx_leg3 = 2.079725827019258 / s2_leg3;
+        let t98 = twist[1] - t30;
+        let rate_2_leg3 = g2_vx_leg3 * (t69 + t98);
+        let t101 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t91 * (t93 * t46 - t89 * t41 - t67 * t101);
+        let minus_g1_vy_leg3 = t93 * t91;
+        let g1_wz_leg3 = t29 * minus_g1_vy_leg3 + t25 * g1_vx_leg3;
+        let t114 = c2_leg4 + s2_leg4;
+        let t115 = 2.9411764705882355 / s2_leg4;
+        let t116 = 0.2404163056034262 * t115;
+        let g1_vx_leg4 = t114 * t116;
+        let t118 = t22 + t51;
+        let t119 = t118 - t49;
+        let t121 = c2_leg4 - s2_leg4;
+        let minus_g2_vx_leg4 = t116 * 2.9411764705882355;
+        let t125 = twist[1] + t26;
+        let t126 = twist[0] + t30;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t126 - t125);
+        let t129 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t116 * (t114 * t119 - t121 * t42 + t67 * t129);
+        let minus_g1_vy_leg4 = t121 * t116;
+        let g1_wz_leg4 = t29 * g1_vx_leg4 - t25 * minus_g1_vy_leg4;
+        let rate_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t31;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (twist[0] - t30)
+            + minus_g1_vy_leg2 * (twist[1] - t26);
+        let rate_1_leg3 = g1_vx_leg3 * t69 - minus_g1_vy_leg3 * t98;
+        let rate_1_leg4 = g1_vx_leg4 * t126 - minus_g1_vy_leg4 * t125;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t37 + t53);
+        let t180 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t181 = t25 - t29;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t181;
+        let rate_dot_2_leg2 = 2.9411764705882355 / s2_leg2
+            * (0.7071067811865476 * t50 - t72 * (0.34 * c2_leg2));
+        let t190 = g2_vx_leg2 * rate_dot_2_leg2;
+        let g2_wz_leg2 = g2_vx_leg2 * t181;
+        let minus_rate_dot_2_leg3 = t90
+            * (t101 * (0.34 * c2_leg3) - 0.7071067811865476 * t47);
+        let t198 = g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t181;
+        let t201 = t42 - t119;
+        let rate_dot_2_leg4 = t115
+            * (0.7071067811865476 * t201 - t129 * (0.34 * c2_leg4));
+        let t207 = minus_g2_vx_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t181;
+        let t210 = 2.079725827019258 * t118;
+        let t212 = 2.079725827019258 * rate_dot_1_leg1;
+        let t219 = 2.079725827019258 * t50;
+        let t221 = 2.079725827019258 * rate_dot_1_leg2;
+        let t228 = 2.079725827019258 * minus_rate_dot_1_leg3;
+        let t229 = 2.079725827019258 * t47;
+        let t237 = 2.079725827019258 * rate_dot_1_leg4;
+        let t238 = 2.079725827019258 * t201;
+        let t246 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t248 = -minus_rate_2_leg2;
+        let t249 = ::overact::math::signed(g2_vx_leg2, t248);
+        let t251 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
+        let t253 = -minus_rate_2_leg4;
+        let t254 = ::overact::math::signed(minus_g2_vx_leg4, t253);
+        let t256 = minus_rate_2_leg1 + twist[2];
+        let t257 = ::overact::math::signed(minus_g2_vx_leg1, t256);
+        let t260 = twist[2] + minus_rate_2_leg2;
+        let t261 = ::overact::math::signed(g2_vx_leg2, t260);
+        let t264 = twist[2] - rate_2_leg3;
+        let t265 = ::overact::math::signed(g2_vx_leg3, t264);
+        let t268 = twist[2] + minus_rate_2_leg4;
+        let t269 = ::overact::math::signed(minus_g2_vx_leg4, t268);
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3326,9 +3301,9 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, -minus_g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, t183, t193, -t202, -t211, g1_vx_leg1 * t215 + t218,
-                minus_g1_vx_leg2 * t225 - t228, t236 - g1_vx_leg3 * t237, t246 - g1_vx_leg4 * t247,
-                t255, t258, t260, -t263, t266, -t270, -t274, t278,
+                g1_vx_leg3, g1_vx_leg4, t180, t190, -t198, -t207, g1_vx_leg1 * t210 + t212,
+                minus_g1_vx_leg2 * t219 - t221, t228 - g1_vx_leg3 * t229, t237 - g1_vx_leg4 * t238,
+                t246, t249, t251, -t254, t257, -t261, -t265, t269,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3339,10 +3314,10 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t183, -t193, -t202, t211,
-                g1_vy_leg1 * t215 + t218, minus_g1_vy_leg2 * t225 + t228,
-                minus_g1_vy_leg3 * t237 + t236, minus_g1_vy_leg4 * t247 - t246, t255, -t258, t260,
-                t263, t266, t270, -t274, -t278,
+                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t180, -t190, -t198, t207,
+                g1_vy_leg1 * t210 + t212, minus_g1_vy_leg2 * t219 + t221,
+                minus_g1_vy_leg3 * t229 + t228, minus_g1_vy_leg4 * t238 - t237, t246, -t249, t251,
+                t254, t257, t261, -t265, -t269,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3357,17 +3332,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 g2_wz_leg2 * rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t215 - g2_wz_leg1 * t217,
-                -(g1_wz_leg2 * t225 + g2_wz_leg2 * t227), g2_wz_leg3 * t235 - g1_wz_leg3 * t237,
-                -(g1_wz_leg4 * t247 + g2_wz_leg4 * t245),
+                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t210 - t212 * t181,
+                -(g1_wz_leg2 * t219 + t221 * t181), t228 * t181 - g1_wz_leg3 * t229,
+                -(g1_wz_leg4 * t238 + t237 * t181),
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(g2_wz_leg2, t257),
+                ::overact::math::signed(g2_wz_leg2, t248),
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(g2_wz_leg4, t262),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t265),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t269),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t273),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t277),
+                ::overact::math::signed(g2_wz_leg4, t253),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t256),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t260),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t264),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t268),
             ],
         ])
     }
@@ -3382,7 +3357,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 416 operations (159 additions, 250 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 359 intermediates.
+    /// 407 operations (158 additions, 217 multiplications, 32 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 350 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3396,218 +3371,208 @@ impl Planar4Prr {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[0] + t5 + -0.21213203435596426 + t3 + -0.21213203435596426;
-        let t10 = pose[1] + t9;
-        let t11 = 0.7071067811865476 * t10;
-        let t14 = 8.650519031141869 * (0.1156 - t11 * t11);
-        ::overact::guard::reach(t14, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t14);
+        let t6 = t5 + -0.21213203435596426;
+        let t8 = t3 - t5;
+        let t10 = pose[1] - t6 - t8 - t6;
+        let t12 = 0.7071067811865476 * (pose[0] - t10);
+        let t14 = 0.7071067811865476 * (pose[1] + pose[1]);
+        let t15 = t12 + t14;
+        let t18 = 8.650519031141869 * (0.1156 - t15 * t15);
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t16 = 0.7071067811865476 * minus_s2_leg1;
-        let t17 = 1.4705882352941178 * t10;
-        let t18 = t16 - t17;
-        let t19 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = t18 * t19;
-        let t22 = t17 + t16;
-        let minus_g1_vx_leg1 = t22 * t19;
+        let t20 = 0.7071067811865476 * minus_s2_leg1;
+        let t21 = 2.079725827019258 * t15;
+        let t22 = t20 - t21;
+        let g1_vy_leg1 = t22 / minus_s2_leg1;
+        let t25 = t21 + t20;
+        let minus_g1_vx_leg1 = t25 / minus_s2_leg1;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t5 * minus_g1_vx_leg1;
-        let t27 = pose[0] + pose[0];
-        let t28 = t10 - t27;
-        let t29 = 0.7071067811865476 * t28;
-        let t32 = 8.650519031141869 * (0.1156 - t29 * t29);
-        ::overact::guard::reach(t32, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t32);
+        let t31 = 0.7071067811865476 * (pose[0] + t10);
+        let t32 = t14 - t31;
+        let t35 = 8.650519031141869 * (0.1156 - t32 * t32);
+        ::overact::guard::reach(t35, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t35);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t34 = 0.7071067811865476 * minus_s2_leg2;
-        let t35 = 1.4705882352941178 * t28;
-        let t36 = t34 + t35;
-        let t37 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t36 * t37;
-        let t40 = t34 - t35;
-        let minus_g1_vx_leg2 = t40 * t37;
+        let t37 = 0.7071067811865476 * minus_s2_leg2;
+        let t38 = 2.079725827019258 * t32;
+        let t39 = t37 + t38;
+        let minus_g1_vy_leg2 = t39 / minus_s2_leg2;
+        let t42 = t37 - t38;
+        let minus_g1_vx_leg2 = t42 / minus_s2_leg2;
         let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t46 = t9 - pose[1];
-        let t47 = t27 - t46;
-        let t48 = 0.7071067811865476 * t47;
-        let t51 = 8.650519031141869 * (0.1156 - t48 * t48);
-        ::overact::guard::reach(t51, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t51);
+        let t50 = 8.650519031141869 * (0.1156 - t31 * t31);
+        ::overact::guard::reach(t50, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t53 = 0.7071067811865476 * minus_s2_leg3;
-        let t54 = 1.4705882352941178 * t47;
-        let t55 = t53 + t54;
-        let t56 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t55 * t56;
-        let t59 = t54 - t53;
-        let minus_g1_vx_leg3 = t59 * t56;
+        let t52 = 0.7071067811865476 * minus_s2_leg3;
+        let t53 = 2.079725827019258 * t31;
+        let t54 = t52 + t53;
+        let minus_g1_vy_leg3 = t54 / minus_s2_leg3;
+        let t57 = t53 - t52;
+        let minus_g1_vx_leg3 = t57 / minus_s2_leg3;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t5 * minus_g1_vx_leg3;
-        let t65 = 0.7071067811865476 * t46;
-        let t68 = 8.650519031141869 * (0.1156 - t65 * t65);
-        ::overact::guard::reach(t68, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t68);
+        let t65 = 8.650519031141869 * (0.1156 - t12 * t12);
+        ::overact::guard::reach(t65, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t65);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t70 = 0.7071067811865476 * minus_s2_leg4;
-        let t71 = 1.4705882352941178 * t46;
-        let t72 = t70 + t71;
-        let t73 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t72 * t73;
-        let t76 = t71 - t70;
-        let minus_g1_vx_leg4 = t76 * t73;
+        let t67 = 0.7071067811865476 * minus_s2_leg4;
+        let t68 = 2.079725827019258 * t12;
+        let t69 = t67 + t68;
+        let g1_vy_leg4 = t69 / minus_s2_leg4;
+        let t72 = t68 - t67;
+        let minus_g1_vx_leg4 = t72 / minus_s2_leg4;
         let g1_wz_leg4 = t5 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t88 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
-            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t95 = minus_g1_vx_leg1 * minus_g1_vx_leg1
-            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
-            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t95, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t95, 3.440476190476192, "actuators")?;
-        let t96 = 1.0 / t95;
-        let t97 = t88 * t96;
-        let t113 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t115 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t113 * t97;
-        let t123 = t113 * t96;
-        let t125 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t113 * t123;
-        ::overact::guard::platform(t125, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t125, 3.440476190476192, "actuators")?;
-        let t126 = 1.0 / t125;
-        let t127 = t115 * t126;
-        let t129 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t88 * t97
-            - t115 * t127;
-        ::overact::guard::platform(t129, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t129, 0.02560000000000001, "actuators")?;
-        let t130 = 1.0 / t129;
-        let t144 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t84 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t155 = g1_vy_leg1 * actuator_velocities[0]
+        let t91 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
+        let t99 = t91 / t98;
+        let t115 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t117 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t115 * t99;
+        let t125 = t115 / t98;
+        let t127 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t115 * t125;
+        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
+        let t128 = t117 / t127;
+        let t137 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t144 * t123;
-        let t157 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t84 * t125;
+        let t139 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t144 * t97 - t127 * t155;
-        let rate_3_leg1 = t130 * t157;
-        let t159 = t3 * rate_3_leg1;
-        let t160 = rate_3_leg1 * t159;
-        let t162 = t5 * rate_3_leg1;
-        let t163 = rate_3_leg1 * t162;
-        let g2_vx_leg1 = 2.079725827019258 * t19;
-        let t171 = t126 * t155 - t127 * rate_3_leg1;
-        let t174 = t97 * rate_3_leg1 - (t144 * t96 + t123 * t171);
-        let t175 = t174 - t162;
-        let t176 = t171 + t159;
-        let rate_2_leg1 = g2_vx_leg1 * (t175 + t176);
-        let t179 = rate_2_leg1 * rate_2_leg1;
-        let t180 = 0.34 * t179;
-        let rate_dot_1_leg1 = t19 * (t22 * t160 - t18 * t163 - t180);
-        let t183 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t37;
-        let t189 = t174 + t162;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t176 - t189);
-        let t192 = rate_2_leg2 * rate_2_leg2;
-        let t193 = 0.34 * t192;
-        let minus_rate_dot_1_leg2 = t37 * (t40 * t163 - t36 * t160 + t193);
-        let t196 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t56;
-        let t203 = t174 - t159;
-        let t204 = t171 + t162;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t203 + t204);
-        let t207 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t208 = 0.34 * t207;
-        let minus_rate_dot_1_leg3 = t56 * (t59 * t160 + t55 * t163 + t208);
-        let t211 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t73;
-        let t215 = t171 - t159;
-        let rate_2_leg4 = g2_vx_leg4 * (t175 - t215);
-        let t218 = rate_2_leg4 * rate_2_leg4;
-        let t219 = 0.34 * t218;
-        let minus_rate_dot_1_leg4 = t73 * (t219 - (t76 * t163 + t72 * t160));
-        let t225 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t234 = minus_g1_vx_leg1 * t183 + minus_g1_vx_leg2 * t196
-            + minus_g1_vx_leg3 * t211 + minus_g1_vx_leg4 * t225;
-        let t245 = g1_vy_leg1 * t183 - minus_g1_vy_leg2 * t196 - minus_g1_vy_leg3 * t211
-            + g1_vy_leg4 * t225 + t123 * t234;
-        let t247 = g1_wz_leg1 * t183 + g1_wz_leg2 * t196 + g1_wz_leg3 * t211
-            + g1_wz_leg4 * t225 - t97 * t234 - t127 * t245;
-        let rate_dot_3_leg1 = t130 * t247;
-        let t249 = rate_3_leg1 * rate_3_leg1;
-        let t252 = c_phi * t249 + s_phi * rate_dot_3_leg1;
-        let t255 = s_phi * t249 - c_phi * rate_dot_3_leg1;
-        let t258 = t126 * t245 - t127 * rate_dot_3_leg1;
-        let t264 = t97 * rate_dot_3_leg1 - (t96 * t234 + t123 * t258);
-        let t271 = t160 + t5 * rate_dot_3_leg1;
-        let t272 = t258 - t271;
-        let t273 = t258 + t264;
-        let t274 = t273 - t272;
-        let t275 = t258 + t271;
-        let t278 = t258 - t3 * rate_dot_3_leg1 + t163;
-        let t279 = t274 + t278;
-        let t280 = t279 - t275;
-        let t281 = t280 - t272;
-        let t282 = t274 - t281;
-        let t284 = t273 - t278;
-        let t285 = t275 - t284;
-        let t286 = t278 - t285;
-        let t289 = t18 * t282 - t22 * t286 - t180;
-        let rate_dot_1_leg1_2 = t19 * t289;
-        let t297 = t40 * t280 + t36 * t272 + t193;
-        let minus_rate_dot_1_leg2_2 = t37 * t297;
-        let t305 = t59 * t274 + t55 * t278 + t208;
-        let minus_rate_dot_1_leg3_2 = t56 * t305;
-        let t313 = t76 * t284 - t72 * t275 + t219;
-        let minus_rate_dot_1_leg4_2 = t73 * t313;
-        let rate_1_leg1 = g1_vy_leg1 * t176 - minus_g1_vx_leg1 * t175;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t203
-            + minus_g1_vy_leg2 * (t171 - t162);
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t189 + minus_g1_vy_leg3 * t215;
-        let rate_1_leg4 = g1_vy_leg4 * t204 - minus_g1_vx_leg4 * (t174 + t159);
-        let t357 = t286 + t282;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t19
-            * (0.7071067811865476 * t357 + t11 * t179);
-        let t362 = g2_vx_leg1 * rate_dot_2_leg1;
-        let t363 = t3 - t5;
-        let g2_wz_leg1 = g2_vx_leg1 * t363;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t37
-            * (0.7071067811865476 * t281 - t29 * t192);
-        let t371 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t363;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t56
-            * (0.7071067811865476 * t279 + t48 * t207);
-        let t379 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t363;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t73
-            * (0.7071067811865476 * t285 - t65 * t218);
-        let t387 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t363;
-        let t390 = g2_vx_leg1 * t289;
-        let t391 = 2.079725827019258 * t357;
-        let t399 = 2.079725827019258 * t281;
-        let t401 = minus_g2_vx_leg2 * t297;
-        let t408 = 2.079725827019258 * t279;
-        let t410 = minus_g2_vx_leg3 * t305;
-        let t417 = 2.079725827019258 * t285;
-        let t419 = g2_vx_leg4 * t313;
-        let t426 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t428 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t430 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t432 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t434 = rate_3_leg1 - rate_2_leg1;
-        let t435 = ::overact::math::signed(g2_vx_leg1, t434);
-        let t438 = rate_3_leg1 - rate_2_leg2;
-        let t439 = ::overact::math::signed(minus_g2_vx_leg2, t438);
-        let t442 = minus_rate_2_leg3 + rate_3_leg1;
-        let t443 = ::overact::math::signed(minus_g2_vx_leg3, t442);
-        let t446 = rate_3_leg1 - rate_2_leg4;
-        let t447 = ::overact::math::signed(g2_vx_leg4, t446);
+            + g1_wz_leg4 * actuator_velocities[3] - t84 * t99 - t128 * t137;
+        let t150 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t91 * t99
+            - t117 * t128;
+        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
+        let rate_3_leg1 = t139 / t150;
+        let t152 = t3 * rate_3_leg1;
+        let t153 = rate_3_leg1 * t152;
+        let t155 = t5 * rate_3_leg1;
+        let t156 = rate_3_leg1 * t155;
+        let t159 = 2.9411764705882355 / minus_s2_leg1;
+        let g2_vx_leg1 = 0.7071067811865476 * t159;
+        let t163 = t137 / t127 - t128 * rate_3_leg1;
+        let t164 = t163 - t155;
+        let t169 = t99 * rate_3_leg1 - (t84 / t98 + t125 * t163);
+        let t170 = t169 + t152;
+        let rate_2_leg1 = g2_vx_leg1 * (t164 + t170);
+        let t173 = rate_2_leg1 * rate_2_leg1;
+        let t174 = 0.34 * t173;
+        let rate_dot_1_leg1 = (t25 * t153 - t22 * t156 - t174) / minus_s2_leg1;
+        let t177 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 / minus_s2_leg2;
+        let t183 = t163 + t152;
+        let t184 = t169 + t155;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t183 - t184);
+        let t187 = rate_2_leg2 * rate_2_leg2;
+        let t188 = 0.34 * t187;
+        let minus_rate_dot_1_leg2 = (t42 * t156 - t39 * t153 + t188) / minus_s2_leg2;
+        let t191 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 / minus_s2_leg3;
+        let t198 = t163 - t152;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t184 + t198);
+        let t201 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t202 = 0.34 * t201;
+        let minus_rate_dot_1_leg3 = (t57 * t153 + t54 * t156 + t202) / minus_s2_leg3;
+        let t205 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 / minus_s2_leg4;
+        let t209 = t169 - t155;
+        let rate_2_leg4 = g2_vx_leg4 * (t209 - t198);
+        let t212 = rate_2_leg4 * rate_2_leg4;
+        let t213 = 0.34 * t212;
+        let minus_rate_dot_1_leg4 = (t213 - (t72 * t156 + t69 * t153)) / minus_s2_leg4;
+        let t219 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t228 = minus_g1_vx_leg1 * t177 + minus_g1_vx_leg2 * t191
+            + minus_g1_vx_leg3 * t205 + minus_g1_vx_leg4 * t219;
+        let t239 = g1_vy_leg1 * t177 - minus_g1_vy_leg2 * t191 - minus_g1_vy_leg3 * t205
+            + g1_vy_leg4 * t219 + t125 * t228;
+        let t241 = g1_wz_leg1 * t177 + g1_wz_leg2 * t191 + g1_wz_leg3 * t205
+            + g1_wz_leg4 * t219 - t99 * t228 - t128 * t239;
+        let rate_dot_3_leg1 = t241 / t150;
+        let t243 = rate_3_leg1 * rate_3_leg1;
+        let t246 = c_phi * t243 + s_phi * rate_dot_3_leg1;
+        let t249 = s_phi * t243 - c_phi * rate_dot_3_leg1;
+        let t252 = t239 / t127 - t128 * rate_dot_3_leg1;
+        let t258 = t99 * rate_dot_3_leg1 - (t228 / t98 + t125 * t252);
+        let t265 = t153 + t5 * rate_dot_3_leg1;
+        let t266 = t258 + t265;
+        let t268 = t156 - t3 * rate_dot_3_leg1;
+        let t269 = t258 - t268;
+        let t270 = t258 - t265;
+        let t271 = t252 + t268;
+        let t272 = t271 - t270;
+        let t273 = t269 + t272;
+        let t274 = t266 + t271;
+        let t275 = t274 - t273;
+        let t276 = t252 - t265;
+        let t277 = t275 - t276;
+        let t278 = t266 - t277;
+        let t282 = t22 * t278 - t25 * t270 - t174;
+        let rate_dot_1_leg1_2 = t282 / minus_s2_leg1;
+        let t290 = t42 * t275 + t39 * t276 + t188;
+        let minus_rate_dot_1_leg2_2 = t290 / minus_s2_leg2;
+        let t298 = t57 * t266 + t54 * t271 + t202;
+        let minus_rate_dot_1_leg3_2 = t298 / minus_s2_leg3;
+        let t306 = t72 * t269 - t69 * t273 + t213;
+        let minus_rate_dot_1_leg4_2 = t306 / minus_s2_leg4;
+        let rate_1_leg1 = g1_vy_leg1 * t183 - minus_g1_vx_leg1 * t209;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (t169 - t152)
+            + minus_g1_vy_leg2 * t164;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t184 + minus_g1_vy_leg3 * t198;
+        let rate_1_leg4 = g1_vy_leg4 * (t163 + t155) - minus_g1_vx_leg4 * t170;
+        let t349 = t270 + t278;
+        let rate_dot_2_leg1 = t159 * (0.7071067811865476 * t349 + t15 * t173);
+        let t354 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = g2_vx_leg1 * t8;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 / minus_s2_leg2
+            * (0.7071067811865476 * t277 - t32 * t187);
+        let t362 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t8;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 / minus_s2_leg3
+            * (0.7071067811865476 * t274 + t31 * t201);
+        let t370 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t8;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 / minus_s2_leg4
+            * (0.7071067811865476 * t272 - t12 * t212);
+        let t378 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t8;
+        let t381 = g2_vx_leg1 * t282;
+        let t382 = 2.079725827019258 * t349;
+        let t390 = 2.079725827019258 * t277;
+        let t392 = minus_g2_vx_leg2 * t290;
+        let t399 = 2.079725827019258 * t274;
+        let t401 = minus_g2_vx_leg3 * t298;
+        let t408 = 2.079725827019258 * t272;
+        let t410 = g2_vx_leg4 * t306;
+        let t417 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t419 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t421 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t423 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t425 = rate_3_leg1 - rate_2_leg1;
+        let t426 = ::overact::math::signed(g2_vx_leg1, t425);
+        let t429 = rate_3_leg1 - rate_2_leg2;
+        let t430 = ::overact::math::signed(minus_g2_vx_leg2, t429);
+        let t433 = minus_rate_2_leg3 + rate_3_leg1;
+        let t434 = ::overact::math::signed(minus_g2_vx_leg3, t433);
+        let t437 = rate_3_leg1 - rate_2_leg4;
+        let t438 = ::overact::math::signed(g2_vx_leg4, t437);
         Ok([
             [
-                0.0, -t252, t255, t264, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
+                0.0, -t246, t249, t258, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -3617,13 +3582,13 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t362, t371, t379, -t387,
-                t390 - minus_g1_vx_leg1 * t391, minus_g1_vx_leg2 * t399 + t401,
-                minus_g1_vx_leg3 * t408 + t410, minus_g1_vx_leg4 * t417 - t419, t426, -t428, t430,
-                t432, -t435, t439, t443, -t447,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t354, t362, t370, -t378,
+                t381 - minus_g1_vx_leg1 * t382, minus_g1_vx_leg2 * t390 + t392,
+                minus_g1_vx_leg3 * t399 + t401, minus_g1_vx_leg4 * t408 - t410, t417, -t419, t421,
+                t423, -t426, t430, t434, -t438,
             ],
             [
-                0.0, -t255, -t252, t258, g1_vy_leg1 * rate_dot_1_leg1_2,
+                0.0, -t249, -t246, t252, g1_vy_leg1 * rate_dot_1_leg1_2,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2, -(g1_vy_leg4 * minus_rate_dot_1_leg4_2),
                 g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
@@ -3632,12 +3597,12 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t362, -t371, t379, t387, g1_vy_leg1 * t391 + t390,
-                minus_g1_vy_leg2 * t399 - t401, minus_g1_vy_leg3 * t408 + t410,
-                t419 - g1_vy_leg4 * t417, t426, t428, t430, -t432, -t435, -t439, t443, t447,
+                -minus_g1_vy_leg3, g1_vy_leg4, t354, -t362, t370, t378, g1_vy_leg1 * t382 + t381,
+                minus_g1_vy_leg2 * t390 - t392, minus_g1_vy_leg3 * t399 + t401,
+                t410 - g1_vy_leg4 * t408, t417, t419, t421, -t423, -t426, -t430, t434, t438,
             ],
             [
-                rate_dot_3_leg1, c_phi * t258 - s_phi * t264, -(s_phi * t258 + c_phi * t264), 0.0,
+                rate_dot_3_leg1, c_phi * t252 - s_phi * t258, -(s_phi * t252 + c_phi * t258), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1_2, -(g1_wz_leg2 * minus_rate_dot_1_leg2_2),
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3_2), -(g1_wz_leg4 * minus_rate_dot_1_leg4_2),
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3648,17 +3613,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t391 + g2_wz_leg1 * t289,
-                -(g1_wz_leg2 * t399 + g2_wz_leg2 * t297), -(g1_wz_leg3 * t408 + g2_wz_leg3 * t305),
-                -(g1_wz_leg4 * t417 + g2_wz_leg4 * t313),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t382 + g2_wz_leg1 * t282,
+                -(g1_wz_leg2 * t390 + g2_wz_leg2 * t290), -(g1_wz_leg3 * t399 + g2_wz_leg3 * t298),
+                -(g1_wz_leg4 * t408 + g2_wz_leg4 * t306),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t434),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t438),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t442),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t446),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t425),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t429),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t433),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t437),
             ],
         ])
     }

@@ -357,7 +357,7 @@ impl Rx90 {
     /// Output: 6 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 640 operations (279 additions, 361 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 514 intermediates.
+    /// 623 operations (271 additions, 352 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 497 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
@@ -368,302 +368,305 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_velocities[0];
+        let t3 = c2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = c2_arm * joint_accelerations[0];
-        let t6 = t5 - t4;
-        let t7 = t4 - t6;
-        let t8 = c2_arm * t7;
-        let t10 = c2_arm * joint_velocities[0];
-        let t11 = t3 * t10;
-        let t12 = joint_velocities[1] * t10;
-        let t13 = s2_arm * joint_accelerations[0];
-        let t14 = t13 + t12;
-        let t19 = t3 * t3;
-        let t20 = t10 * t10;
-        let t22 = t11 + joint_accelerations[1];
-        let t24 = joint_velocities[1] * joint_velocities[1];
-        let t27 = s2_arm * t22 + c2_arm * (t24 - t19);
-        let t33 = 9.81 * c2_arm;
-        let t34 = 9.81 * s2_arm;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t7 = t4 + t5 + t4;
+        let t8 = s2_arm * t7;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t15 = t12 - (t13 - t12);
+        let t18 = t3 * t3;
+        let t19 = joint_velocities[1] * joint_velocities[1];
+        let t20 = t18 + t19;
+        let t21 = joint_velocities[0] * joint_velocities[0];
+        let t22 = t20 - t21;
+        let t23 = t18 - t19;
+        let t25 = t10 + joint_accelerations[1];
+        let t28 = s2_arm * t25 + c2_arm * t22;
+        let t34 = 9.81 * c2_arm;
+        let t35 = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t44 = joint_velocities[0] * s23_arm;
-        let t45 = joint_velocities[1] + joint_velocities[2];
-        let t46 = t44 * t45;
-        let t51 = c3_arm * t6 - s3_arm * t14 - joint_velocities[2] * t44;
-        let t52 = t46 - t51;
-        let t53 = c23_arm * t52;
-        let t54 = joint_accelerations[0] + t53;
-        let t55 = joint_velocities[0] * c23_arm;
-        let t56 = t44 * t55;
-        let t57 = t55 * t45;
-        let t62 = c3_arm * t14 + s3_arm * t6 + joint_velocities[2] * t55;
-        let t63 = t57 + t62;
-        let t67 = t44 * t44;
-        let t68 = t55 * t55;
-        let t69 = t67 - t68;
-        let t70 = joint_accelerations[1] + joint_accelerations[2];
-        let t71 = t56 + t70;
-        let t73 = t45 * t45;
-        let t77 = t57 - t62;
-        let t80 = t56 - t70;
-        let t83 = t46 + t51;
-        let t84 = 0.45 * c2_arm;
-        let t86 = 0.45 * t7;
-        let t89 = 0.45 * c3_arm;
-        let t91 = 0.45 * s3_arm;
-        let t96 = t33 + 0.45 * t22;
-        let t100 = t34 - 0.45 * (t20 + t24);
-        let t102 = c3_arm * t96 - s3_arm * t100;
-        let t107 = 0.45 * t80;
-        let t108 = t91 - 0.45;
-        let t110 = t67 + t73;
-        let t112 = t80 * t108 - t89 * t110;
-        let t116 = c3_arm * t100 + s3_arm * t96;
-        let t125 = s23_arm * c4_arm;
-        let t128 = s4_arm * t44 + c4_arm * t45;
-        let t129 = t55 + joint_velocities[3];
-        let t130 = t128 * t129;
-        let t131 = t125 * t130;
-        let t132 = s23_arm * s4_arm;
-        let t138 = c4_arm * t44 - s4_arm * t45;
-        let t140 = s4_arm * t62 + c4_arm * t70 + joint_velocities[3] * t138;
-        let t143 = t138 * t128;
-        let t145 = t131 + t132 * t140 - c23_arm * t143;
-        let t146 = t54 - t145;
-        let t147 = t44 * t129;
-        let t148 = t138 * t129;
-        let t149 = t148 + t140;
-        let t151 = c4_arm * t149 - t147;
-        let t152 = t80 + t151;
-        let t153 = t138 * t138;
-        let t154 = t128 * t128;
-        let t155 = t153 - t154;
-        let t165 = c4_arm * t62 - s4_arm * t70 - joint_velocities[3] * t128;
-        let t166 = t165 - t130;
-        let t168 = s4_arm * t149 - c4_arm * t166;
-        let t169 = t51 + joint_accelerations[3];
-        let t170 = t169 - t143;
-        let t172 = t129 * t129;
-        let t173 = t172 - t153;
-        let t176 = t130 + t165;
-        let t179 = s4_arm * t170;
-        let t181 = t179 + c4_arm * t173;
-        let t182 = t154 - t172;
-        let t184 = t143 + t169;
-        let t187 = t148 - t140;
-        let t191 = c4_arm * t184;
-        let t192 = s4_arm * t182 + t191;
-        let t196 = t132 * t148 - t131 + c23_arm * t169;
-        let t198 = 0.45 * (s23_arm - c2_arm);
-        let t199 = s4_arm * t198;
-        let t200 = t154 + t172;
-        let t202 = c4_arm * t198;
-        let t206 = t102 - 0.45 * t110;
-        let t208 = t116 + t107;
-        let t211 = 0.45 * (t7 + t63);
-        let t213 = s4_arm * t208 + c4_arm * t211;
-        let t218 = 0.45 * c4_arm;
-        let t221 = t218 * t200 + 0.45 * t179;
-        let t222 = 1.0 - s3_arm;
-        let t225 = c4_arm * t206;
-        let t229 = t153 + t172;
-        let t235 = c4_arm * t208 - s4_arm * t211;
-        let t238 = t199 * t184 + t202 * t229 + t125 * t206 - c23_arm * t235;
-        let t240 = 0.45 * s4_arm;
-        let t242 = 0.45 * t191 - t240 * t229;
-        let t246 = s4_arm * t206;
-        let t247 = t242 * t222 + t89 * t166 - t246;
-        let t248 = t242 - t246;
-        let t254 = t198 * t211;
-        let t257 = t208 * t108 + t89 * t206;
-        let t258 = 0.45 * t208;
-        let t264 = t125 * c5_arm + c23_arm * s5_arm;
-        let t270 = c5_arm * t129 - s5_arm * t138;
-        let t272 = c5_arm * t165 + s5_arm * t169 + joint_velocities[4] * t270;
-        let t276 = c23_arm * c5_arm - t125 * s5_arm;
-        let t279 = c5_arm * t138 + s5_arm * t129;
-        let t280 = t128 + joint_velocities[4];
-        let t281 = t279 * t280;
-        let t282 = t276 * t281;
-        let t284 = t279 * t270;
-        let t286 = t264 * t272 + t282 - t132 * t284;
-        let t287 = s4_arm * s5_arm;
-        let t288 = t287 * t281;
-        let t289 = s4_arm * c5_arm;
-        let t293 = t288 - t272 * t289 - c4_arm * t284;
-        let t294 = t138 * t280;
-        let t299 = c5_arm * t169 - s5_arm * t165 - joint_velocities[4] * t279;
-        let t300 = t281 - t299;
-        let t302 = t294 - c5_arm * t300;
-        let t303 = t184 - t302;
-        let t304 = t270 * t280;
-        let t305 = t304 + t272;
-        let t309 = t279 * t279;
-        let t310 = t270 * t270;
-        let t311 = t309 - t310;
-        let t317 = s4_arm * (t303 - t302) + c4_arm * t311;
-        let t321 = t140 + joint_accelerations[4];
-        let t322 = t284 + t321;
-        let t324 = t280 * t280;
-        let t325 = t324 - t309;
-        let t328 = t304 - t272;
-        let t335 = t287 * t325 - t289 * t322 - c4_arm * t328;
-        let t342 = t293 + t152 - t147;
-        let t343 = t310 - t324;
-        let t345 = t284 - t321;
-        let t348 = t281 + t299;
-        let t355 = c4_arm * t348 - (t289 * t343 + t287 * t345);
-        let t362 = t264 * t304 - t282 + t132 * t321;
-        let t366 = c4_arm * t321 - (t289 * t304 + t288);
-        let t367 = c5_arm * t199;
-        let t368 = t310 + t324;
-        let t370 = s5_arm * t199;
-        let t377 = c5_arm * t206 - s5_arm * t235;
-        let t383 = c4_arm * t108;
-        let t385 = c5_arm * t89 - s5_arm * t383;
-        let t389 = c5_arm * t383 + s5_arm * t89;
-        let t392 = s4_arm * t108;
-        let t397 = c4_arm * t377 - t213 * t287;
-        let t399 = c5_arm * t218;
-        let t401 = s5_arm * t218;
-        let t410 = t309 + t324;
-        let t417 = c5_arm * t235 + s5_arm * t206;
-        let t420 = t202 * t305 - (t367 * t345 + t370 * t410) + t264 * t213 - t132 * t417;
-        let t428 = t213 * t289 + c4_arm * t417;
-        let t429 = t389 * t345 - t385 * t410 + t392 * t305 - t428;
-        let t435 = t399 * t345 + t401 * t410 + t240 * t305 + t428;
-        let t436 = s5_arm * t213;
-        let t442 = t264 * c6_arm - t132 * s6_arm;
-        let t448 = s6_arm * t279 + c6_arm * t280;
-        let t450 = c6_arm * t272 - s6_arm * t321 - joint_velocities[5] * t448;
-        let t454 = t264 * s6_arm + t132 * c6_arm;
-        let t457 = c6_arm * t279 - s6_arm * t280;
-        let t458 = t270 + joint_velocities[5];
-        let t459 = t457 * t458;
-        let t460 = t454 * t459;
-        let t462 = t457 * t448;
-        let t464 = t442 * t450 - t460 + t276 * t462;
-        let t467 = s6_arm * t289 - c4_arm * c6_arm;
-        let t468 = t467 * t459;
-        let t471 = c6_arm * t289 + c4_arm * s6_arm;
-        let t475 = t468 - t450 * t471 + t287 * t462;
-        let t476 = s5_arm * c6_arm;
-        let t478 = s5_arm * s6_arm;
-        let t479 = t478 * t459;
-        let t482 = t450 * t476 - t479 + c5_arm * t462;
-        let t483 = t279 * t458;
-        let t488 = s6_arm * t272 + c6_arm * t321 + joint_velocities[5] * t457;
-        let t489 = t459 + t488;
-        let t491 = c6_arm * t489 - t483;
-        let t492 = t345 + t491;
-        let t493 = t457 * t457;
-        let t494 = t448 * t448;
-        let t495 = t493 - t494;
-        let t498 = t448 * t458;
-        let t499 = t450 - t498;
-        let t507 = t471 * t489 + t467 * t499 + t287 * t495;
-        let t515 = t299 + joint_accelerations[5];
-        let t516 = t515 - t462;
-        let t518 = t458 * t458;
-        let t519 = t518 - t493;
-        let t522 = t498 + t450;
-        let t529 = t467 * t519 - t471 * t516 + t287 * t522;
-        let t541 = t475 - (t293 + t366);
-        let t544 = t494 - t518;
-        let t546 = t462 + t515;
-        let t549 = t459 - t488;
-        let t556 = t467 * t546 - t471 * t544 + t287 * t549;
-        let t572 = t471 * t498 - t468 + t287 * t515;
-        let t577 = t198 * t471;
-        let t578 = t494 + t518;
-        let t580 = t198 * t467;
-        let t588 = s6_arm * t417 + c6_arm * t213;
-        let t595 = c6_arm * t389 - s6_arm * t392;
-        let t599 = s6_arm * t389 + c6_arm * t392;
-        let t605 = t377 * t467 + t287 * t588;
-        let t609 = s6_arm * t399 + c6_arm * t240;
-        let t613 = s6_arm * t240 - c6_arm * t399;
-        let t624 = t493 + t518;
-        let t632 = c6_arm * t417 - s6_arm * t213;
-        let t643 = t377 * t471 + t287 * t632;
+        let t45 = joint_velocities[0] * s23_arm;
+        let t46 = joint_velocities[1] + joint_velocities[2];
+        let t47 = t45 * t46;
+        let t48 = joint_accelerations[0] * c23_arm;
+        let t49 = t48 - t47;
+        let t50 = t47 - t49;
+        let t51 = c23_arm * t50;
+        let t52 = joint_accelerations[0] + t51;
+        let t53 = joint_velocities[0] * c23_arm;
+        let t54 = t45 * t53;
+        let t55 = t53 * t46;
+        let t56 = joint_accelerations[0] * s23_arm;
+        let t57 = t55 + t56;
+        let t58 = t55 + t57;
+        let t62 = t53 * t53;
+        let t63 = t46 * t46;
+        let t64 = t62 + t63;
+        let t65 = t64 - t21;
+        let t66 = t62 - t63;
+        let t67 = t65 + t66;
+        let t68 = joint_accelerations[1] + joint_accelerations[2];
+        let t69 = t54 + t68;
+        let t74 = t54 - t68;
+        let t77 = 0.45 * c2_arm;
+        let t79 = 0.45 * t15;
+        let t82 = 0.45 * c3_arm;
+        let t88 = t34 + 0.45 * t25;
+        let t91 = t35 - 0.45 * t20;
+        let t93 = c3_arm * t88 - s3_arm * t91;
+        let t98 = t21 - t66;
+        let t100 = 0.45 * t74;
+        let t102 = s3_arm * t100 - t82 * t98;
+        let t105 = c3_arm * t91 + s3_arm * t88;
+        let t114 = s23_arm * c4_arm;
+        let t120 = s4_arm * t45 + c4_arm * t46;
+        let t122 = c4_arm * t57 - s4_arm * t68 - joint_velocities[3] * t120;
+        let t124 = s23_arm * s4_arm;
+        let t127 = c4_arm * t45 - s4_arm * t46;
+        let t128 = t53 + joint_velocities[3];
+        let t129 = t127 * t128;
+        let t130 = t124 * t129;
+        let t132 = t127 * t120;
+        let t134 = t114 * t122 - t130 + c23_arm * t132;
+        let t135 = t45 * t128;
+        let t136 = t120 * t128;
+        let t137 = t122 - t136;
+        let t138 = s4_arm * t137;
+        let t139 = t135 + t138;
+        let t140 = t120 * t120;
+        let t141 = t128 * t128;
+        let t142 = t140 + t141;
+        let t143 = t142 - t98;
+        let t144 = t140 - t141;
+        let t145 = t143 + t144;
+        let t147 = t139 - t74;
+        let t155 = s4_arm * t57 + c4_arm * t68 + joint_velocities[3] * t127;
+        let t156 = t129 + t155;
+        let t159 = s4_arm * t156 - c4_arm * t137;
+        let t160 = t49 + joint_accelerations[3];
+        let t161 = t160 - t132;
+        let t165 = t136 + t122;
+        let t168 = s4_arm * t161;
+        let t170 = t168 + c4_arm * t143;
+        let t173 = t132 + t160;
+        let t176 = t129 - t155;
+        let t180 = c4_arm * t173;
+        let t181 = s4_arm * t144 + t180;
+        let t185 = t130 - t114 * t136 + c23_arm * t160;
+        let t187 = 0.45 * (s23_arm - c2_arm);
+        let t188 = s4_arm * t187;
+        let t190 = c4_arm * t187;
+        let t194 = t93 - 0.45 * t98;
+        let t196 = t105 + t100;
+        let t199 = 0.45 * (t15 + t58);
+        let t201 = s4_arm * t196 + c4_arm * t199;
+        let t206 = 0.45 * c4_arm;
+        let t209 = t206 * t142 + 0.45 * t168;
+        let t210 = 1.0 - s3_arm;
+        let t213 = c4_arm * t194;
+        let t217 = t98 - t144;
+        let t223 = c4_arm * t196 - s4_arm * t199;
+        let t226 = t188 * t173 + t190 * t217 + t114 * t194 - c23_arm * t223;
+        let t228 = 0.45 * s4_arm;
+        let t230 = 0.45 * t180 - t228 * t217;
+        let t234 = s4_arm * t194;
+        let t235 = t230 * t210 + t82 * t137 - t234;
+        let t236 = t230 - t234;
+        let t240 = t100 + t196;
+        let t242 = t187 * t199;
+        let t243 = 0.45 * t196;
+        let t246 = t82 * t194 - t243 * t210;
+        let t252 = t114 * c5_arm + c23_arm * s5_arm;
+        let t258 = c5_arm * t128 - s5_arm * t127;
+        let t260 = c5_arm * t122 + s5_arm * t160 + joint_velocities[4] * t258;
+        let t264 = c23_arm * c5_arm - t114 * s5_arm;
+        let t267 = c5_arm * t127 + s5_arm * t128;
+        let t268 = t120 + joint_velocities[4];
+        let t269 = t267 * t268;
+        let t270 = t264 * t269;
+        let t272 = t267 * t258;
+        let t274 = t252 * t260 + t270 - t124 * t272;
+        let t275 = s4_arm * s5_arm;
+        let t276 = t275 * t269;
+        let t277 = s4_arm * c5_arm;
+        let t281 = t276 - t260 * t277 - c4_arm * t272;
+        let t282 = t127 * t268;
+        let t283 = t258 * t268;
+        let t284 = t283 + t260;
+        let t285 = s5_arm * t284;
+        let t286 = t282 + t285;
+        let t292 = c5_arm * t160 - s5_arm * t122 - joint_velocities[4] * t267;
+        let t293 = t269 - t292;
+        let t296 = t267 * t267;
+        let t297 = t258 * t258;
+        let t298 = t296 - t297;
+        let t301 = t173 - t286;
+        let t305 = s4_arm * (t286 - t301) + c4_arm * t298;
+        let t309 = t155 + joint_accelerations[4];
+        let t310 = t272 + t309;
+        let t312 = t268 * t268;
+        let t313 = t312 - t296;
+        let t316 = t283 - t260;
+        let t323 = t275 * t313 - t277 * t310 - c4_arm * t316;
+        let t329 = t138 + t281;
+        let t330 = t297 - t312;
+        let t332 = t272 - t309;
+        let t335 = t269 + t292;
+        let t342 = c4_arm * t335 - (t277 * t330 + t275 * t332);
+        let t349 = t252 * t283 - t270 + t124 * t309;
+        let t353 = c4_arm * t309 - (t277 * t283 + t276);
+        let t354 = c5_arm * t188;
+        let t355 = t297 + t312;
+        let t357 = s5_arm * t188;
+        let t364 = c5_arm * t194 - s5_arm * t223;
+        let t370 = s5_arm * t206;
+        let t372 = c5_arm * t82 + t370 * t210;
+        let t374 = c5_arm * t206;
+        let t377 = s5_arm * t82 - t374 * t210;
+        let t380 = t228 * t293;
+        let t385 = c4_arm * t364 - t201 * t275;
+        let t395 = t296 + t312;
+        let t402 = c5_arm * t223 + s5_arm * t194;
+        let t405 = t190 * t284 - (t354 * t332 + t357 * t395) + t252 * t201 - t124 * t402;
+        let t409 = t228 * t284;
+        let t414 = t201 * t277 + c4_arm * t402;
+        let t415 = t377 * t332 - t372 * t395 - t409 * t210 - t414;
+        let t420 = t374 * t332 + t370 * t395 + t409 + t414;
+        let t421 = s5_arm * t201;
+        let t427 = t252 * c6_arm - t124 * s6_arm;
+        let t433 = s6_arm * t267 + c6_arm * t268;
+        let t435 = c6_arm * t260 - s6_arm * t309 - joint_velocities[5] * t433;
+        let t439 = t252 * s6_arm + t124 * c6_arm;
+        let t442 = c6_arm * t267 - s6_arm * t268;
+        let t443 = t258 + joint_velocities[5];
+        let t444 = t442 * t443;
+        let t445 = t439 * t444;
+        let t447 = t442 * t433;
+        let t449 = t427 * t435 - t445 + t264 * t447;
+        let t452 = s6_arm * t277 - c4_arm * c6_arm;
+        let t453 = t452 * t444;
+        let t456 = c6_arm * t277 + c4_arm * s6_arm;
+        let t460 = t453 - t435 * t456 + t275 * t447;
+        let t461 = s5_arm * c6_arm;
+        let t463 = s5_arm * s6_arm;
+        let t464 = t463 * t444;
+        let t467 = t435 * t461 - t464 + c5_arm * t447;
+        let t468 = t267 * t443;
+        let t469 = t433 * t443;
+        let t470 = t435 - t469;
+        let t472 = t468 + s6_arm * t470;
+        let t473 = t443 * t443;
+        let t474 = t442 * t442;
+        let t475 = t473 - t474;
+        let t476 = t474 + t473;
+        let t477 = t395 - t476;
+        let t478 = t475 + t477;
+        let t484 = s6_arm * t260 + c6_arm * t309 + joint_velocities[5] * t442;
+        let t485 = t444 + t484;
+        let t494 = t456 * t485 + t452 * t470 - t275 * t478;
+        let t496 = t472 - t332;
+        let t503 = t292 + joint_accelerations[5];
+        let t504 = t503 - t447;
+        let t508 = t469 + t435;
+        let t515 = t452 * t475 - t456 * t504 + t275 * t508;
+        let t527 = t353 + t281 - t460;
+        let t530 = t447 + t503;
+        let t533 = t444 - t484;
+        let t540 = t452 * t530 - t456 * t477 + t275 * t533;
+        let t556 = t456 * t469 - t453 + t275 * t503;
+        let t561 = t187 * t456;
+        let t562 = t478 + t476;
+        let t564 = t187 * t452;
+        let t572 = s6_arm * t402 + c6_arm * t201;
+        let t578 = s6_arm * t228;
+        let t580 = c6_arm * t377 + t578 * t210;
+        let t583 = c6_arm * t228;
+        let t585 = s6_arm * t377 - t583 * t210;
+        let t591 = t364 * t452 + t275 * t572;
+        let t594 = s6_arm * t374 + t583;
+        let t597 = t578 - c6_arm * t374;
+        let t615 = c6_arm * t402 - s6_arm * t201;
+        let t626 = t364 * t456 + t275 * t615;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, joint_accelerations[0] + t8,
-                c2_arm * (t12 + t14) - s2_arm * t7, t27, -t8,
-                s2_arm * (t20 - t24) - c2_arm * (t11 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t54, c23_arm * t63 - s23_arm * t52,
-                s23_arm * t71 + c23_arm * (t73 - t67), -t53, s23_arm * (t68 - t73) - c23_arm * t80,
-                0.0, -(t84 * t52 + c23_arm * t86), s23_arm * t86 - t84 * t63, -(0.45 * t27),
-                -(0.2025 * t8), 0.0, 0.0, 0.0, 0.0, t146, c23_arm * t155 - s23_arm * (t152 + t151),
-                t125 * t170 - t132 * t173 + c23_arm * t176, t145,
-                t125 * t182 - t132 * t184 + c23_arm * t187, t196,
-                t199 * t200 - t202 * t170 + t132 * t206 - c23_arm * t213, t238,
-                t63 * t198 + s23_arm * t211, t254, 0.0, 0.0, 0.0, 0.0, t286,
-                t276 * t305 - t264 * t300 + t132 * t311, t264 * t322 + t276 * t325 - t132 * t328,
-                t146 + t196 - t286, t264 * t343 - t276 * t345 + t132 * t348, t362,
-                t367 * t368 + t370 * t322 + t202 * t300 + t132 * t377 - t276 * t213, t420, -t238,
-                t254, 0.0, 0.0, 0.0, 0.0, t464, t276 * t495 - (t442 * t489 + t454 * t499),
-                t442 * t516 - t454 * t519 + t276 * t522, t286 + t362 - t464,
-                t442 * t544 - t454 * t546 + t276 * t549, t460 - t442 * t498 + t276 * t515,
-                t577 * t578 + t580 * t516 + t370 * t489 + t454 * t377 - t276 * t588,
-                t577 * t546 - t580 * t624 + t370 * t499 + t442 * t377 - t276 * t632, t420, t254,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t8, c2_arm * t7 - s2_arm * t15,
+                t28, joint_accelerations[0] - t8,
+                s2_arm * t23 - c2_arm * (t10 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, t52, c23_arm * t58 - s23_arm * t50, s23_arm * t69 + c23_arm * t65, -t51,
+                s23_arm * t66 - c23_arm * t74, 0.0, -(t77 * t50 + c23_arm * t79),
+                s23_arm * t79 - t77 * t58, -(0.45 * t28), -(t77 * t79), 0.0, 0.0, 0.0, 0.0, t134,
+                -(c23_arm * t145 + s23_arm * (t139 + t147)),
+                t114 * t161 - t124 * t143 + c23_arm * t165, t52 - t134,
+                t114 * t144 - t124 * t173 + c23_arm * t176, t185,
+                t188 * t142 - t190 * t161 + t124 * t194 - c23_arm * t201, t226,
+                t58 * t187 + s23_arm * t199, t242, 0.0, 0.0, 0.0, 0.0, t274,
+                t264 * t284 - t252 * t293 + t124 * t298, t252 * t310 + t264 * t313 - t124 * t316,
+                t185 + t134 - t274, t252 * t330 - t264 * t332 + t124 * t335, t349,
+                t354 * t355 + t357 * t310 + t190 * t293 + t124 * t364 - t264 * t201, t405, -t226,
+                t242, 0.0, 0.0, 0.0, 0.0, t449, -(t264 * t478 + t427 * t485 + t439 * t470),
+                t427 * t504 - t439 * t475 + t264 * t508, t349 + t274 - t449,
+                t427 * t477 - t439 * t530 + t264 * t533, t445 - t427 * t469 + t264 * t503,
+                t561 * t562 + t564 * t504 + t357 * t485 + t439 * t364 - t264 * t572,
+                t561 * t530 - t564 * t476 + t357 * t470 + t427 * t364 - t264 * t615, t405, t242,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
-                -t34, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t56, t69, -t77, t56, t83, t70,
-                t89 * t71 - t91 * (t68 + t73) + t102, t107 + t112 - t116, -(0.45 * t13), 0.45 * t96,
-                0.0, 0.0, 0.0, 0.0, -t152, t168, -t181, t151, -t192, t147,
-                t89 * t149 + t221 * t222 + t225, t247, t112 - t208, t257, 0.0, 0.0, 0.0, 0.0, t293,
-                t317, t335, -t342, t355, t366, t385 * t322 - t389 * t368 + t392 * t300 + t397, t429,
-                -t247, t257, 0.0, 0.0, 0.0, 0.0, t475, t507, t529, -t541, t556, t572,
-                t385 * t489 - (t595 * t578 + t599 * t516) - t605,
-                t599 * t624 - t595 * t546 + t385 * t499 - t643, t429, t257, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t10, -(t22 + t23), t5, t10, t13, joint_accelerations[1],
+                t34, -t35, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t54, -t67, t56, t54, t48, t68,
+                t82 * t69 - 0.45 * (s3_arm * t64) + t93, t102 - t105, -(0.45 * t5), 0.45 * t88, 0.0,
+                0.0, 0.0, 0.0, -t139, t159, -t170, t147, -t181, t135,
+                t82 * t156 + t209 * t210 + t213, t235, t102 - t240, t246, 0.0, 0.0, 0.0, 0.0, t281,
+                t305, t323, -t329, t342, t353, t372 * t310 - t377 * t355 - t380 * t210 + t385, t415,
+                -t235, t246, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
+                t372 * t485 - (t580 * t562 + t585 * t504) - t591,
+                t585 * t476 - t580 * t530 + t372 * t470 - t626, t415, t246, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t56, t69, -t77, t56, t83, t70, t102, -t116, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t152, t168,
-                -t181, t151, -t192, t147, t221 + t225, t248, -(t107 + t208), -t258, 0.0, 0.0, 0.0,
-                0.0, t293, t317, t335, -t342, t355, t366,
-                t399 * t368 + t401 * t322 - t240 * t300 + t397, -t435, -t248, -t258, 0.0, 0.0, 0.0,
-                0.0, t475, t507, t529, -t541, t556, t572,
-                t609 * t516 - t613 * t578 + t401 * t489 - t605,
-                t401 * t499 - (t613 * t546 + t609 * t624) - t643, -t435, -t258, 0.0, 0.0, 0.0, 0.0,
+                -t54, -t67, t56, t54, t48, t68, t93, -t105, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t139, t159,
+                -t170, t147, -t181, t135, t209 + t213, t236, -t240, -t243, 0.0, 0.0, 0.0, 0.0, t281,
+                t305, t323, -t329, t342, t353, t374 * t355 + t370 * t310 - t380 + t385, -t420,
+                -t236, -t243, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
+                t594 * t504 - t597 * t562 + t370 * t485 - t591,
+                t370 * t470 - (t597 * t530 + t594 * t476) - t626, -t420, -t243, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t143, t155,
-                t176, -t143, t187, t169, -t213, -t235, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t303,
-                c5_arm * t305 - s5_arm * t300, s5_arm * t322 + c5_arm * t325, t302,
-                s5_arm * t343 - c5_arm * t345, -t294, -(c5_arm * t213), t436, t235, 0.0, 0.0, 0.0,
-                0.0, 0.0, t482, c5_arm * t495 - s5_arm * (t492 + t491),
-                t476 * t516 - t478 * t519 + c5_arm * t522, t303 - t294 - t482,
-                t476 * t544 - t478 * t546 + c5_arm * t549, t479 - t476 * t498 + c5_arm * t515,
-                t377 * t478 - c5_arm * t588, t377 * t476 - c5_arm * t632, t436, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t132, -t145,
+                t165, -t132, t176, t160, -t201, -t223, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t286,
+                c5_arm * t284 - s5_arm * t293, s5_arm * t310 + c5_arm * t313, t301,
+                s5_arm * t330 - c5_arm * t332, -t282, -(c5_arm * t201), t421, t223, 0.0, 0.0, 0.0,
+                0.0, 0.0, t467, -(c5_arm * t478 + s5_arm * (t472 + t496)),
+                t461 * t504 - t463 * t475 + c5_arm * t508, t285 - t467,
+                t461 * t477 - t463 * t530 + c5_arm * t533, t464 - t461 * t469 + c5_arm * t503,
+                t364 * t463 - c5_arm * t572, t364 * t461 - c5_arm * t615, t421, 0.0, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t284, t311, -t328, t284,
-                t348, t321, t377, -t417, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, -t492,
-                s6_arm * t489 - c6_arm * t499, -(s6_arm * t516 + c6_arm * t519), t491,
-                -(s6_arm * t544 + c6_arm * t546), t483, c6_arm * t377, -(s6_arm * t377), -t417, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t272, t298, -t316, t272,
+                t335, t309, t364, -t402, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, -t472,
+                s6_arm * t485 - c6_arm * t470, -(s6_arm * t504 + c6_arm * t475), t496,
+                -(s6_arm * t477 + c6_arm * t530), t468, c6_arm * t364, -(s6_arm * t364), -t402, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t462, t495, t522, -t462, t549, t515, -t588,
-                -t632, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t447, -t478, t508, -t447, t533, t503, -t572,
+                -t615, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -678,7 +681,7 @@ impl Rx90 {
     /// Output: 6 x 58.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 610 operations (256 additions, 354 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 505 intermediates.
+    /// 601 operations (253 additions, 348 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 496 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -708,250 +711,250 @@ impl Rx90 {
         let t35 = joint_velocities[0] * s23_arm;
         let t36 = joint_velocities[1] + joint_velocities[2];
         let t37 = t35 * t36;
-        let t39 = joint_velocities[1] * t17;
-        let t40 = t26 + t39;
-        let t44 = c3_arm * t14 - s3_arm * t40 - joint_velocities[2] * t35;
-        let t45 = t37 - t44;
-        let t47 = joint_velocities[0] * c23_arm;
-        let t48 = t35 * t47;
-        let t49 = t17 * t17;
-        let t60 = t47 * t36;
-        let t65 = c3_arm * t40 + s3_arm * t14 + joint_velocities[2] * t47;
-        let t66 = t60 + t65;
-        let t70 = t35 * t35;
-        let t71 = t47 * t47;
-        let t72 = t70 - t71;
-        let t73 = t48 + t6;
-        let t75 = t36 * t36;
-        let t79 = t60 - t65;
-        let t82 = t48 - t6;
-        let t85 = t37 + t44;
-        let t87 = 0.45 * (t15 + t66);
-        let t89 = 0.45 * (s23_arm - c2_arm);
-        let t93 = t10 - 0.45 * (t49 + t21);
-        let t96 = t9 + 0.45 * t19;
-        let t100 = c3_arm * t93 + s3_arm * t96 + 0.45 * t82;
-        let t101 = 0.45 * s3_arm;
-        let t102 = t101 - 0.45;
-        let t104 = 0.45 * c3_arm;
-        let t107 = c3_arm * t96 - s3_arm * t93;
-        let t110 = t107 - 0.45 * (t70 + t75);
-        let t116 = s23_arm * s4_arm;
-        let t119 = c4_arm * t35 - s4_arm * t36;
-        let t120 = t47 + joint_velocities[3];
-        let t121 = t119 * t120;
-        let t122 = t116 * t121;
-        let t123 = s23_arm * c4_arm;
-        let t126 = s4_arm * t35 + c4_arm * t36;
-        let t127 = t126 * t120;
-        let t130 = t44 + joint_accelerations[3];
-        let t133 = t35 * t120;
-        let t138 = c4_arm * t65 - s4_arm * t6 - joint_velocities[3] * t126;
-        let t141 = t119 * t126;
-        let t144 = t138 - t127;
-        let t146 = t133 + s4_arm * t144;
-        let t147 = t126 * t126;
-        let t148 = t120 * t120;
-        let t149 = t147 - t148;
-        let t151 = t141 + t130;
-        let t158 = s4_arm * t65 + c4_arm * t6 + joint_velocities[3] * t119;
-        let t159 = t121 - t158;
-        let t163 = c4_arm * t151;
-        let t164 = s4_arm * t149 + t163;
-        let t165 = t130 - t141;
-        let t167 = t119 * t119;
-        let t168 = t148 - t167;
-        let t171 = t127 + t138;
-        let t174 = s4_arm * t165;
-        let t176 = t174 + c4_arm * t168;
-        let t177 = t167 - t147;
-        let t179 = t121 + t158;
-        let t186 = s4_arm * t179 - c4_arm * t144;
-        let t201 = t123 * c5_arm + c23_arm * s5_arm;
-        let t204 = c5_arm * t120 - s5_arm * t119;
-        let t205 = t126 + joint_velocities[4];
-        let t206 = t204 * t205;
-        let t210 = c23_arm * c5_arm - t123 * s5_arm;
-        let t213 = c5_arm * t119 + s5_arm * t120;
-        let t214 = t213 * t205;
-        let t215 = t210 * t214;
-        let t217 = t158 + joint_accelerations[4];
-        let t221 = s4_arm * c5_arm;
-        let t223 = s4_arm * s5_arm;
-        let t224 = t223 * t214;
-        let t226 = c4_arm * t217 - (t221 * t206 + t224);
-        let t227 = t119 * t205;
-        let t232 = c5_arm * t138 + s5_arm * t130 + joint_velocities[4] * t204;
-        let t235 = t213 * t204;
-        let t241 = t224 - t232 * t221 - c4_arm * t235;
-        let t242 = t206 + t232;
-        let t245 = s4_arm * t89;
-        let t247 = c4_arm * t89;
-        let t248 = t167 + t148;
-        let t254 = c4_arm * t100 - s4_arm * t87;
-        let t259 = 0.45 * s4_arm;
-        let t261 = 0.45 * t163 - t259 * t248;
-        let t262 = 1.0 - s3_arm;
-        let t266 = s4_arm * t110;
-        let t274 = c5_arm * t130 - s5_arm * t138 - joint_velocities[4] * t213;
-        let t275 = t214 - t274;
-        let t278 = t213 * t213;
-        let t279 = t204 * t204;
-        let t280 = t278 - t279;
-        let t287 = t221 * t275 + t223 * t242 + c4_arm * t280;
-        let t291 = t235 + t217;
-        let t293 = t205 * t205;
-        let t294 = t293 - t278;
-        let t297 = t206 - t232;
-        let t304 = t223 * t294 - t221 * t291 - c4_arm * t297;
-        let t308 = t279 - t293;
-        let t310 = t235 - t217;
-        let t313 = t214 + t274;
-        let t320 = c4_arm * t313 - (t221 * t308 + t223 * t310);
-        let t328 = t201 * s6_arm + t116 * c6_arm;
-        let t331 = c6_arm * t213 - s6_arm * t205;
-        let t332 = t204 + joint_velocities[5];
-        let t333 = t331 * t332;
-        let t334 = t328 * t333;
-        let t337 = t201 * c6_arm - t116 * s6_arm;
-        let t340 = s6_arm * t213 + c6_arm * t205;
-        let t341 = t340 * t332;
-        let t344 = t274 + joint_accelerations[5];
-        let t349 = c6_arm * t221 + c4_arm * s6_arm;
-        let t353 = s6_arm * t221 - c4_arm * c6_arm;
-        let t354 = t353 * t333;
-        let t357 = t349 * t341 - t354 + t223 * t344;
-        let t358 = s5_arm * s6_arm;
-        let t359 = t358 * t333;
-        let t360 = s5_arm * c6_arm;
-        let t365 = t213 * t332;
-        let t370 = c6_arm * t232 - s6_arm * t217 - joint_velocities[5] * t340;
-        let t373 = t331 * t340;
-        let t379 = t354 - t370 * t349 + t223 * t373;
-        let t384 = t370 - t341;
-        let t388 = c5_arm * t245;
-        let t390 = s5_arm * t245;
-        let t391 = t278 + t293;
-        let t397 = s4_arm * t100 + c4_arm * t87;
-        let t401 = c5_arm * t254 + s5_arm * t110;
-        let t405 = c4_arm * t102;
-        let t408 = c5_arm * t405 + s5_arm * t104;
-        let t412 = c5_arm * t104 - s5_arm * t405;
-        let t415 = s4_arm * t102;
-        let t420 = t397 * t221 + c4_arm * t401;
-        let t422 = 0.45 * c4_arm;
-        let t423 = c5_arm * t422;
-        let t425 = s5_arm * t422;
-        let t432 = t147 + t148;
-        let t443 = t422 * t432 + 0.45 * t174;
-        let t446 = c4_arm * t110;
-        let t449 = t344 - t373;
-        let t451 = t332 * t332;
-        let t452 = t331 * t331;
-        let t453 = t451 - t452;
-        let t456 = t341 + t370;
-        let t463 = t353 * t453 - t349 * t449 + t223 * t456;
-        let t472 = t340 * t340;
-        let t473 = t472 - t451;
-        let t475 = t373 + t344;
-        let t482 = s6_arm * t232 + c6_arm * t217 + joint_velocities[5] * t331;
-        let t483 = t333 - t482;
-        let t490 = t353 * t475 - t349 * t473 + t223 * t483;
-        let t499 = t452 - t472;
-        let t501 = t333 + t482;
-        let t510 = t349 * t501 + t353 * t384 + t223 * t499;
-        let t519 = t279 + t293;
-        let t527 = c5_arm * t110 - s5_arm * t254;
-        let t539 = c4_arm * t527 - t397 * t223;
-        let t548 = t89 * t349;
-        let t549 = t472 + t451;
-        let t551 = t89 * t353;
-        let t559 = s6_arm * t401 + c6_arm * t397;
-        let t566 = c6_arm * t408 - s6_arm * t415;
-        let t570 = s6_arm * t408 + c6_arm * t415;
-        let t576 = t527 * t353 + t223 * t559;
-        let t580 = s6_arm * t423 + c6_arm * t259;
-        let t584 = s6_arm * t259 - c6_arm * t423;
-        let t595 = t452 + t451;
-        let t603 = c6_arm * t401 - s6_arm * t397;
-        let t614 = t527 * t349 + t223 * t603;
+        let t38 = joint_accelerations[0] * c23_arm;
+        let t39 = t38 - t37;
+        let t40 = t37 - t39;
+        let t42 = joint_velocities[0] * c23_arm;
+        let t43 = t35 * t42;
+        let t44 = t17 * t17;
+        let t50 = joint_velocities[1] * t17;
+        let t51 = t26 + t50;
+        let t57 = t42 * t36;
+        let t62 = c3_arm * t51 + s3_arm * t14 + joint_velocities[2] * t42;
+        let t63 = t57 + t62;
+        let t67 = t35 * t35;
+        let t68 = t42 * t42;
+        let t69 = t67 - t68;
+        let t70 = t43 + t6;
+        let t72 = t36 * t36;
+        let t76 = t57 - t62;
+        let t79 = t43 - t6;
+        let t83 = 0.45 * (t15 + t63);
+        let t85 = 0.45 * (s23_arm - c2_arm);
+        let t89 = t10 - 0.45 * (t44 + t21);
+        let t92 = t9 + 0.45 * t19;
+        let t96 = c3_arm * t89 + s3_arm * t92 + 0.45 * t79;
+        let t97 = 0.45 * t96;
+        let t98 = 1.0 - s3_arm;
+        let t100 = 0.45 * c3_arm;
+        let t103 = c3_arm * t92 - s3_arm * t89;
+        let t104 = t67 + t72;
+        let t106 = t103 - 0.45 * t104;
+        let t111 = s23_arm * s4_arm;
+        let t114 = c4_arm * t35 - s4_arm * t36;
+        let t115 = t42 + joint_velocities[3];
+        let t116 = t114 * t115;
+        let t117 = t111 * t116;
+        let t118 = s23_arm * c4_arm;
+        let t121 = s4_arm * t35 + c4_arm * t36;
+        let t122 = t121 * t115;
+        let t125 = t39 + joint_accelerations[3];
+        let t128 = t35 * t115;
+        let t133 = c4_arm * t62 - s4_arm * t6 - joint_velocities[3] * t121;
+        let t136 = t114 * t121;
+        let t139 = t133 - t122;
+        let t141 = t128 + s4_arm * t139;
+        let t142 = t115 * t115;
+        let t143 = t114 * t114;
+        let t144 = t142 - t143;
+        let t145 = t143 + t142;
+        let t146 = t144 + t104;
+        let t147 = t145 - t146;
+        let t148 = t144 + t147;
+        let t150 = t136 + t125;
+        let t157 = s4_arm * t62 + c4_arm * t6 + joint_velocities[3] * t114;
+        let t158 = t116 - t157;
+        let t162 = c4_arm * t150;
+        let t163 = t162 - s4_arm * t148;
+        let t164 = t125 - t136;
+        let t168 = t122 + t133;
+        let t171 = s4_arm * t164;
+        let t173 = t171 + c4_arm * t144;
+        let t175 = t116 + t157;
+        let t182 = s4_arm * t175 - c4_arm * t139;
+        let t198 = t118 * c5_arm + c23_arm * s5_arm;
+        let t201 = c5_arm * t115 - s5_arm * t114;
+        let t202 = t121 + joint_velocities[4];
+        let t203 = t201 * t202;
+        let t207 = c23_arm * c5_arm - t118 * s5_arm;
+        let t210 = c5_arm * t114 + s5_arm * t115;
+        let t211 = t210 * t202;
+        let t212 = t207 * t211;
+        let t214 = t157 + joint_accelerations[4];
+        let t218 = s4_arm * c5_arm;
+        let t220 = s4_arm * s5_arm;
+        let t221 = t220 * t211;
+        let t223 = c4_arm * t214 - (t218 * t203 + t221);
+        let t224 = t114 * t202;
+        let t229 = c5_arm * t133 + s5_arm * t125 + joint_velocities[4] * t201;
+        let t232 = t210 * t201;
+        let t238 = t221 - t229 * t218 - c4_arm * t232;
+        let t239 = t203 + t229;
+        let t242 = s4_arm * t85;
+        let t244 = c4_arm * t85;
+        let t250 = c4_arm * t96 - s4_arm * t83;
+        let t255 = 0.45 * s4_arm;
+        let t257 = 0.45 * t162 - t255 * t145;
+        let t261 = s4_arm * t106;
+        let t269 = c5_arm * t125 - s5_arm * t133 - joint_velocities[4] * t210;
+        let t270 = t211 - t269;
+        let t273 = t210 * t210;
+        let t274 = t201 * t201;
+        let t275 = t273 - t274;
+        let t282 = t218 * t270 + t220 * t239 + c4_arm * t275;
+        let t286 = t232 + t214;
+        let t288 = t202 * t202;
+        let t289 = t288 - t273;
+        let t292 = t203 - t229;
+        let t299 = t220 * t289 - t218 * t286 - c4_arm * t292;
+        let t303 = t274 - t288;
+        let t305 = t232 - t214;
+        let t308 = t211 + t269;
+        let t315 = c4_arm * t308 - (t218 * t303 + t220 * t305);
+        let t323 = t198 * s6_arm + t111 * c6_arm;
+        let t326 = c6_arm * t210 - s6_arm * t202;
+        let t327 = t201 + joint_velocities[5];
+        let t328 = t326 * t327;
+        let t329 = t323 * t328;
+        let t332 = t198 * c6_arm - t111 * s6_arm;
+        let t335 = s6_arm * t210 + c6_arm * t202;
+        let t336 = t335 * t327;
+        let t339 = t269 + joint_accelerations[5];
+        let t344 = c6_arm * t218 + c4_arm * s6_arm;
+        let t348 = s6_arm * t218 - c4_arm * c6_arm;
+        let t349 = t348 * t328;
+        let t352 = t344 * t336 - t349 + t220 * t339;
+        let t353 = s5_arm * s6_arm;
+        let t354 = t353 * t328;
+        let t355 = s5_arm * c6_arm;
+        let t360 = t210 * t327;
+        let t365 = c6_arm * t229 - s6_arm * t214 - joint_velocities[5] * t335;
+        let t368 = t326 * t335;
+        let t374 = t349 - t365 * t344 + t220 * t368;
+        let t379 = t365 - t336;
+        let t383 = c5_arm * t242;
+        let t385 = s5_arm * t242;
+        let t386 = t273 + t288;
+        let t392 = s4_arm * t96 + c4_arm * t83;
+        let t396 = c5_arm * t250 + s5_arm * t106;
+        let t400 = 0.45 * c4_arm;
+        let t401 = c5_arm * t400;
+        let t404 = s5_arm * t100 - t401 * t98;
+        let t407 = s5_arm * t400;
+        let t409 = c5_arm * t100 + t407 * t98;
+        let t412 = t255 * t239;
+        let t417 = t392 * t218 + c4_arm * t396;
+        let t435 = t400 * t146 + 0.45 * t171;
+        let t438 = c4_arm * t106;
+        let t441 = t339 - t368;
+        let t443 = t327 * t327;
+        let t444 = t326 * t326;
+        let t445 = t443 - t444;
+        let t448 = t336 + t365;
+        let t455 = t348 * t445 - t344 * t441 + t220 * t448;
+        let t464 = t444 + t443;
+        let t465 = t386 - t464;
+        let t467 = t368 + t339;
+        let t474 = s6_arm * t229 + c6_arm * t214 + joint_velocities[5] * t326;
+        let t475 = t328 - t474;
+        let t482 = t348 * t467 - t344 * t465 + t220 * t475;
+        let t491 = t445 + t465;
+        let t493 = t328 + t474;
+        let t502 = t344 * t493 + t348 * t379 - t220 * t491;
+        let t511 = t274 + t288;
+        let t519 = c5_arm * t106 - s5_arm * t250;
+        let t527 = t255 * t270;
+        let t532 = c4_arm * t519 - t392 * t220;
+        let t540 = t85 * t344;
+        let t541 = t491 + t464;
+        let t543 = t85 * t348;
+        let t551 = s6_arm * t396 + c6_arm * t392;
+        let t557 = s6_arm * t255;
+        let t559 = c6_arm * t404 + t557 * t98;
+        let t562 = c6_arm * t255;
+        let t564 = s6_arm * t404 - t562 * t98;
+        let t570 = t519 * t348 + t220 * t551;
+        let t573 = s6_arm * t401 + t562;
+        let t576 = t557 - c6_arm * t401;
+        let t594 = c6_arm * t396 - s6_arm * t392;
+        let t605 = t519 * t344 + t220 * t594;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(c2_arm * t15), s2_arm * t19 + c2_arm * (t21 - t22), -(c23_arm * t45),
-                s2_arm * (t49 - t21) - c2_arm * (t18 - joint_accelerations[1]),
-                c2_arm * (t39 + t40) - s2_arm * t15, c23_arm * t66 - s23_arm * t45,
-                s23_arm * t73 + c23_arm * (t75 - t70), s23_arm * (t71 - t75) - c23_arm * t82,
-                t87 * t89, t122 - t123 * t127 + c23_arm * t130, t123 * t138 - t122 + c23_arm * t141,
-                t123 * t149 - t116 * t151 + c23_arm * t159,
-                t123 * t165 - t116 * t168 + c23_arm * t171,
-                c23_arm * t177 - (t123 * t179 + t116 * t144),
-                -(0.45 * c2_arm * t45 + c23_arm * (0.45 * t15)), t201 * t206 - t215 + t116 * t217,
-                t201 * t232 + t215 - t116 * t235,
-                t245 * t151 + t247 * t248 + t123 * t110 - c23_arm * t254,
-                t210 * t242 - t201 * t275 + t116 * t280, t201 * t291 + t210 * t294 - t116 * t297,
-                t201 * t308 - t210 * t310 + t116 * t313, t334 - t337 * t341 + t210 * t344,
-                t337 * t370 - t334 + t210 * t373,
-                t247 * t242 - (t388 * t310 + t390 * t391) + t201 * t397 - t116 * t401,
-                t245 * t432 - t247 * t165 + t116 * t110 - c23_arm * t397,
-                t337 * t449 - t328 * t453 + t210 * t456, t337 * t473 - t328 * t475 + t210 * t483,
-                t210 * t499 - (t337 * t501 + t328 * t384),
-                t388 * t519 + t390 * t291 + t247 * t275 + t116 * t527 - t210 * t397,
-                t548 * t549 + t551 * t449 + t390 * t501 + t328 * t527 - t210 * t559,
-                t548 * t475 - t551 * t595 + t390 * t384 + t337 * t527 - t210 * t603,
+                -(c2_arm * t15), s2_arm * t19 + c2_arm * (t21 - t22), -(c23_arm * t40),
+                s2_arm * (t44 - t21) - c2_arm * (t18 - joint_accelerations[1]),
+                c2_arm * (t50 + t51) - s2_arm * t15, c23_arm * t63 - s23_arm * t40,
+                s23_arm * t70 + c23_arm * (t72 - t67), s23_arm * (t68 - t72) - c23_arm * t79,
+                t83 * t85, t117 - t118 * t122 + c23_arm * t125, t118 * t133 - t117 + c23_arm * t136,
+                c23_arm * t158 - (t118 * t148 + t111 * t150),
+                t118 * t164 - t111 * t144 + c23_arm * t168,
+                c23_arm * t147 - (t118 * t175 + t111 * t139),
+                -(0.45 * c2_arm * t40 + c23_arm * (0.45 * t15)), t198 * t203 - t212 + t111 * t214,
+                t198 * t229 + t212 - t111 * t232,
+                t242 * t150 + t244 * t145 + t118 * t106 - c23_arm * t250,
+                t207 * t239 - t198 * t270 + t111 * t275, t198 * t286 + t207 * t289 - t111 * t292,
+                t198 * t303 - t207 * t305 + t111 * t308, t329 - t332 * t336 + t207 * t339,
+                t332 * t365 - t329 + t207 * t368,
+                t244 * t239 - (t383 * t305 + t385 * t386) + t198 * t392 - t111 * t396,
+                t242 * t146 - t244 * t164 + t111 * t106 - c23_arm * t392,
+                t332 * t441 - t323 * t445 + t207 * t448, t332 * t465 - t323 * t467 + t207 * t475,
+                -(t207 * t491 + t332 * t493 + t323 * t379),
+                t383 * t511 + t385 * t286 + t244 * t270 + t111 * t519 - t207 * t392,
+                t540 * t541 + t543 * t441 + t385 * t493 + t323 * t519 - t207 * t551,
+                t540 * t467 - t543 * t464 + t385 * t379 + t332 * t519 - t207 * t594,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t6, t9, -t10, t18, t26, t48, t13,
-                t22 - t49, t72, -t79, t85, t100 * t102 + t104 * t110, t133, -t146, -t164, -t176,
-                t186, t104 * t73 - t101 * (t71 + t75) + t107, t226, t241,
-                t261 * t262 + t104 * t144 - t266, t287, t304, t320, t357, t379,
-                t408 * t310 - t412 * t391 + t415 * t242 - t420, t104 * t179 + t443 * t262 + t446,
-                t463, t490, t510, t412 * t291 - t408 * t519 + t415 * t275 + t539,
-                t412 * t501 - (t566 * t549 + t570 * t449) - t576,
-                t570 * t595 - t566 * t475 + t412 * t384 - t614,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t6, t9, -t10, t18, t26, t43, t13,
+                t22 - t44, t69, -t76, t38, t100 * t106 - t97 * t98, t128, -t141, -t163, -t173, t182,
+                t100 * t70 - 0.45 * s3_arm * (t68 + t72) + t103, t223, t238,
+                t257 * t98 + t100 * t139 - t261, t282, t299, t315, t352, t374,
+                t404 * t305 - t409 * t386 - t412 * t98 - t417, t100 * t175 + t435 * t98 + t438,
+                t455, t482, t502, t409 * t286 - t404 * t511 - t527 * t98 + t532,
+                t409 * t493 - (t559 * t541 + t564 * t441) - t570,
+                t564 * t464 - t559 * t467 + t409 * t379 - t605,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t6, 0.0, 0.0, 0.0, 0.0, t48, 0.0, 0.0, t72, -t79, t85,
-                -(0.45 * t100), t133, -t146, -t164, -t176, t186, t107, t226, t241, t261 - t266,
-                t287, t304, t320, t357, t379, -(t423 * t310 + t425 * t391 + t259 * t242 + t420),
-                t443 + t446, t463, t490, t510, t423 * t519 + t425 * t291 - t259 * t275 + t539,
-                t580 * t449 - t584 * t549 + t425 * t501 - t576,
-                t425 * t384 - (t584 * t475 + t580 * t595) - t614,
+                0.0, 0.0, 0.0, 0.0, 0.0, t6, 0.0, 0.0, 0.0, 0.0, t43, 0.0, 0.0, t69, -t76, t38,
+                -t97, t128, -t141, -t163, -t173, t182, t103, t223, t238, t257 - t261, t282, t299,
+                t315, t352, t374, -(t401 * t305 + t407 * t386 + t412 + t417), t435 + t438, t455,
+                t482, t502, t401 * t511 + t407 * t286 - t527 + t532,
+                t573 * t441 - t576 * t541 + t407 * t493 - t570,
+                t407 * t379 - (t576 * t467 + t573 * t464) - t605,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
                 joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t130, t141, t159, t171, t177, 0.0, -t227, t227 + s5_arm * t242, -t254,
-                c5_arm * t242 - s5_arm * t275, s5_arm * t291 + c5_arm * t294,
-                s5_arm * t308 - c5_arm * t310, t359 - t360 * t341 + c5_arm * t344,
-                t370 * t360 - t359 + c5_arm * t373, s5_arm * t397, -t397,
-                t360 * t449 - t358 * t453 + c5_arm * t456,
-                t360 * t473 - t358 * t475 + c5_arm * t483,
-                c5_arm * t499 - (t360 * t501 + t358 * t384), -(c5_arm * t397),
-                t527 * t358 - c5_arm * t559, t527 * t360 - c5_arm * t603,
+                t125, t136, t158, t168, t147, 0.0, -t224, t224 + s5_arm * t239, -t250,
+                c5_arm * t239 - s5_arm * t270, s5_arm * t286 + c5_arm * t289,
+                s5_arm * t303 - c5_arm * t305, t354 - t355 * t336 + c5_arm * t339,
+                t365 * t355 - t354 + c5_arm * t368, s5_arm * t392, -t392,
+                t355 * t441 - t353 * t445 + c5_arm * t448,
+                t355 * t465 - t353 * t467 + c5_arm * t475,
+                -(c5_arm * t491 + t355 * t493 + t353 * t379), -(c5_arm * t392),
+                t519 * t353 - c5_arm * t551, t519 * t355 - c5_arm * t594,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 joint_accelerations[4], joint_velocities[4],
                 ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t217,
-                -t235, 0.0, t280, -t297, t313, t365, -(t365 + s6_arm * t384), -t401, 0.0,
-                -(s6_arm * t449 + c6_arm * t453), -(s6_arm * t473 + c6_arm * t475),
-                s6_arm * t501 - c6_arm * t384, t527, c6_arm * t527, -(s6_arm * t527),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214,
+                -t232, 0.0, t275, -t292, t308, t360, -(t360 + s6_arm * t379), -t396, 0.0,
+                -(s6_arm * t441 + c6_arm * t445), -(s6_arm * t465 + c6_arm * t467),
+                s6_arm * t493 - c6_arm * t379, t519, c6_arm * t519, -(s6_arm * t519),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t344, t373, 0.0, 0.0, t456, t483, t499, 0.0, -t559, -t603,
+                t339, t368, 0.0, 0.0, t448, t475, -t491, 0.0, -t551, -t594,
             ],
         ]
     }

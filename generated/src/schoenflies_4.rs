@@ -2193,7 +2193,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1075 operations (333 additions, 722 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 849 intermediates.
+    /// 1057 operations (333 additions, 689 multiplications, 35 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 831 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2207,613 +2207,590 @@ impl Schoenflies4 {
         let t3 = 0.08660254037844387 * s_phi;
         let t4 = t2 - t3;
         let t6 = pose[0] + t4 - 0.24;
-        let t8 = pose[2] * pose[2];
-        let t9 = t6 * t6 + t8;
-        let t10 = 0.2704 * t9;
-        let t11 = 1.0 / t10;
-        let t12 = 0.52 * t6;
-        let t13 = 0.05 * s_phi;
-        let t14 = 0.08660254037844387 * c_phi;
-        let t15 = t13 + t14;
-        let t16 = pose[1] + t15;
-        let t17 = t16 * t16;
-        let t18 = t17 + -0.3364;
-        let t19 = t9 + t18;
-        let t20 = t19 + 0.0676;
-        let t22 = 0.52 * pose[2];
-        let t24 = t10 - t20 * t20;
-        ::overact::guard::reach(t24, "leg1")?;
-        let t25 = ::overact::math::sqrt(t24);
-        let c_arm_leg1 = t11 * (t12 * t20 - t22 * t25);
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t18));
-        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t33 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t19 + -0.0676) / t33;
-        let minus_s_arm_leg1 = t11 * (t22 * t20 + t12 * t25);
-        let s_cross_leg1 = t25 / t33;
+        let t7 = 0.52 * t6;
+        let t9 = pose[2] * pose[2];
+        let t10 = t6 * t6 + t9;
+        let t11 = 0.05 * s_phi;
+        let t12 = 0.08660254037844387 * c_phi;
+        let t13 = t11 + t12;
+        let t14 = pose[1] + t13;
+        let t15 = t14 * t14;
+        let t16 = t15 + -0.3364;
+        let t17 = t10 + t16;
+        let t18 = t17 + 0.0676;
+        let t20 = 0.52 * pose[2];
+        let t21 = 0.2704 * t10;
+        let t23 = t21 - t18 * t18;
+        ::overact::guard::reach(t23, "leg1")?;
+        let t24 = ::overact::math::sqrt(t23);
+        let c_arm_leg1 = (t7 * t18 - t20 * t24) / t21;
+        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t16));
+        let t32 = 0.3016 * c_rod_leg1;
+        let c_cross_leg1 = (t17 + -0.0676) / t32;
+        let minus_s_arm_leg1 = (t20 * t18 + t7 * t24) / t21;
+        let s_cross_leg1 = t24 / t32;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t43 = 1.0 / s_cross_leg1;
-        let t44 = 3.8461538461538463 * t43;
-        let garm_vx_leg1 = c_armcross_leg1 * t44;
-        let t46 = t15 * acceleration[3];
-        let t48 = t4 * twist[3];
-        let t49 = twist[3] * t48;
-        let t50 = acceleration[0] - t46 - t49;
+        let t42 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t42;
+        let t44 = t13 * acceleration[3];
+        let t46 = t4 * twist[3];
+        let t47 = twist[3] * t46;
+        let t48 = acceleration[0] - t44 - t47;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t57 = 0.26 * c_cross_leg1;
-        let t58 = t15 * twist[3];
-        let t59 = twist[0] - t58;
-        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t64 = t16 * grod_vy_leg1;
-        let t65 = twist[1] + t48;
-        let t66 = t64 * t65;
-        let rate_arm_leg1 = t44
-            * (c_armcross_leg1 * t59 - s_armcross_leg1 * twist[2] + t66);
-        let t69 = rate_arm_leg1 * rate_arm_leg1;
-        let t71 = 0.58 * c_rod_leg1;
-        let t76 = t57 * rate_arm_leg1 + s_armcross_leg1 * t59
+        let t55 = 0.26 * c_cross_leg1;
+        let t56 = t13 * twist[3];
+        let t57 = twist[0] - t56;
+        let grod_vy_leg1 = 0.52 / t32;
+        let t62 = t14 * grod_vy_leg1;
+        let t63 = twist[1] + t46;
+        let t64 = t62 * t63;
+        let t65 = c_armcross_leg1 * t57 - s_armcross_leg1 * twist[2] + t64;
+        let rate_arm_leg1 = t42 * t65;
+        let t67 = rate_arm_leg1 * rate_arm_leg1;
+        let t69 = 0.58 * c_rod_leg1;
+        let t74 = t55 * rate_arm_leg1 + s_armcross_leg1 * t57
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t76;
-        let t78 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t65;
-        let t80 = rate_rod_leg1 * rate_rod_leg1;
-        let t85 = t4 * acceleration[3];
-        let t87 = twist[3] * t58;
-        let t88 = acceleration[1] + t85 - t87;
-        let t90 = t88 + t16 * t80;
-        let t92 = c_armcross_leg1 * t50 - s_armcross_leg1 * acceleration[2] + t57 * t69
-            + t71 * (t78 + t80) + t64 * t90;
-        let rate_dot_arm_leg1 = t44 * t92;
-        let t94 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t44 * t64;
-        let t96 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t44;
-        let t98 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
-        let t102 = garm_wz_leg1 * rate_dot_arm_leg1;
-        let t103 = 9.81 * c_arm_leg1;
-        let t108 = 9.81 * minus_s_arm_leg1;
-        let t121 = t43 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t121;
-        let t124 = rate_rod_leg1 * (1.7241379310344827 * t76);
-        let s_rod_leg1 = 1.7241379310344827 * t16;
-        let t126 = 0.26 * t69;
-        let t128 = 0.26 * rate_dot_arm_leg1;
-        let t134 = s_cross_leg1 * t126 + c_cross_leg1 * t128 + s_armcross_leg1 * t50
-            + c_armcross_leg1 * acceleration[2];
-        let t135 = t66 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t134 + t135 + t135);
-        let t139 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t141 = t124 + t139 + t124;
-        let t142 = c_rod_leg1 * t141;
-        let t143 = t64 * t142;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t57 * garm_vy_leg1);
-        let t148 = 2.972651605231867 * t78;
-        let t149 = t16 * t148;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t121;
-        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
-        let grod_wz_leg1 = t4 * grod_vy_leg1;
-        let t158 = t71 * t149;
-        let t159 = grod_wz_leg1 * t158;
-        let t161 = t143 - minus_rate_dot_cross_leg1;
-        let t163 = t64 * t161 - t142;
-        let t165 = t17 * t148;
-        let t166 = t80 - t165;
-        let t167 = t78 + t166;
-        let t168 = t165 + t80;
-        let t169 = t168 - t167;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t90;
-        let t178 = t158 + rate_dot_rod_leg1;
-        let t181 = s_rod_leg1 * t178 + c_rod_leg1 * t166;
-        let t196 = 1.7241379310344827 * t88;
-        let t199 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t209 = 0.8620689655172413 * t25;
-        let t211 = t64 * t209;
-        let t214 = 0.4482758620689655 * (c_cross_leg1 * t134) + t209 * t167
-            + t211 * t178;
-        let t216 = t128 - t103;
-        let t218 = t108 - t126;
-        let t220 = c_cross_leg1 * t216 - s_cross_leg1 * t218;
-        let t221 = c_rod_leg1 * t220;
-        let t225 = 0.26 * t216;
-        let t226 = garm_vy_leg1 * t225;
-        let t237 = c_cross_leg1 * t218 + s_cross_leg1 * t216;
-        let t238 = 1.7241379310344827 * t237;
-        let t239 = t4 * t238;
-        let t247 = t209 * (t158 - rate_dot_rod_leg1) + t211 * t168 + t57 * t141;
-        let t249 = s_rod_leg1 * t220;
-        let t266 = t57 * t78 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.26);
-        let t282 = t3 + t2;
-        let t284 = pose[1] + t282 - 0.24;
-        let t286 = t284 * t284 + t8;
-        let t287 = 0.2704 * t286;
-        let t288 = t14 - t13;
-        let t289 = pose[0] + t288;
-        let t291 = 0.3364 - t289 * t289;
-        let t292 = t286 - t291;
-        let t293 = t292 + 0.0676;
-        let t295 = t287 - t293 * t293;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t74;
+        let t76 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t63;
+        let t78 = rate_rod_leg1 * rate_rod_leg1;
+        let t79 = t76 + t78;
+        let t83 = t4 * acceleration[3];
+        let t85 = twist[3] * t56;
+        let t86 = acceleration[1] + t83 - t85;
+        let t88 = t86 + t14 * t78;
+        let rate_dot_arm_leg1 = t42
+            * (c_armcross_leg1 * t48 - s_armcross_leg1 * acceleration[2] + t55 * t67
+                + t69 * t79 + t62 * t88);
+        let t92 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t42 * t62;
+        let t94 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
+        let t96 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
+        let t100 = garm_wz_leg1 * rate_dot_arm_leg1;
+        let t101 = 9.81 * c_arm_leg1;
+        let t106 = 9.81 * minus_s_arm_leg1;
+        let t119 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t119;
+        let t122 = rate_rod_leg1 * (1.7241379310344827 * t74);
+        let t123 = 0.26 * rate_dot_arm_leg1;
+        let t129 = t64 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (c_cross_leg1 * t123 + s_armcross_leg1 * t48
+                + c_armcross_leg1 * acceleration[2] + t65 * rate_arm_leg1 + t129 + t129);
+        let t135 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t136 = t14 * t135;
+        let t138 = t122 + t136 + t122;
+        let t139 = c_rod_leg1 * t138;
+        let t140 = t62 * t139;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t55 * garm_vy_leg1);
+        let t145 = 2.972651605231867 * t76;
+        let t146 = t14 * t145;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t119;
+        let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+        let t154 = t4 * t146;
+        let t156 = t140 - minus_rate_dot_cross_leg1;
+        let t158 = t62 * t156 - t139;
+        let t160 = t15 * t145;
+        let t161 = t79 - t160;
+        let t162 = t160 + t78;
+        let t164 = grod_vy_leg1 * (t162 - t161);
+        let t171 = 0.8620689655172413 * t24;
+        let t172 = t62 * t171;
+        let t173 = t69 * t146;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t88;
+        let t176 = t172 * (t173 + rate_dot_rod_leg1);
+        let t180 = t42 * t176 + c_rod_leg1 * (t78 - t160);
+        let t187 = t4 * t135;
+        let t196 = 1.7241379310344827 * t86;
+        let t203 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t210 = t55 * (0.58 * grod_vy_leg1 * t156) - (t171 * t161 + t176);
+        let t212 = t123 - t101;
+        let t215 = t106 - 0.26 * t67;
+        let t218 = c_rod_leg1 * (c_cross_leg1 * t212 - s_cross_leg1 * t215);
+        let t222 = 0.26 * t212;
+        let t223 = garm_vy_leg1 * t222;
+        let t234 = c_cross_leg1 * t215 + s_cross_leg1 * t212;
+        let t235 = 1.7241379310344827 * t234;
+        let t236 = t4 * t235;
+        let t244 = t171 * (t173 - rate_dot_rod_leg1) + t172 * t162 + t55 * t138;
+        let t246 = t62 * t218;
+        let t263 = t55 * t76 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.26);
+        let t279 = t3 + t2;
+        let t281 = pose[1] + t279 - 0.24;
+        let t283 = t281 * t281 + t9;
+        let t284 = 0.2704 * t283;
+        let t285 = t12 - t11;
+        let t286 = pose[0] + t285;
+        let t288 = 0.3364 - t286 * t286;
+        let t289 = t283 - t288;
+        let t290 = t289 + 0.0676;
+        let t292 = t284 - t290 * t290;
+        ::overact::guard::reach(t292, "leg2")?;
+        let t293 = ::overact::math::sqrt(t292);
+        let t294 = 0.8620689655172413 * t293;
+        let t295 = 2.972651605231867 * t288;
         ::overact::guard::reach(t295, "leg2")?;
-        let t296 = ::overact::math::sqrt(t295);
-        let t297 = 2.972651605231867 * t291;
-        ::overact::guard::reach(t297, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t297);
+        let c_rod_leg2 = ::overact::math::sqrt(t295);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t299 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t296 / t299;
+        let t297 = t294 / c_rod_leg2;
+        let s_cross_leg2 = 3.8461538461538463 * t297;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t301 = 1.0 / s_cross_leg2;
-        let t302 = 3.8461538461538463 * t301;
-        let t303 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t303;
-        let t305 = t289 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t302 * t305;
-        let t307 = 1.0 / t287;
-        let t308 = 0.52 * t284;
-        let c_arm_leg2 = t307 * (t308 * t293 - t22 * t296);
-        let c_cross_leg2 = (-0.0676 + t292) / t299;
-        let minus_s_arm_leg2 = t307 * (t22 * t293 + t308 * t296);
+        let t299 = 3.8461538461538463 / s_cross_leg2;
+        let t300 = 0.3016 * c_rod_leg2;
+        let minus_grod_vx_leg2 = 0.52 / t300;
+        let t302 = t286 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t299 * t302;
+        let t304 = 0.52 * t281;
+        let c_arm_leg2 = (t304 * t290 - t20 * t293) / t284;
+        let c_cross_leg2 = (-0.0676 + t289) / t300;
+        let minus_s_arm_leg2 = (t20 * t290 + t304 * t293) / t284;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t322 = t288 * acceleration[3];
-        let t324 = t282 * twist[3];
-        let t325 = twist[3] * t324;
-        let t326 = acceleration[1] + t322 - t325;
+        let t318 = t285 * acceleration[3];
+        let t320 = t279 * twist[3];
+        let t321 = twist[3] * t320;
+        let t322 = acceleration[1] + t318 - t321;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t333 = 0.26 * c_cross_leg2;
-        let t334 = t288 * twist[3];
-        let t335 = twist[1] + t334;
-        let t339 = twist[0] - t324;
-        let t340 = t305 * t339;
-        let rate_arm_leg2 = t302
-            * (c_armcross_leg2 * t335 - s_armcross_leg2 * twist[2] + t340);
-        let t343 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t339;
-        let t347 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t352 = s_armcross_leg2 * t335 + c_armcross_leg2 * twist[2]
-            + t333 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t352;
-        let t354 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t359 = t282 * acceleration[3];
-        let t361 = twist[3] * t334;
-        let t362 = acceleration[0] - t359 - t361;
-        let t364 = t362 + t289 * t347;
-        let t366 = c_armcross_leg2 * t326 - s_armcross_leg2 * acceleration[2]
-            + t333 * t343 + 0.58 * c_rod_leg2 * (t347 + t354) + t305 * t364;
-        let rate_dot_arm_leg2 = t302 * t366;
-        let t368 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t302;
-        let t370 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t302;
-        let t372 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let garm_wz_leg2 = t288 * garm_vy_leg2 - t282 * garm_vx_leg2;
-        let t376 = garm_wz_leg2 * rate_dot_arm_leg2;
-        let t377 = 9.81 * c_arm_leg2;
-        let t382 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t333 * garm_vx_leg2);
-        let t398 = minus_rate_rod_leg2 * (1.7241379310344827 * t352);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t289;
-        let t403 = 0.26 * t343;
-        let t405 = t340 * minus_rate_cross_leg2;
-        let t409 = 0.26 * rate_dot_arm_leg2;
+        let t329 = t285 * twist[3];
+        let t330 = twist[1] + t329;
+        let t334 = twist[0] - t320;
+        let t335 = t302 * t334;
+        let t336 = c_armcross_leg2 * t330 - s_armcross_leg2 * twist[2] + t335;
+        let rate_arm_leg2 = t299 * t336;
+        let t338 = t336 * rate_arm_leg2;
+        let t339 = t338 / s_cross_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t334;
+        let t343 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t347 = 0.26 * c_cross_leg2;
+        let t349 = s_armcross_leg2 * t330 + c_armcross_leg2 * twist[2]
+            + t347 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t349;
+        let t351 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t356 = t279 * acceleration[3];
+        let t358 = twist[3] * t329;
+        let t359 = acceleration[0] - t356 - t358;
+        let t361 = t359 + t286 * t343;
+        let t363 = c_armcross_leg2 * t322 - s_armcross_leg2 * acceleration[2]
+            + c_cross_leg2 * t339 + 0.58 * c_rod_leg2 * (t343 + t351) + t302 * t361;
+        let rate_dot_arm_leg2 = t299 * t363;
+        let t365 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t299;
+        let t367 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t299;
+        let t369 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let garm_wz_leg2 = t285 * garm_vy_leg2 - t279 * garm_vx_leg2;
+        let t373 = garm_wz_leg2 * rate_dot_arm_leg2;
+        let t374 = 9.81 * c_arm_leg2;
+        let t379 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t347 * garm_vx_leg2);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t286;
+        let t396 = minus_rate_rod_leg2 * (1.7241379310344827 * t349);
+        let t400 = t335 * minus_rate_cross_leg2;
+        let t404 = 0.26 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t326 + c_armcross_leg2 * acceleration[2]
-                + s_cross_leg2 * t403 + t405 + t405 + c_cross_leg2 * t409);
-        let t413 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t415 = t398 + t413 + t398;
-        let t416 = c_rod_leg2 * t415;
-        let t417 = t305 * t416;
-        let t419 = t297 * t354;
-        let t420 = t305 * t419;
-        let t421 = minus_grod_vx_leg2 * t420;
-        let t423 = t301 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t423;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t423;
-        let grod_wz_leg2 = t282 * minus_grod_vx_leg2;
-        let t429 = grod_wz_leg2 * t420;
-        let gcross_wz_leg2 = t282 * minus_gcross_vx_leg2 - t288 * minus_gcross_vy_leg2;
-        let t435 = t417 - minus_rate_dot_cross_leg2;
-        let t437 = t416 - t305 * t435;
-        let t439 = t289 * t421;
-        let t440 = t439 - t419;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t364;
-        let t449 = t420 + minus_rate_dot_rod_leg2;
-        let t453 = minus_s_rod_leg2 * t449 + c_rod_leg2 * (t347 - t439);
-        let t468 = 1.7241379310344827 * t362;
-        let t470 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t481 = 0.8620689655172413 * t296;
-        let t484 = t305 * t481;
-        let t487 = t333 * (t303 * t435) - (t481 * (t419 + t347) + t484 * t449);
-        let t489 = t409 - t377;
-        let t490 = 0.26 * t489;
-        let t491 = garm_vx_leg2 * t490;
-        let t496 = t382 - t403;
-        let t498 = c_cross_leg2 * t489 - s_cross_leg2 * t496;
-        let t499 = c_rod_leg2 * t498;
-        let t510 = c_cross_leg2 * t496 + s_cross_leg2 * t489;
-        let t511 = 1.7241379310344827 * t510;
-        let t512 = t282 * t511;
-        let t521 = t481 * (minus_rate_dot_rod_leg2 - t420) - t484 * (t439 + t347)
-            - t333 * t415;
-        let t523 = minus_s_rod_leg2 * t498;
-        let t540 = t333 * t354 - minus_rate_dot_cross_leg2 * (0.26 * s_cross_leg2);
-        let t557 = pose[0] - t4 + 0.24;
-        let t559 = t557 * t557 + t8;
-        let t560 = 0.2704 * t559;
-        let t561 = 1.0 / t560;
-        let t562 = 0.52 * t557;
-        let t563 = pose[1] - t15;
-        let t564 = t563 * t563;
-        let t565 = 0.3364 - t564;
-        let t566 = t559 - t565;
-        let t567 = t566 + 0.0676;
-        let t570 = t560 - t567 * t567;
-        ::overact::guard::reach(t570, "leg3")?;
-        let t571 = ::overact::math::sqrt(t570);
-        let minus_c_arm_leg3 = t561 * (t562 * t567 + t22 * t571);
-        let t576 = 2.972651605231867 * t565;
-        ::overact::guard::reach(t576, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t576);
+            * (s_armcross_leg2 * t322 + c_armcross_leg2 * acceleration[2] + t338 + t400
+                + t400 + c_cross_leg2 * t404);
+        let t408 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t410 = t396 + t408 + t396;
+        let t411 = minus_s_rod_leg2 * t410;
+        let t413 = t295 * t351;
+        let t414 = t302 * t413;
+        let t415 = minus_grod_vx_leg2 * t414;
+        let t417 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t417;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t417;
+        let t422 = t279 * t415;
+        let gcross_wz_leg2 = t279 * minus_gcross_vx_leg2 - t285 * minus_gcross_vy_leg2;
+        let t429 = t411 - minus_rate_dot_cross_leg2;
+        let t430 = t429 / c_rod_leg2;
+        let t432 = c_rod_leg2 * t410 - minus_s_rod_leg2 * t430;
+        let t434 = t286 * t415;
+        let t436 = minus_grod_vx_leg2 * (t434 - t413);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t361;
+        let t444 = t414 + minus_rate_dot_rod_leg2;
+        let t448 = minus_s_rod_leg2 * t444 + c_rod_leg2 * (t343 - t434);
+        let t455 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t456 = t279 * t455;
+        let t465 = 1.7241379310344827 * t359;
+        let t472 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t477 = t302 * t294;
+        let t480 = t347 * t430 - (t294 * (t413 + t343) + t477 * t444);
+        let t482 = t404 - t374;
+        let t483 = 0.26 * t482;
+        let t484 = garm_vx_leg2 * t483;
+        let t489 = t379 - t339;
+        let t491 = c_cross_leg2 * t482 - s_cross_leg2 * t489;
+        let t492 = c_rod_leg2 * t491;
+        let t503 = c_cross_leg2 * t489 + s_cross_leg2 * t482;
+        let t504 = 1.7241379310344827 * t503;
+        let t505 = t279 * t504;
+        let t514 = t294 * (minus_rate_dot_rod_leg2 - t414) - t477 * (t434 + t343)
+            - t347 * t410;
+        let t516 = minus_s_rod_leg2 * t491;
+        let t532 = t347 * t351 - minus_rate_dot_cross_leg2 * t297;
+        let t549 = pose[0] - t4 + 0.24;
+        let t550 = 0.52 * t549;
+        let t552 = t549 * t549 + t9;
+        let t553 = pose[1] - t13;
+        let t554 = t553 * t553;
+        let t555 = 0.3364 - t554;
+        let t556 = t552 - t555;
+        let t557 = t556 + 0.0676;
+        let t559 = 0.2704 * t552;
+        let t561 = t559 - t557 * t557;
+        ::overact::guard::reach(t561, "leg3")?;
+        let t562 = ::overact::math::sqrt(t561);
+        let minus_c_arm_leg3 = (t550 * t557 + t20 * t562) / t559;
+        let t567 = 2.972651605231867 * t555;
+        ::overact::guard::reach(t567, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t567);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t578 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t566) / t578;
-        let s_arm_leg3 = t561 * (t562 * t571 - t22 * t567);
-        let s_cross_leg3 = t571 / t578;
+        let c_cross_leg3 = (-0.0676 + t556) / (0.3016 * c_rod_leg3);
+        let s_arm_leg3 = (t550 * t562 - t20 * t557) / t559;
+        let t576 = 0.8620689655172413 * t562;
+        let t577 = t576 / c_rod_leg3;
+        let s_cross_leg3 = 3.8461538461538463 * t577;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t588 = 1.0 / s_cross_leg3;
-        let t589 = 3.8461538461538463 * t588;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t589;
-        let t592 = acceleration[0] + t46 + t49;
+        let t581 = 3.8461538461538463 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t581;
+        let t584 = acceleration[0] + t44 + t47;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t599 = 0.26 * c_cross_leg3;
-        let t600 = twist[0] + t58;
-        let t604 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t604;
-        let t606 = t563 * minus_grod_vy_leg3;
-        let t607 = twist[1] - t48;
-        let t608 = t606 * t607;
-        let rate_arm_leg3 = t589
-            * (minus_c_armcross_leg3 * t600 - s_armcross_leg3 * twist[2] + t608);
-        let t611 = rate_arm_leg3 * rate_arm_leg3;
-        let t613 = 0.58 * c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t607;
-        let t615 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t620 = s_armcross_leg3 * t600 + minus_c_armcross_leg3 * twist[2]
-            - t599 * rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t620;
-        let t622 = rate_cross_leg3 * rate_cross_leg3;
-        let t628 = acceleration[1] - t85 + t87;
-        let t630 = t628 + t563 * t615;
-        let t632 = minus_c_armcross_leg3 * t592 - s_armcross_leg3 * acceleration[2]
-            + t599 * t611 + t613 * (t615 + t622) + t606 * t630;
-        let rate_dot_arm_leg3 = t589 * t632;
-        let t634 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t589 * t606;
-        let t636 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t589;
-        let t638 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let t642 = garm_wz_leg3 * rate_dot_arm_leg3;
-        let t643 = 9.81 * minus_c_arm_leg3;
-        let t648 = 9.81 * s_arm_leg3;
-        let t661 = t588 * minus_grod_vy_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t661;
-        let t664 = minus_rate_rod_leg3 * (1.7241379310344827 * t620);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t563;
-        let t669 = 0.26 * t611;
-        let t671 = t608 * rate_cross_leg3;
-        let t675 = 0.26 * rate_dot_arm_leg3;
+        let t591 = twist[0] + t56;
+        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
+        let t596 = t553 * minus_grod_vy_leg3;
+        let t597 = twist[1] - t46;
+        let t598 = t596 * t597;
+        let t599 = minus_c_armcross_leg3 * t591 - s_armcross_leg3 * twist[2] + t598;
+        let rate_arm_leg3 = t581 * t599;
+        let t601 = t599 * rate_arm_leg3;
+        let t602 = t601 / s_cross_leg3;
+        let t604 = 0.58 * c_rod_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t597;
+        let t606 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t610 = 0.26 * c_cross_leg3;
+        let t612 = s_armcross_leg3 * t591 + minus_c_armcross_leg3 * twist[2]
+            - t610 * rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t612;
+        let t614 = rate_cross_leg3 * rate_cross_leg3;
+        let t615 = t606 + t614;
+        let t620 = acceleration[1] - t83 + t85;
+        let t622 = t620 + t553 * t606;
+        let rate_dot_arm_leg3 = t581
+            * (minus_c_armcross_leg3 * t584 - s_armcross_leg3 * acceleration[2]
+                + c_cross_leg3 * t602 + t604 * t615 + t596 * t622);
+        let t626 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t581 * t596;
+        let t628 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t581;
+        let t630 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let t634 = garm_wz_leg3 * rate_dot_arm_leg3;
+        let t635 = 9.81 * minus_c_arm_leg3;
+        let t640 = 9.81 * s_arm_leg3;
+        let t653 = minus_grod_vy_leg3 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t653;
+        let t656 = minus_rate_rod_leg3 * (1.7241379310344827 * t612);
+        let minus_s_rod_leg3 = 1.7241379310344827 * t553;
+        let t661 = t598 * rate_cross_leg3;
+        let t665 = 0.26 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t592 + minus_c_armcross_leg3 * acceleration[2]
-                - (s_cross_leg3 * t669 - (t671 + t671)) - c_cross_leg3 * t675);
-        let t679 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t681 = t664 + t679 + t664;
-        let t682 = c_rod_leg3 * t681;
-        let t683 = t606 * t682;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t599 * garm_vy_leg3);
-        let t688 = 2.972651605231867 * t622;
-        let t689 = t563 * t688;
-        let gcross_vz_leg3 = s_arm_leg3 * t661;
-        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
+            * (s_armcross_leg3 * t584 + minus_c_armcross_leg3 * acceleration[2]
+                - (t601 - (t661 + t661)) - c_cross_leg3 * t665);
+        let t669 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t671 = t656 + t669 + t656;
+        let t672 = c_rod_leg3 * t671;
+        let t673 = t596 * t672;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t610 * garm_vy_leg3);
+        let t678 = 2.972651605231867 * t614;
+        let t679 = t553 * t678;
+        let gcross_vz_leg3 = s_arm_leg3 * t653;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
         let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
-        let t698 = t613 * t689;
-        let t699 = grod_wz_leg3 * t698;
-        let t701 = rate_dot_cross_leg3 - t683;
-        let t703 = t606 * t701 + t682;
-        let t706 = t564 * t688;
-        let t707 = t615 - t706;
-        let t708 = t622 + t707;
-        let t709 = t706 + t615;
-        let t710 = t709 - t708;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t630;
-        let t718 = t698 + minus_rate_dot_rod_leg3;
-        let t721 = minus_s_rod_leg3 * t718 + c_rod_leg3 * t707;
-        let t736 = 1.7241379310344827 * t628;
-        let t739 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t747 = t648 + t669;
-        let t749 = t643 + t675;
-        let t751 = s_cross_leg3 * t747 + c_cross_leg3 * t749;
-        let t752 = c_rod_leg3 * t751;
-        let t754 = 0.8620689655172413 * t571;
-        let t756 = t606 * t754;
-        let t761 = t754 * t708 + t756 * t718 - t599 * (t604 * t701);
-        let t765 = 0.26 * t749;
-        let t766 = garm_vy_leg3 * t765;
-        let t777 = s_cross_leg3 * t749 - c_cross_leg3 * t747;
-        let t778 = 1.7241379310344827 * t777;
-        let t779 = t4 * t778;
-        let t787 = t754 * (minus_rate_dot_rod_leg3 - t698) - t756 * t709 + t599 * t681;
-        let t789 = minus_s_rod_leg3 * t751;
-        let t806 = rate_dot_cross_leg3 * (0.26 * s_cross_leg3) + t599 * t622;
-        let t823 = pose[1] - t282 + 0.24;
-        let t825 = t823 * t823 + t8;
-        let t826 = 0.2704 * t825;
-        let t827 = pose[0] - t288;
-        let t829 = 0.3364 - t827 * t827;
-        let t830 = t825 - t829;
-        let t831 = t830 + 0.0676;
-        let t833 = t826 - t831 * t831;
-        ::overact::guard::reach(t833, "leg4")?;
-        let t834 = ::overact::math::sqrt(t833);
-        let t835 = 2.972651605231867 * t829;
-        ::overact::guard::reach(t835, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t835);
+        let t688 = t604 * t679;
+        let t689 = grod_wz_leg3 * t688;
+        let t691 = rate_dot_cross_leg3 - t673;
+        let t693 = t596 * t691 + t672;
+        let t696 = t554 * t678;
+        let t697 = t615 - t696;
+        let t698 = t696 + t606;
+        let t699 = t698 - t697;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t622;
+        let t707 = t688 + minus_rate_dot_rod_leg3;
+        let t711 = minus_s_rod_leg3 * t707 + c_rod_leg3 * (t606 - t696);
+        let t726 = 1.7241379310344827 * t620;
+        let t729 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t737 = t640 + t602;
+        let t739 = t635 + t665;
+        let t741 = s_cross_leg3 * t737 + c_cross_leg3 * t739;
+        let t742 = c_rod_leg3 * t741;
+        let t745 = t596 * t576;
+        let t750 = t576 * t697 + t745 * t707 - t610 * (t691 / c_rod_leg3);
+        let t754 = 0.26 * t739;
+        let t755 = garm_vy_leg3 * t754;
+        let t766 = s_cross_leg3 * t739 - c_cross_leg3 * t737;
+        let t767 = 1.7241379310344827 * t766;
+        let t768 = t4 * t767;
+        let t776 = t576 * (minus_rate_dot_rod_leg3 - t688) - t745 * t698 + t610 * t671;
+        let t778 = minus_s_rod_leg3 * t741;
+        let t794 = rate_dot_cross_leg3 * t577 + t610 * t614;
+        let t811 = pose[1] - t279 + 0.24;
+        let t813 = t811 * t811 + t9;
+        let t814 = 0.2704 * t813;
+        let t815 = pose[0] - t285;
+        let t817 = 0.3364 - t815 * t815;
+        let t818 = t813 - t817;
+        let t819 = t818 + 0.0676;
+        let t821 = t814 - t819 * t819;
+        ::overact::guard::reach(t821, "leg4")?;
+        let t822 = ::overact::math::sqrt(t821);
+        let t823 = 2.972651605231867 * t817;
+        ::overact::guard::reach(t823, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t823);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t837 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t834 / t837;
+        let t825 = 0.3016 * c_rod_leg4;
+        let s_cross_leg4 = t822 / t825;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t839 = 1.0 / s_cross_leg4;
-        let t840 = 3.8461538461538463 * t839;
-        let t841 = 1.0 / c_rod_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t841;
-        let t843 = t827 * grod_vx_leg4;
-        let garm_vx_leg4 = t840 * t843;
-        let t845 = 1.0 / t826;
-        let t846 = 0.52 * t823;
-        let minus_c_arm_leg4 = t845 * (t846 * t831 + t22 * t834);
-        let c_cross_leg4 = (-0.0676 + t830) / t837;
-        let s_arm_leg4 = t845 * (t846 * t834 - t22 * t831);
+        let t827 = 3.8461538461538463 / s_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
+        let t829 = t815 * grod_vx_leg4;
+        let garm_vx_leg4 = t827 * t829;
+        let t831 = 0.52 * t811;
+        let minus_c_arm_leg4 = (t831 * t819 + t20 * t822) / t814;
+        let c_cross_leg4 = (-0.0676 + t818) / t825;
+        let s_arm_leg4 = (t831 * t822 - t20 * t819) / t814;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t861 = acceleration[1] - t322 + t325;
+        let t846 = acceleration[1] - t318 + t321;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t868 = 0.26 * c_cross_leg4;
-        let t869 = twist[1] - t334;
-        let t873 = twist[0] + t324;
-        let t874 = t843 * t873;
-        let rate_arm_leg4 = t840
-            * (minus_c_armcross_leg4 * t869 - s_armcross_leg4 * twist[2] + t874);
-        let t877 = rate_arm_leg4 * rate_arm_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t873;
-        let t881 = rate_rod_leg4 * rate_rod_leg4;
-        let t886 = s_armcross_leg4 * t869 + minus_c_armcross_leg4 * twist[2]
-            - t868 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t886;
-        let t888 = rate_cross_leg4 * rate_cross_leg4;
-        let t894 = acceleration[0] + t359 + t361;
-        let t896 = t894 + t827 * t881;
-        let t898 = minus_c_armcross_leg4 * t861 - s_armcross_leg4 * acceleration[2]
-            + t868 * t877 + 0.58 * c_rod_leg4 * (t881 + t888) + t843 * t896;
-        let rate_dot_arm_leg4 = t840 * t898;
-        let t900 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t840;
-        let t902 = garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t840;
-        let t904 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let garm_wz_leg4 = t282 * garm_vx_leg4 - t288 * garm_vy_leg4;
-        let t908 = garm_wz_leg4 * rate_dot_arm_leg4;
-        let t909 = 9.81 * minus_c_arm_leg4;
-        let t914 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t868 * garm_vx_leg4);
-        let t930 = rate_rod_leg4 * (1.7241379310344827 * t886);
-        let s_rod_leg4 = 1.7241379310344827 * t827;
-        let t935 = 0.26 * t877;
-        let t937 = t874 * rate_cross_leg4;
-        let t941 = 0.26 * rate_dot_arm_leg4;
+        let t853 = twist[1] - t329;
+        let t857 = twist[0] + t320;
+        let t858 = t829 * t857;
+        let t859 = minus_c_armcross_leg4 * t853 - s_armcross_leg4 * twist[2] + t858;
+        let rate_arm_leg4 = t827 * t859;
+        let t861 = 0.26 * c_cross_leg4;
+        let t862 = t861 * rate_arm_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t857;
+        let t866 = rate_rod_leg4 * rate_rod_leg4;
+        let t870 = s_armcross_leg4 * t853 + minus_c_armcross_leg4 * twist[2] - t862;
+        let rate_cross_leg4 = grod_vx_leg4 * t870;
+        let t872 = rate_cross_leg4 * rate_cross_leg4;
+        let t878 = acceleration[0] + t356 + t358;
+        let t880 = t878 + t858 * rate_rod_leg4;
+        let t882 = minus_c_armcross_leg4 * t846 - s_armcross_leg4 * acceleration[2]
+            + rate_arm_leg4 * t862 + 0.58 * c_rod_leg4 * (t866 + t872) + t829 * t880;
+        let rate_dot_arm_leg4 = t827 * t882;
+        let t884 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t827;
+        let t886 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t827;
+        let t888 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let garm_wz_leg4 = t279 * garm_vx_leg4 - t285 * garm_vy_leg4;
+        let t892 = garm_wz_leg4 * rate_dot_arm_leg4;
+        let t893 = 9.81 * minus_c_arm_leg4;
+        let t898 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t861 * garm_vx_leg4);
+        let t913 = 1.7241379310344827 * t870;
+        let t914 = rate_rod_leg4 * t913;
+        let t918 = t859 * rate_arm_leg4;
+        let t919 = t858 * rate_cross_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t861 + minus_c_armcross_leg4 * acceleration[2]
-                - (s_cross_leg4 * t935 - (t937 + t937)) - c_cross_leg4 * t941);
-        let t945 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t947 = t930 + t945 + t930;
-        let t948 = c_rod_leg4 * t947;
-        let t949 = t843 * t948;
-        let t951 = t835 * t888;
-        let t952 = t843 * t951;
-        let t953 = grod_vx_leg4 * t952;
-        let t955 = t839 * grod_vx_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t955;
-        let gcross_vz_leg4 = s_arm_leg4 * t955;
-        let minus_gcross_wz_leg4 = t282 * minus_gcross_vx_leg4
-            - t288 * minus_gcross_vy_leg4;
-        let grod_wz_leg4 = t282 * grod_vx_leg4;
-        let t965 = grod_wz_leg4 * t952;
-        let t967 = t827 * t953;
-        let t968 = t967 - t951;
-        let t970 = rate_dot_cross_leg4 - t949;
-        let t972 = t948 + t843 * t970;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t896;
-        let t982 = t952 + rate_dot_rod_leg4;
-        let t986 = s_rod_leg4 * t982 + c_rod_leg4 * (t881 - t967);
-        let t1000 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t1001 = 1.7241379310344827 * t894;
-        let t1011 = 0.8620689655172413 * t834;
-        let t1014 = t843 * t1011;
-        let t1019 = t1011 * (t951 + t881) + t1014 * t982 - t868 * (t841 * t970);
-        let t1021 = t909 + t941;
-        let t1022 = 0.26 * t1021;
-        let t1023 = garm_vx_leg4 * t1022;
-        let t1026 = t914 + t935;
-        let t1029 = s_cross_leg4 * t1026 + c_cross_leg4 * t1021;
-        let t1030 = c_rod_leg4 * t1029;
-        let t1042 = s_cross_leg4 * t1021 - c_cross_leg4 * t1026;
-        let t1043 = 1.7241379310344827 * t1042;
-        let t1044 = t282 * t1043;
-        let t1053 = t1011 * (t952 - rate_dot_rod_leg4) + t1014 * (t967 + t881)
-            - t868 * t947;
-        let t1055 = s_rod_leg4 * t1029;
-        let t1072 = rate_dot_cross_leg4 * (0.26 * s_cross_leg4) + t868 * t888;
-        let t1088 = twist[3] * twist[3];
-        let t1091 = c_phi * t1088 + s_phi * acceleration[3];
-        let t1094 = s_phi * t1088 - c_phi * acceleration[3];
+            * (s_armcross_leg4 * t846 + minus_c_armcross_leg4 * acceleration[2]
+                - (t918 - (t919 + t919)) - t861 * rate_dot_arm_leg4);
+        let t926 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t927 = t815 * t926;
+        let t929 = t914 + t927 + t914;
+        let t930 = c_rod_leg4 * t929;
+        let t931 = t829 * t930;
+        let t933 = t913 * t913;
+        let t934 = t829 * t933;
+        let t935 = grod_vx_leg4 * t934;
+        let t937 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t937;
+        let gcross_vz_leg4 = s_arm_leg4 * t937;
+        let minus_gcross_wz_leg4 = t279 * minus_gcross_vx_leg4
+            - t285 * minus_gcross_vy_leg4;
+        let t946 = t279 * t935;
+        let t948 = t815 * t935;
+        let t950 = grod_vx_leg4 * (t948 - t933);
+        let t951 = rate_dot_cross_leg4 - t931;
+        let t953 = t930 + t829 * t951;
+        let t962 = 0.8620689655172413 * t822;
+        let t963 = t829 * t962;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t880;
+        let t966 = t963 * (t934 + rate_dot_rod_leg4);
+        let t970 = t827 * t966 + c_rod_leg4 * (t866 - t948);
+        let t975 = t279 * t926;
+        let t985 = 1.7241379310344827 * t878;
+        let t992 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t999 = t962 * (t933 + t866) + t966 - t861 * (t951 / c_rod_leg4);
+        let t1002 = t893 + 0.26 * rate_dot_arm_leg4;
+        let t1003 = 0.26 * t1002;
+        let t1004 = garm_vx_leg4 * t1003;
+        let t1008 = t898 + t918 / s_cross_leg4;
+        let t1012 = c_rod_leg4 * (s_cross_leg4 * t1008 + c_cross_leg4 * t1002);
+        let t1024 = s_cross_leg4 * t1002 - c_cross_leg4 * t1008;
+        let t1025 = 1.7241379310344827 * t1024;
+        let t1026 = t279 * t1025;
+        let t1035 = t962 * (t934 - rate_dot_rod_leg4) + t963 * (t948 + t866)
+            - t861 * t929;
+        let t1037 = t829 * t1012;
+        let t1054 = rate_dot_cross_leg4 * (t962 / c_rod_leg4) + t861 * t872;
+        let t1070 = twist[3] * twist[3];
+        let t1073 = c_phi * t1070 + s_phi * acceleration[3];
+        let t1076 = s_phi * t1070 - c_phi * acceleration[3];
         Ok([
             [
-                t94, -(garm_vx_leg1 * t103), -(garm_vx_leg1 * t108), t94,
+                t92, -(garm_vx_leg1 * t101), -(garm_vx_leg1 * t106), t92,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t143, -(minus_gcross_vx_leg1 * t163),
-                -(minus_gcross_vx_leg1 * t181), -(minus_gcross_vx_leg1 * t161),
+                garm_vx_leg1, minus_gcross_vx_leg1 * t140, -(minus_gcross_vx_leg1 * t158),
+                -(minus_gcross_vx_leg1 * t180), -(minus_gcross_vx_leg1 * t156),
                 -(minus_gcross_vx_leg1 * t196), 0.0,
-                -(garm_vx_leg1 * t214 + minus_gcross_vx_leg1 * t221),
-                garm_vx_leg1 * t247 + minus_gcross_vx_leg1 * t249,
-                garm_vx_leg1 * t266 - minus_gcross_vx_leg1 * t237, garm_vx_leg1 * t225, t368,
-                -(garm_vx_leg2 * t377), -(garm_vx_leg2 * t382), t368, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1 * t210 - minus_gcross_vx_leg1 * t218,
+                garm_vx_leg1 * t244 + minus_gcross_vx_leg1 * t246,
+                garm_vx_leg1 * t263 - minus_gcross_vx_leg1 * t234, garm_vx_leg1 * t222, t365,
+                -(garm_vx_leg2 * t374), -(garm_vx_leg2 * t379), t365, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t417 - t421,
-                -(minus_gcross_vx_leg2 * t437 + minus_grod_vx_leg2 * t440),
-                -(minus_gcross_vx_leg2 * t453 + minus_grod_vx_leg2 * t413),
-                t421 - minus_gcross_vx_leg2 * t435, minus_gcross_vx_leg2 * t468 + t470,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg2 * t487 - 1.7241379310344827 * t491,
-                garm_vx_leg2 * t521 - minus_gcross_vx_leg2 * t523 + t511,
-                garm_vx_leg2 * t540 - minus_gcross_vx_leg2 * t510, t491, t634, garm_vx_leg3 * t643,
-                garm_vx_leg3 * t648, t634, garm_vx_leg3 * rate_arm_leg3,
+                minus_gcross_vx_leg2 * t411 - t415, -(minus_gcross_vx_leg2 * t432 + t436),
+                -(minus_gcross_vx_leg2 * t448 + minus_grod_vx_leg2 * t408),
+                t415 - minus_gcross_vx_leg2 * t429, minus_gcross_vx_leg2 * t465 + t455, t472,
+                garm_vx_leg2 * t480 - 1.7241379310344827 * t484,
+                garm_vx_leg2 * t514 - minus_gcross_vx_leg2 * t516 + t504,
+                garm_vx_leg2 * t532 - minus_gcross_vx_leg2 * t503, t484, t626, garm_vx_leg3 * t635,
+                garm_vx_leg3 * t640, t626, garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t683), minus_gcross_vx_leg3 * t703,
-                -(minus_gcross_vx_leg3 * t721), -(minus_gcross_vx_leg3 * t701),
-                minus_gcross_vx_leg3 * t736, 0.0,
-                -(minus_gcross_vx_leg3 * t752 + garm_vx_leg3 * t761),
-                garm_vx_leg3 * t787 - minus_gcross_vx_leg3 * t789,
-                garm_vx_leg3 * t806 - minus_gcross_vx_leg3 * t777, garm_vx_leg3 * t765, t900,
-                garm_vx_leg4 * t909, garm_vx_leg4 * t914, t900, garm_vx_leg4 * rate_arm_leg4,
+                -(minus_gcross_vx_leg3 * t673), minus_gcross_vx_leg3 * t693,
+                -(minus_gcross_vx_leg3 * t711), -(minus_gcross_vx_leg3 * t691),
+                minus_gcross_vx_leg3 * t726, 0.0,
+                -(minus_gcross_vx_leg3 * t742 + garm_vx_leg3 * t750),
+                garm_vx_leg3 * t776 - minus_gcross_vx_leg3 * t778,
+                garm_vx_leg3 * t794 - minus_gcross_vx_leg3 * t766, garm_vx_leg3 * t754, t884,
+                garm_vx_leg4 * t893, garm_vx_leg4 * t898, t884, garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t949 + t953),
-                grod_vx_leg4 * t968 - minus_gcross_vx_leg4 * t972,
-                grod_vx_leg4 * t945 - minus_gcross_vx_leg4 * t986,
-                t953 - minus_gcross_vx_leg4 * t970, t1000 - minus_gcross_vx_leg4 * t1001,
-                grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t1019 + 1.7241379310344827 * t1023),
-                garm_vx_leg4 * t1053 + minus_gcross_vx_leg4 * t1055 - t1043,
-                garm_vx_leg4 * t1072 - minus_gcross_vx_leg4 * t1042, t1023, 0.0, -t1091, t1094,
+                -(minus_gcross_vx_leg4 * t931 + t935), t950 - minus_gcross_vx_leg4 * t953,
+                grod_vx_leg4 * t927 - minus_gcross_vx_leg4 * t970,
+                t935 - minus_gcross_vx_leg4 * t951, t926 - minus_gcross_vx_leg4 * t985, t992,
+                -(garm_vx_leg4 * t999 + 1.7241379310344827 * t1004),
+                garm_vx_leg4 * t1035 + minus_gcross_vx_leg4 * t1037 - t1025,
+                garm_vx_leg4 * t1054 - minus_gcross_vx_leg4 * t1024, t1004, 0.0, -t1073, t1076,
                 acceleration[0],
             ],
             [
-                t96, -(garm_vy_leg1 * t103), -(garm_vy_leg1 * t108), t96,
+                t94, -(garm_vy_leg1 * t101), -(garm_vy_leg1 * t106), t94,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t143 - t149,
-                grod_vy_leg1 * t169 - minus_gcross_vy_leg1 * t163,
-                -(minus_gcross_vy_leg1 * t181 + grod_vy_leg1 * t139),
-                t149 - minus_gcross_vy_leg1 * t161, -(minus_gcross_vy_leg1 * t196 + t199),
-                grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t214 + 1.7241379310344827 * t226),
-                garm_vy_leg1 * t247 + minus_gcross_vy_leg1 * t249 - t238,
-                garm_vy_leg1 * t266 - minus_gcross_vy_leg1 * t237, t226, t370,
-                -(garm_vy_leg2 * t377), -(garm_vy_leg2 * t382), t370, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg1, minus_gcross_vy_leg1 * t140 - t146,
+                t164 - minus_gcross_vy_leg1 * t158,
+                -(minus_gcross_vy_leg1 * t180 + grod_vy_leg1 * t136),
+                t146 - minus_gcross_vy_leg1 * t156, -(minus_gcross_vy_leg1 * t196 + t135), t203,
+                garm_vy_leg1 * t210 - 1.7241379310344827 * t223,
+                garm_vy_leg1 * t244 + minus_gcross_vy_leg1 * t246 - t235,
+                garm_vy_leg1 * t263 - minus_gcross_vy_leg1 * t234, t223, t367,
+                -(garm_vy_leg2 * t374), -(garm_vy_leg2 * t379), t367, garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2), garm_vy_leg2,
-                minus_gcross_vy_leg2 * t417, -(minus_gcross_vy_leg2 * t437),
-                -(minus_gcross_vy_leg2 * t453), -(minus_gcross_vy_leg2 * t435),
-                minus_gcross_vy_leg2 * t468, 0.0, garm_vy_leg2 * t487 - minus_gcross_vy_leg2 * t499,
-                garm_vy_leg2 * t521 - minus_gcross_vy_leg2 * t523,
-                garm_vy_leg2 * t540 - minus_gcross_vy_leg2 * t510, garm_vy_leg2 * t490, t636,
-                garm_vy_leg3 * t643, garm_vy_leg3 * t648, t636, garm_vy_leg3 * rate_arm_leg3,
+                minus_gcross_vy_leg2 * t411, -(minus_gcross_vy_leg2 * t432),
+                -(minus_gcross_vy_leg2 * t448), -(minus_gcross_vy_leg2 * t429),
+                minus_gcross_vy_leg2 * t465, 0.0, garm_vy_leg2 * t480 - minus_gcross_vy_leg2 * t492,
+                garm_vy_leg2 * t514 - minus_gcross_vy_leg2 * t516,
+                garm_vy_leg2 * t532 - minus_gcross_vy_leg2 * t503, garm_vy_leg2 * t483, t628,
+                garm_vy_leg3 * t635, garm_vy_leg3 * t640, t628, garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t683 + t689),
-                -(minus_grod_vy_leg3 * t710 - minus_gcross_vy_leg3 * t703),
-                minus_grod_vy_leg3 * t679 - minus_gcross_vy_leg3 * t721,
-                t689 - minus_gcross_vy_leg3 * t701, minus_gcross_vy_leg3 * t736 - t739,
+                -(minus_gcross_vy_leg3 * t673 + t679),
+                -(minus_grod_vy_leg3 * t699 - minus_gcross_vy_leg3 * t693),
+                minus_grod_vy_leg3 * t669 - minus_gcross_vy_leg3 * t711,
+                t679 - minus_gcross_vy_leg3 * t691, minus_gcross_vy_leg3 * t726 - t729,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                -(garm_vy_leg3 * t761 + 1.7241379310344827 * t766),
-                garm_vy_leg3 * t787 - minus_gcross_vy_leg3 * t789 + t778,
-                garm_vy_leg3 * t806 - minus_gcross_vy_leg3 * t777, t766, t902, garm_vy_leg4 * t909,
-                garm_vy_leg4 * t914, t902, garm_vy_leg4 * rate_arm_leg4,
+                -(garm_vy_leg3 * t750 + 1.7241379310344827 * t755),
+                garm_vy_leg3 * t776 - minus_gcross_vy_leg3 * t778 + t767,
+                garm_vy_leg3 * t794 - minus_gcross_vy_leg3 * t766, t755, t886, garm_vy_leg4 * t893,
+                garm_vy_leg4 * t898, t886, garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t949), -(minus_gcross_vy_leg4 * t972),
-                -(minus_gcross_vy_leg4 * t986), -(minus_gcross_vy_leg4 * t970),
-                -(minus_gcross_vy_leg4 * t1001), 0.0,
-                -(minus_gcross_vy_leg4 * t1030 + garm_vy_leg4 * t1019),
-                garm_vy_leg4 * t1053 + minus_gcross_vy_leg4 * t1055,
-                garm_vy_leg4 * t1072 - minus_gcross_vy_leg4 * t1042, garm_vy_leg4 * t1022, 0.0,
-                -t1094, -t1091, acceleration[1],
+                -(minus_gcross_vy_leg4 * t931), -(minus_gcross_vy_leg4 * t953),
+                -(minus_gcross_vy_leg4 * t970), -(minus_gcross_vy_leg4 * t951),
+                -(minus_gcross_vy_leg4 * t985), 0.0,
+                -(minus_gcross_vy_leg4 * t1012 + garm_vy_leg4 * t999),
+                garm_vy_leg4 * t1035 + minus_gcross_vy_leg4 * t1037,
+                garm_vy_leg4 * t1054 - minus_gcross_vy_leg4 * t1024, garm_vy_leg4 * t1003, 0.0,
+                -t1076, -t1073, acceleration[1],
             ],
             [
-                -t98, minus_garm_vz_leg1 * t103, minus_garm_vz_leg1 * t108, -t98,
+                -t96, minus_garm_vz_leg1 * t101, minus_garm_vz_leg1 * t106, -t96,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t143, -(minus_gcross_vz_leg1 * t163),
-                -(minus_gcross_vz_leg1 * t181), -(minus_gcross_vz_leg1 * t161),
+                minus_gcross_vz_leg1 * t140, -(minus_gcross_vz_leg1 * t158),
+                -(minus_gcross_vz_leg1 * t180), -(minus_gcross_vz_leg1 * t156),
                 -(minus_gcross_vz_leg1 * t196), 0.0,
-                -(minus_gcross_vz_leg1 * t221 - minus_garm_vz_leg1 * t214),
-                minus_gcross_vz_leg1 * t249 - minus_garm_vz_leg1 * t247,
-                -(minus_garm_vz_leg1 * t266 + minus_gcross_vz_leg1 * t237),
-                -(minus_garm_vz_leg1 * t225), -t372, minus_garm_vz_leg2 * t377,
-                minus_garm_vz_leg2 * t382, -t372, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_garm_vz_leg1 * t210 + minus_gcross_vz_leg1 * t218),
+                minus_gcross_vz_leg1 * t246 - minus_garm_vz_leg1 * t244,
+                -(minus_garm_vz_leg1 * t263 + minus_gcross_vz_leg1 * t234),
+                -(minus_garm_vz_leg1 * t222), -t369, minus_garm_vz_leg2 * t374,
+                minus_garm_vz_leg2 * t379, -t369, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t417, -(minus_gcross_vz_leg2 * t437),
-                -(minus_gcross_vz_leg2 * t453), -(minus_gcross_vz_leg2 * t435),
-                minus_gcross_vz_leg2 * t468, 0.0,
-                -(minus_gcross_vz_leg2 * t499 + minus_garm_vz_leg2 * t487),
-                -(minus_gcross_vz_leg2 * t523 + minus_garm_vz_leg2 * t521),
-                -(minus_gcross_vz_leg2 * t510 + minus_garm_vz_leg2 * t540),
-                -(minus_garm_vz_leg2 * t490), -t638, -(minus_garm_vz_leg3 * t643),
-                -(minus_garm_vz_leg3 * t648), -t638, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                minus_gcross_vz_leg2 * t411, -(minus_gcross_vz_leg2 * t432),
+                -(minus_gcross_vz_leg2 * t448), -(minus_gcross_vz_leg2 * t429),
+                minus_gcross_vz_leg2 * t465, 0.0,
+                -(minus_gcross_vz_leg2 * t492 + minus_garm_vz_leg2 * t480),
+                -(minus_gcross_vz_leg2 * t516 + minus_garm_vz_leg2 * t514),
+                -(minus_gcross_vz_leg2 * t503 + minus_garm_vz_leg2 * t532),
+                -(minus_garm_vz_leg2 * t483), -t630, -(minus_garm_vz_leg3 * t635),
+                -(minus_garm_vz_leg3 * t640), -t630, -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t683, -(gcross_vz_leg3 * t703), gcross_vz_leg3 * t721,
-                gcross_vz_leg3 * t701, -(gcross_vz_leg3 * t736), 0.0,
-                minus_garm_vz_leg3 * t761 + gcross_vz_leg3 * t752,
-                gcross_vz_leg3 * t789 - minus_garm_vz_leg3 * t787,
-                gcross_vz_leg3 * t777 - minus_garm_vz_leg3 * t806, -(minus_garm_vz_leg3 * t765),
-                -t904, -(minus_garm_vz_leg4 * t909), -(minus_garm_vz_leg4 * t914), -t904,
+                gcross_vz_leg3 * t673, -(gcross_vz_leg3 * t693), gcross_vz_leg3 * t711,
+                gcross_vz_leg3 * t691, -(gcross_vz_leg3 * t726), 0.0,
+                minus_garm_vz_leg3 * t750 + gcross_vz_leg3 * t742,
+                gcross_vz_leg3 * t778 - minus_garm_vz_leg3 * t776,
+                gcross_vz_leg3 * t766 - minus_garm_vz_leg3 * t794, -(minus_garm_vz_leg3 * t754),
+                -t888, -(minus_garm_vz_leg4 * t893), -(minus_garm_vz_leg4 * t898), -t888,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t949, gcross_vz_leg4 * t972, gcross_vz_leg4 * t986,
-                gcross_vz_leg4 * t970, gcross_vz_leg4 * t1001, 0.0,
-                minus_garm_vz_leg4 * t1019 + gcross_vz_leg4 * t1030,
-                -(minus_garm_vz_leg4 * t1053 + gcross_vz_leg4 * t1055),
-                gcross_vz_leg4 * t1042 - minus_garm_vz_leg4 * t1072, -(minus_garm_vz_leg4 * t1022),
+                gcross_vz_leg4 * t931, gcross_vz_leg4 * t953, gcross_vz_leg4 * t970,
+                gcross_vz_leg4 * t951, gcross_vz_leg4 * t985, 0.0,
+                minus_garm_vz_leg4 * t999 + gcross_vz_leg4 * t1012,
+                -(minus_garm_vz_leg4 * t1035 + gcross_vz_leg4 * t1037),
+                gcross_vz_leg4 * t1024 - minus_garm_vz_leg4 * t1054, -(minus_garm_vz_leg4 * t1003),
                 0.0, 0.0, 0.0, acceleration[2] + 9.81,
             ],
             [
-                t102, -(garm_wz_leg1 * t103), -(garm_wz_leg1 * t108), t102,
+                t100, -(garm_wz_leg1 * t101), -(garm_wz_leg1 * t106), t100,
                 garm_wz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
-                garm_wz_leg1, -(gcross_wz_leg1 * t143 + t159),
-                gcross_wz_leg1 * t163 + grod_wz_leg1 * t169,
-                gcross_wz_leg1 * t181 - grod_wz_leg1 * t139, gcross_wz_leg1 * t161 + t159,
-                gcross_wz_leg1 * t196 - t4 * t199, grod_wz_leg1 * rate_dot_rod_leg1,
-                gcross_wz_leg1 * t221 - garm_wz_leg1 * t214 - t64 * t239,
-                garm_wz_leg1 * t247 - gcross_wz_leg1 * t249 - t239,
-                garm_wz_leg1 * t266 + gcross_wz_leg1 * t237, garm_wz_leg1 * t225, t376,
-                -(garm_wz_leg2 * t377), -(garm_wz_leg2 * t382), t376, garm_wz_leg2 * rate_arm_leg2,
+                garm_wz_leg1, -(gcross_wz_leg1 * t140 + t154), gcross_wz_leg1 * t158 + t4 * t164,
+                gcross_wz_leg1 * t180 - t62 * t187, gcross_wz_leg1 * t156 + t154,
+                gcross_wz_leg1 * t196 - t187, t4 * t203,
+                garm_wz_leg1 * t210 + gcross_wz_leg1 * t218 - t62 * t236,
+                garm_wz_leg1 * t244 - gcross_wz_leg1 * t246 - t236,
+                garm_wz_leg1 * t263 + gcross_wz_leg1 * t234, garm_wz_leg1 * t222, t373,
+                -(garm_wz_leg2 * t374), -(garm_wz_leg2 * t379), t373, garm_wz_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2), garm_wz_leg2,
-                t429 - gcross_wz_leg2 * t417, gcross_wz_leg2 * t437 + grod_wz_leg2 * t440,
-                gcross_wz_leg2 * t453 + grod_wz_leg2 * t413, gcross_wz_leg2 * t435 - t429,
-                -(gcross_wz_leg2 * t468 + t282 * t470), -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                garm_wz_leg2 * t487 + gcross_wz_leg2 * t499 + t305 * t512,
-                garm_wz_leg2 * t521 + gcross_wz_leg2 * t523 - t512,
-                garm_wz_leg2 * t540 + gcross_wz_leg2 * t510, garm_wz_leg2 * t490, t642,
-                garm_wz_leg3 * t643, garm_wz_leg3 * t648, t642, garm_wz_leg3 * rate_arm_leg3,
+                t422 - gcross_wz_leg2 * t411, gcross_wz_leg2 * t432 + t279 * t436,
+                gcross_wz_leg2 * t448 + t302 * t456, gcross_wz_leg2 * t429 - t422,
+                -(gcross_wz_leg2 * t465 + t456), -(t279 * t472),
+                garm_wz_leg2 * t480 + gcross_wz_leg2 * t492 + t302 * t505,
+                garm_wz_leg2 * t514 + gcross_wz_leg2 * t516 - t505,
+                garm_wz_leg2 * t532 + gcross_wz_leg2 * t503, garm_wz_leg2 * t483, t634,
+                garm_wz_leg3 * t635, garm_wz_leg3 * t640, t634, garm_wz_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_wz_leg3, rate_arm_leg3), garm_wz_leg3,
-                gcross_wz_leg3 * t683 + t699, grod_wz_leg3 * t710 - gcross_wz_leg3 * t703,
-                gcross_wz_leg3 * t721 - grod_wz_leg3 * t679, gcross_wz_leg3 * t701 - t699,
-                t4 * t739 - gcross_wz_leg3 * t736, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
-                gcross_wz_leg3 * t752 - garm_wz_leg3 * t761 + t606 * t779,
-                garm_wz_leg3 * t787 + gcross_wz_leg3 * t789 - t779,
-                garm_wz_leg3 * t806 + gcross_wz_leg3 * t777, garm_wz_leg3 * t765, t908,
-                garm_wz_leg4 * t909, garm_wz_leg4 * t914, t908, garm_wz_leg4 * rate_arm_leg4,
+                gcross_wz_leg3 * t673 + t689, grod_wz_leg3 * t699 - gcross_wz_leg3 * t693,
+                gcross_wz_leg3 * t711 - grod_wz_leg3 * t669, gcross_wz_leg3 * t691 - t689,
+                t4 * t729 - gcross_wz_leg3 * t726, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
+                gcross_wz_leg3 * t742 - garm_wz_leg3 * t750 + t596 * t768,
+                garm_wz_leg3 * t776 + gcross_wz_leg3 * t778 - t768,
+                garm_wz_leg3 * t794 + gcross_wz_leg3 * t766, garm_wz_leg3 * t754, t892,
+                garm_wz_leg4 * t893, garm_wz_leg4 * t898, t892, garm_wz_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t949 + t965),
-                grod_wz_leg4 * t968 - minus_gcross_wz_leg4 * t972,
-                grod_wz_leg4 * t945 - minus_gcross_wz_leg4 * t986,
-                t965 - minus_gcross_wz_leg4 * t970, t282 * t1000 - minus_gcross_wz_leg4 * t1001,
-                grod_wz_leg4 * rate_dot_rod_leg4,
-                -(garm_wz_leg4 * t1019 + minus_gcross_wz_leg4 * t1030 + t843 * t1044),
-                garm_wz_leg4 * t1053 + minus_gcross_wz_leg4 * t1055 - t1044,
-                garm_wz_leg4 * t1072 - minus_gcross_wz_leg4 * t1042, garm_wz_leg4 * t1022,
+                -(minus_gcross_wz_leg4 * t931 + t946), t279 * t950 - minus_gcross_wz_leg4 * t953,
+                t829 * t975 - minus_gcross_wz_leg4 * t970, t946 - minus_gcross_wz_leg4 * t951,
+                t975 - minus_gcross_wz_leg4 * t985, t279 * t992,
+                -(garm_wz_leg4 * t999 + minus_gcross_wz_leg4 * t1012 + t829 * t1026),
+                garm_wz_leg4 * t1035 + minus_gcross_wz_leg4 * t1037 - t1026,
+                garm_wz_leg4 * t1054 - minus_gcross_wz_leg4 * t1024, garm_wz_leg4 * t1003,
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -2830,7 +2807,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 962 operations (288 additions, 666 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 751 intermediates.
+    /// 945 operations (290 additions, 633 multiplications, 22 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 734 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2858,508 +2835,499 @@ impl Schoenflies4 {
         ::overact::guard::leg(c_rod_leg4, 0.9887897213061891, "leg4")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t10 = 1.0 / s_cross_leg1;
-        let t11 = 3.8461538461538463 * t10;
-        let garm_vx_leg1 = c_armcross_leg1 * t11;
-        let t15 = 0.05 * s_phi;
-        let t16 = 0.08660254037844387 * c_phi;
-        let t17 = t15 + t16;
-        let t18 = t17 * acceleration[3];
-        let t20 = 0.05 * c_phi;
-        let t21 = 0.08660254037844387 * s_phi;
-        let t22 = t20 - t21;
-        let t23 = t22 * twist[3];
-        let t24 = twist[3] * t23;
-        let t25 = acceleration[0] - t18 - t24;
-        let t29 = 0.26 * c_cross_leg1;
-        let t30 = t17 * twist[3];
-        let t31 = twist[0] - t30;
-        let t37 = 1.0 / c_rod_leg1;
-        let t38 = s_rod_leg1 * t37;
-        let t39 = twist[1] + t23;
-        let t40 = t38 * t39;
-        let rate_arm_leg1 = t11
-            * (c_armcross_leg1 * t31 - s_armcross_leg1 * twist[2] + t40);
-        let t43 = rate_arm_leg1 * rate_arm_leg1;
-        let grod_vy_leg1 = 1.7241379310344827 * t37;
-        let t51 = t29 * rate_arm_leg1 + s_armcross_leg1 * t31
+        let t10 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t10;
+        let t14 = 0.05 * s_phi;
+        let t15 = 0.08660254037844387 * c_phi;
+        let t16 = t14 + t15;
+        let t17 = t16 * acceleration[3];
+        let t19 = 0.05 * c_phi;
+        let t20 = 0.08660254037844387 * s_phi;
+        let t21 = t19 - t20;
+        let t22 = t21 * twist[3];
+        let t23 = twist[3] * t22;
+        let t24 = acceleration[0] - t17 - t23;
+        let t28 = 0.26 * c_cross_leg1;
+        let t29 = t16 * twist[3];
+        let t30 = twist[0] - t29;
+        let t36 = s_rod_leg1 / c_rod_leg1;
+        let t37 = twist[1] + t22;
+        let t38 = t36 * t37;
+        let rate_arm_leg1 = t10
+            * (c_armcross_leg1 * t30 - s_armcross_leg1 * twist[2] + t38);
+        let t41 = rate_arm_leg1 * rate_arm_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
+        let t49 = t28 * rate_arm_leg1 + s_armcross_leg1 * t30
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t51;
-        let t53 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t39;
-        let t55 = rate_rod_leg1 * rate_rod_leg1;
-        let t60 = t22 * acceleration[3];
-        let t62 = twist[3] * t30;
-        let t63 = acceleration[1] + t60 - t62;
-        let t65 = t63 + t40 * rate_rod_leg1;
-        let t67 = c_armcross_leg1 * t25 - s_armcross_leg1 * acceleration[2] + t29 * t43
-            + 0.58 * c_rod_leg1 * (t53 + t55) + t38 * t65;
-        let rate_dot_arm_leg1 = t11 * t67;
-        let t69 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t11 * t38;
-        let t71 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t73 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let garm_wz_leg1 = garm_vy_leg1 * t22 - t17 * garm_vx_leg1;
-        let t77 = garm_wz_leg1 * rate_dot_arm_leg1;
-        let t78 = 9.81 * c_arm_leg1;
-        let t83 = 9.81 * s_arm_leg1;
-        let t96 = t10 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t96;
-        let t98 = 1.7241379310344827 * t51;
-        let t99 = rate_rod_leg1 * t98;
-        let t100 = 0.26 * s_cross_leg1;
-        let t102 = 0.26 * rate_dot_arm_leg1;
-        let t108 = t100 * t43 + c_cross_leg1 * t102 + s_armcross_leg1 * t25
-            + c_armcross_leg1 * acceleration[2];
-        let t109 = t40 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t108 + t109 + t109);
-        let t113 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t115 = t99 + t113 + t99;
-        let t116 = s_rod_leg1 * t115;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t29 * garm_vy_leg1);
-        let t121 = t98 * t98;
-        let t122 = t38 * t121;
-        let t123 = grod_vy_leg1 * t122;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t96;
-        let gcross_wz_leg1 = t17 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t22;
-        let grod_wz_leg1 = grod_vy_leg1 * t22;
-        let t132 = grod_wz_leg1 * t122;
-        let t134 = t116 - minus_rate_dot_cross_leg1;
-        let t137 = t38 * t134 - c_rod_leg1 * t115;
-        let t139 = t38 * t122;
-        let t140 = t139 - t121;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t65;
-        let t149 = t122 + rate_dot_rod_leg1;
-        let t153 = s_rod_leg1 * t149 + c_rod_leg1 * (t55 - t139);
-        let t168 = 1.7241379310344827 * t63;
-        let t171 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t181 = c_rod_leg1 * t100;
-        let t184 = t100 * s_rod_leg1;
-        let t187 = 0.4482758620689655 * (c_cross_leg1 * t108) + t181 * (t121 + t55)
-            + t184 * t149;
-        let t190 = t83 + 0.26 * t43;
-        let t192 = t102 - t78;
-        let t194 = s_cross_leg1 * t190 + c_cross_leg1 * t192;
-        let t195 = c_rod_leg1 * t194;
-        let t199 = 0.26 * t192;
-        let t200 = garm_vy_leg1 * t199;
-        let t211 = s_cross_leg1 * t192 - c_cross_leg1 * t190;
-        let t212 = 1.7241379310344827 * t211;
-        let t213 = t22 * t212;
-        let t222 = t181 * (t122 - rate_dot_rod_leg1) + t184 * (t139 + t55) + t29 * t115;
-        let t224 = s_rod_leg1 * t194;
-        let t240 = t29 * t53 - t100 * minus_rate_dot_cross_leg1;
-        let t258 = 1.0 / s_cross_leg2;
-        let t259 = 3.8461538461538463 * t258;
-        let t262 = 1.0 / c_rod_leg2;
-        let t263 = s_rod_leg2 * t262;
-        let minus_garm_vx_leg2 = t259 * t263;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t49;
+        let t51 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t37;
+        let t53 = rate_rod_leg1 * rate_rod_leg1;
+        let t54 = t51 + t53;
+        let t58 = t21 * acceleration[3];
+        let t60 = twist[3] * t29;
+        let t61 = acceleration[1] + t58 - t60;
+        let t63 = t61 + t38 * rate_rod_leg1;
+        let t65 = c_armcross_leg1 * t24 - s_armcross_leg1 * acceleration[2] + t28 * t41
+            + 0.58 * c_rod_leg1 * t54 + t36 * t63;
+        let rate_dot_arm_leg1 = t10 * t65;
+        let t67 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t10 * t36;
+        let t69 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t10;
+        let t71 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let garm_wz_leg1 = garm_vy_leg1 * t21 - t16 * garm_vx_leg1;
+        let t75 = garm_wz_leg1 * rate_dot_arm_leg1;
+        let t76 = 9.81 * c_arm_leg1;
+        let t81 = 9.81 * s_arm_leg1;
+        let t94 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t94;
+        let t96 = 1.7241379310344827 * t49;
+        let t97 = rate_rod_leg1 * t96;
+        let t102 = 0.26 * s_cross_leg1;
+        let t104 = t38 * minus_rate_cross_leg1;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1
+            * (t28 * rate_dot_arm_leg1 + s_armcross_leg1 * t24
+                + c_armcross_leg1 * acceleration[2] + t102 * t41 + t104 + t104);
+        let t110 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t112 = t97 + t110 + t97;
+        let t113 = s_rod_leg1 * t112;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t28 * garm_vy_leg1);
+        let t118 = t96 * t96;
+        let t119 = t36 * t118;
+        let t120 = grod_vy_leg1 * t119;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t94;
+        let gcross_wz_leg1 = t16 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t21;
+        let t128 = t21 * t120;
+        let t130 = t113 - minus_rate_dot_cross_leg1;
+        let t133 = t36 * t130 - c_rod_leg1 * t112;
+        let t135 = t118 + t53;
+        let t136 = t54 - t118;
+        let t138 = grod_vy_leg1 * (t136 - t135);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t63;
+        let t146 = t119 + rate_dot_rod_leg1;
+        let t150 = s_rod_leg1 * t146 + c_rod_leg1 * (t135 - t51);
+        let t153 = grod_vy_leg1 * t110;
+        let t165 = 1.7241379310344827 * t61;
+        let t168 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t174 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t178 = c_rod_leg1 * t102;
+        let t180 = t102 * s_rod_leg1;
+        let t183 = t28 * (t130 / c_rod_leg1) - (t178 * t135 + t180 * t146);
+        let t186 = t81 + 0.26 * t41;
+        let t189 = 0.26 * rate_dot_arm_leg1 - t76;
+        let t191 = s_cross_leg1 * t186 + c_cross_leg1 * t189;
+        let t192 = c_rod_leg1 * t191;
+        let t196 = 0.26 * t189;
+        let t197 = garm_vy_leg1 * t196;
+        let t208 = s_cross_leg1 * t189 - c_cross_leg1 * t186;
+        let t209 = 1.7241379310344827 * t208;
+        let t210 = t21 * t209;
+        let t218 = t178 * (t119 - rate_dot_rod_leg1) + t180 * t136 + t28 * t112;
+        let t220 = s_rod_leg1 * t191;
+        let t236 = t28 * t51 - t102 * minus_rate_dot_cross_leg1;
+        let t254 = 3.8461538461538463 / s_cross_leg2;
+        let t257 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t254 * t257;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t273 = t16 - t15;
-        let t274 = t273 * acceleration[3];
-        let t276 = t21 + t20;
-        let t277 = t276 * twist[3];
-        let t278 = twist[3] * t277;
-        let t279 = acceleration[1] + t274 - t278;
-        let t283 = 0.26 * c_cross_leg2;
-        let t284 = t273 * twist[3];
-        let t285 = twist[1] + t284;
-        let t289 = twist[0] - t277;
-        let t290 = t263 * t289;
-        let rate_arm_leg2 = t259
-            * (c_armcross_leg2 * t285 - s_armcross_leg2 * twist[2] - t290);
-        let t293 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t262;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t289;
-        let t298 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t303 = s_armcross_leg2 * t285 + c_armcross_leg2 * twist[2]
-            + t283 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t303;
-        let t305 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t310 = t276 * acceleration[3];
-        let t312 = twist[3] * t284;
-        let t313 = acceleration[0] - t310 - t312;
-        let t315 = t313 - t290 * minus_rate_rod_leg2;
-        let t317 = c_armcross_leg2 * t279 - s_armcross_leg2 * acceleration[2]
-            + t283 * t293 + 0.58 * c_rod_leg2 * (t298 + t305) - t263 * t315;
-        let rate_dot_arm_leg2 = t259 * t317;
-        let t319 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t259;
-        let t321 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t259;
-        let t323 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let garm_wz_leg2 = t273 * garm_vy_leg2 + minus_garm_vx_leg2 * t276;
-        let t327 = garm_wz_leg2 * rate_dot_arm_leg2;
-        let t328 = 9.81 * c_arm_leg2;
-        let t333 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t283 * minus_garm_vx_leg2);
-        let t348 = 0.26 * s_cross_leg2;
-        let t353 = 0.26 * rate_dot_arm_leg2;
-        let t356 = t348 * t293 + s_armcross_leg2 * t279
-            + c_armcross_leg2 * acceleration[2] + c_cross_leg2 * t353;
-        let t357 = t290 * minus_rate_cross_leg2;
-        let rate_dot_cross_leg2 = minus_grod_vx_leg2 * (t357 + t357 - t356);
-        let t361 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t362 = 1.7241379310344827 * t303;
-        let t363 = minus_rate_rod_leg2 * t362;
-        let t365 = t361 + t363 + t363;
-        let t366 = s_rod_leg2 * t365;
-        let t368 = t362 * t362;
-        let t369 = t263 * t368;
-        let t370 = minus_grod_vx_leg2 * t369;
-        let t372 = t258 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t372;
-        let gcross_vz_leg2 = s_arm_leg2 * t372;
-        let minus_gcross_wz_leg2 = t273 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t276;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t276;
-        let t382 = grod_wz_leg2 * t369;
-        let t384 = 1.7241379310344827 * t356;
-        let t385 = c_rod_leg2 * t384;
-        let t388 = c_rod_leg2 * t365 - t263 * t385;
-        let t390 = t263 * t369;
-        let t391 = t390 - t368;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t315;
-        let t400 = t369 - minus_rate_dot_rod_leg2;
-        let t404 = s_rod_leg2 * t400 + c_rod_leg2 * (t298 - t390);
-        let t419 = 1.7241379310344827 * t313;
-        let t421 = 1.7241379310344827 * rate_dot_cross_leg2;
-        let t431 = c_rod_leg2 * t348;
-        let t434 = t348 * s_rod_leg2;
-        let t437 = t283 * t384 + t431 * (t368 + t298) + t434 * t400;
-        let t439 = t353 - t328;
-        let t440 = 0.26 * t439;
-        let t441 = minus_garm_vx_leg2 * t440;
-        let t446 = t333 + 0.26 * t293;
-        let t449 = s_cross_leg2 * t446 + c_cross_leg2 * t439;
-        let t450 = c_rod_leg2 * t449;
-        let t461 = s_cross_leg2 * t439 - c_cross_leg2 * t446;
-        let t462 = 1.7241379310344827 * t461;
-        let t463 = t276 * t462;
-        let t472 = t431 * (t369 + minus_rate_dot_rod_leg2) + t434 * (t390 + t298)
-            - t283 * t365;
-        let t474 = s_rod_leg2 * t449;
-        let t491 = t348 * rate_dot_cross_leg2 + t283 * t305;
+        let t267 = t15 - t14;
+        let t268 = t267 * acceleration[3];
+        let t270 = t20 + t19;
+        let t271 = t270 * twist[3];
+        let t272 = twist[3] * t271;
+        let t273 = acceleration[1] + t268 - t272;
+        let t277 = t267 * twist[3];
+        let t278 = twist[1] + t277;
+        let t282 = twist[0] - t271;
+        let t283 = t257 * t282;
+        let t284 = c_armcross_leg2 * t278 - s_armcross_leg2 * twist[2] - t283;
+        let rate_arm_leg2 = t254 * t284;
+        let t286 = 0.26 * c_cross_leg2;
+        let t287 = t286 * rate_arm_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t282;
+        let t292 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t296 = s_armcross_leg2 * t278 + c_armcross_leg2 * twist[2] + t287;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t296;
+        let t298 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t299 = t292 + t298;
+        let t303 = t270 * acceleration[3];
+        let t305 = twist[3] * t277;
+        let t306 = acceleration[0] - t303 - t305;
+        let t308 = t306 - t283 * minus_rate_rod_leg2;
+        let t310 = c_armcross_leg2 * t273 - s_armcross_leg2 * acceleration[2]
+            + rate_arm_leg2 * t287 + 0.58 * c_rod_leg2 * t299 - t257 * t308;
+        let rate_dot_arm_leg2 = t254 * t310;
+        let t312 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t254;
+        let t314 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t254;
+        let t316 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let garm_wz_leg2 = t267 * garm_vy_leg2 + minus_garm_vx_leg2 * t270;
+        let t320 = garm_wz_leg2 * rate_dot_arm_leg2;
+        let t321 = 9.81 * c_arm_leg2;
+        let t326 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t286 * minus_garm_vx_leg2);
+        let t344 = t284 * rate_arm_leg2;
+        let t345 = t283 * minus_rate_cross_leg2;
+        let t346 = t345 + t345;
+        let t350 = s_armcross_leg2 * t273 + c_armcross_leg2 * acceleration[2] + t344
+            - t346 + t286 * rate_dot_arm_leg2;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t350;
+        let t352 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t353 = 1.7241379310344827 * t296;
+        let t354 = minus_rate_rod_leg2 * t353;
+        let t356 = t354 - t352 + t354;
+        let t357 = s_rod_leg2 * t356;
+        let t359 = t353 * t353;
+        let t360 = t257 * t359;
+        let t361 = minus_grod_vx_leg2 * t360;
+        let t363 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t363;
+        let gcross_vz_leg2 = s_arm_leg2 * t363;
+        let minus_gcross_wz_leg2 = t267 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t270;
+        let t372 = t270 * t361;
+        let t375 = 1.7241379310344827 * (t350 + t346);
+        let t376 = c_rod_leg2 * t375;
+        let t379 = c_rod_leg2 * t356 - t257 * t376;
+        let t381 = t359 + t292;
+        let t382 = t299 - t359;
+        let t384 = minus_grod_vx_leg2 * (t382 - t381);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t308;
+        let t392 = t360 - minus_rate_dot_rod_leg2;
+        let t396 = s_rod_leg2 * t392 + c_rod_leg2 * (t381 - t298);
+        let t398 = minus_grod_vx_leg2 * t352;
+        let t411 = 1.7241379310344827 * t306;
+        let t413 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t420 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t423 = 0.26 * s_cross_leg2;
+        let t424 = c_rod_leg2 * t423;
+        let t426 = t423 * s_rod_leg2;
+        let t429 = t286 * t375 + t424 * t381 + t426 * t392;
+        let t432 = 0.26 * rate_dot_arm_leg2 - t321;
+        let t433 = 0.26 * t432;
+        let t434 = minus_garm_vx_leg2 * t433;
+        let t439 = t326 + t344 / s_cross_leg2;
+        let t442 = s_cross_leg2 * t439 + c_cross_leg2 * t432;
+        let t443 = c_rod_leg2 * t442;
+        let t454 = s_cross_leg2 * t432 - c_cross_leg2 * t439;
+        let t455 = 1.7241379310344827 * t454;
+        let t456 = t270 * t455;
+        let t464 = t424 * (t360 + minus_rate_dot_rod_leg2) + t426 * t382 - t286 * t356;
+        let t466 = s_rod_leg2 * t442;
+        let t483 = t286 * t298 - t423 * minus_rate_dot_cross_leg2;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t516 = 1.0 / s_cross_leg3;
-        let t517 = 3.8461538461538463 * t516;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t517;
-        let t519 = 0.26 * c_cross_leg3;
-        let t520 = twist[0] + t30;
-        let t526 = 1.0 / c_rod_leg3;
-        let t527 = s_rod_leg3 * t526;
-        let t528 = twist[1] - t23;
-        let t529 = t527 * t528;
-        let minus_rate_arm_leg3 = t517
-            * (c_armcross_leg3 * t520 + s_armcross_leg3 * twist[2] + t529);
-        let t532 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t526;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t528;
-        let t537 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t542 = s_armcross_leg3 * t520 - c_armcross_leg3 * twist[2]
-            + t519 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t542;
-        let t544 = rate_cross_leg3 * rate_cross_leg3;
-        let t549 = acceleration[0] + t18 + t24;
-        let t555 = acceleration[1] - t60 + t62;
-        let t557 = t555 - t529 * minus_rate_rod_leg3;
-        let t559 = t519 * t532 + 0.58 * c_rod_leg3 * (t537 + t544)
-            - (c_armcross_leg3 * t549 + s_armcross_leg3 * acceleration[2]) - t527 * t557;
-        let rate_dot_arm_leg3 = t517 * t559;
-        let t561 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t517 * t527;
-        let t563 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t517;
-        let t565 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let garm_wz_leg3 = t22 * minus_garm_vy_leg3 - t17 * minus_garm_vx_leg3;
-        let t569 = garm_wz_leg3 * rate_dot_arm_leg3;
-        let t570 = 9.81 * c_arm_leg3;
-        let t575 = 9.81 * s_arm_leg3;
-        let t588 = t516 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t588;
-        let t593 = 0.26 * s_cross_leg3;
-        let t595 = t529 * rate_cross_leg3;
-        let t599 = 0.26 * rate_dot_arm_leg3;
+        let t508 = 3.8461538461538463 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t508;
+        let t510 = twist[0] + t29;
+        let t516 = s_rod_leg3 / c_rod_leg3;
+        let t517 = twist[1] - t22;
+        let t518 = t516 * t517;
+        let t519 = c_armcross_leg3 * t510 + s_armcross_leg3 * twist[2] + t518;
+        let minus_rate_arm_leg3 = t508 * t519;
+        let t521 = 0.26 * c_cross_leg3;
+        let t522 = t521 * minus_rate_arm_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t517;
+        let t527 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t531 = s_armcross_leg3 * t510 - c_armcross_leg3 * twist[2] + t522;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t531;
+        let t533 = rate_cross_leg3 * rate_cross_leg3;
+        let t538 = acceleration[0] + t17 + t23;
+        let t544 = acceleration[1] - t58 + t60;
+        let t546 = t544 - t518 * minus_rate_rod_leg3;
+        let t548 = minus_rate_arm_leg3 * t522 + 0.58 * c_rod_leg3 * (t527 + t533)
+            - (c_armcross_leg3 * t538 + s_armcross_leg3 * acceleration[2]) - t516 * t546;
+        let rate_dot_arm_leg3 = t508 * t548;
+        let t550 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t508 * t516;
+        let t552 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t508;
+        let t554 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let garm_wz_leg3 = t21 * minus_garm_vy_leg3 - t16 * minus_garm_vx_leg3;
+        let t558 = garm_wz_leg3 * rate_dot_arm_leg3;
+        let t559 = 9.81 * c_arm_leg3;
+        let t564 = 9.81 * s_arm_leg3;
+        let t577 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t577;
+        let t582 = t519 * minus_rate_arm_leg3;
+        let t583 = t518 * rate_cross_leg3;
         let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t549 - c_armcross_leg3 * acceleration[2]
-                - (t593 * t532 + t595 + t595) - c_cross_leg3 * t599);
-        let t603 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t604 = 1.7241379310344827 * t542;
-        let t605 = minus_rate_rod_leg3 * t604;
-        let t607 = t603 - t605 - t605;
-        let t608 = s_rod_leg3 * t607;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t519 * minus_garm_vy_leg3);
-        let t613 = t604 * t604;
-        let t614 = t527 * t613;
-        let t615 = minus_grod_vy_leg3 * t614;
-        let gcross_vz_leg3 = s_arm_leg3 * t588;
-        let gcross_wz_leg3 = t17 * gcross_vx_leg3 - t22 * gcross_vy_leg3;
-        let grod_wz_leg3 = t22 * minus_grod_vy_leg3;
-        let t624 = grod_wz_leg3 * t614;
-        let t626 = rate_dot_cross_leg3 - t608;
-        let t629 = t527 * t626 + c_rod_leg3 * t607;
-        let t632 = t527 * t614;
-        let t633 = t632 - t613;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t557;
-        let t641 = t614 - minus_rate_dot_rod_leg3;
-        let t645 = s_rod_leg3 * t641 + c_rod_leg3 * (t537 - t632);
-        let t660 = 1.7241379310344827 * t555;
-        let t663 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t672 = t575 + 0.26 * t532;
-        let t674 = t599 - t570;
-        let t676 = s_cross_leg3 * t672 + c_cross_leg3 * t674;
-        let t677 = c_rod_leg3 * t676;
-        let t681 = c_rod_leg3 * t593;
-        let t684 = t593 * s_rod_leg3;
-        let t687 = t519 * (t526 * t626) - (t681 * (t613 + t537) + t684 * t641);
-        let t691 = 0.26 * t674;
-        let t692 = minus_garm_vy_leg3 * t691;
-        let t703 = s_cross_leg3 * t674 - c_cross_leg3 * t672;
-        let t704 = 1.7241379310344827 * t703;
-        let t705 = t22 * t704;
-        let t714 = t681 * (t614 + minus_rate_dot_rod_leg3) + t684 * (t632 + t537)
-            - t519 * t607;
-        let t716 = s_rod_leg3 * t676;
-        let t733 = t593 * rate_dot_cross_leg3 + t519 * t544;
-        let t750 = 1.0 / s_cross_leg4;
-        let t751 = 3.8461538461538463 * t750;
-        let t754 = 1.0 / c_rod_leg4;
-        let t755 = s_rod_leg4 * t754;
-        let garm_vx_leg4 = t751 * t755;
-        let t757 = 0.26 * c_cross_leg4;
-        let t758 = twist[0] + t277;
-        let t759 = t755 * t758;
+            * (s_armcross_leg3 * t538 - c_armcross_leg3 * acceleration[2]
+                - (t582 + t583 + t583) - t521 * rate_dot_arm_leg3);
+        let t590 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t591 = 1.7241379310344827 * t531;
+        let t592 = minus_rate_rod_leg3 * t591;
+        let t594 = t590 - t592 - t592;
+        let t595 = c_rod_leg3 * t594;
+        let t596 = t516 * t595;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t521 * minus_garm_vy_leg3);
+        let t601 = t591 * t591;
+        let t602 = t516 * t601;
+        let t603 = minus_grod_vy_leg3 * t602;
+        let gcross_vz_leg3 = s_arm_leg3 * t577;
+        let gcross_wz_leg3 = t16 * gcross_vx_leg3 - t21 * gcross_vy_leg3;
+        let t611 = t21 * t603;
+        let t613 = rate_dot_cross_leg3 - t596;
+        let t615 = t516 * t613 + t595;
+        let t618 = t533 - t601;
+        let t620 = minus_grod_vy_leg3 * (t618 - t601);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t546;
+        let t627 = t602 - minus_rate_dot_rod_leg3;
+        let t631 = s_rod_leg3 * t627 + c_rod_leg3 * (t527 - t618);
+        let t638 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t639 = t21 * t638;
+        let t648 = 1.7241379310344827 * t544;
+        let t655 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
+        let t658 = t564 + t582 / s_cross_leg3;
+        let t661 = 0.26 * rate_dot_arm_leg3 - t559;
+        let t663 = s_cross_leg3 * t658 + c_cross_leg3 * t661;
+        let t664 = c_rod_leg3 * t663;
+        let t668 = 0.26 * s_cross_leg3;
+        let t669 = c_rod_leg3 * t668;
+        let t672 = t668 * s_rod_leg3;
+        let t675 = t521 * (t613 / c_rod_leg3) - (t669 * (t601 + t527) + t672 * t627);
+        let t679 = 0.26 * t661;
+        let t680 = minus_garm_vy_leg3 * t679;
+        let t691 = s_cross_leg3 * t661 - c_cross_leg3 * t658;
+        let t692 = 1.7241379310344827 * t691;
+        let t693 = t21 * t692;
+        let t702 = t669 * (t602 + minus_rate_dot_rod_leg3) + t672 * (t618 + t527)
+            - t521 * t594;
+        let t704 = s_rod_leg3 * t663;
+        let t721 = t668 * rate_dot_cross_leg3 + t521 * t533;
+        let t738 = 3.8461538461538463 / s_cross_leg4;
+        let t741 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t738 * t741;
+        let t743 = twist[0] + t271;
+        let t744 = t741 * t743;
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t768 = twist[1] - t284;
-        let rate_arm_leg4 = t751
-            * (t759 - (c_armcross_leg4 * t768 + s_armcross_leg4 * twist[2]));
-        let t774 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t754;
-        let rate_rod_leg4 = grod_vx_leg4 * t758;
-        let t779 = rate_rod_leg4 * rate_rod_leg4;
-        let t784 = s_armcross_leg4 * t768 - c_armcross_leg4 * twist[2]
-            - t757 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t784;
-        let t786 = rate_cross_leg4 * rate_cross_leg4;
-        let t791 = acceleration[1] - t274 + t278;
-        let t797 = acceleration[0] + t310 + t312;
-        let t799 = t797 + t759 * rate_rod_leg4;
-        let t801 = t757 * t774 + 0.58 * c_rod_leg4 * (t779 + t786)
-            - (c_armcross_leg4 * t791 + s_armcross_leg4 * acceleration[2]) + t755 * t799;
-        let rate_dot_arm_leg4 = t751 * t801;
-        let t803 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t751;
-        let t805 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t751;
-        let t807 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let garm_wz_leg4 = t273 * minus_garm_vy_leg4 + t276 * garm_vx_leg4;
-        let t811 = garm_wz_leg4 * rate_dot_arm_leg4;
-        let t812 = 9.81 * c_arm_leg4;
-        let t817 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t757 * garm_vx_leg4);
-        let t832 = 1.7241379310344827 * t784;
-        let t833 = rate_rod_leg4 * t832;
-        let t837 = 0.26 * s_cross_leg4;
-        let t839 = t759 * rate_cross_leg4;
-        let t843 = 0.26 * rate_dot_arm_leg4;
+        let t753 = twist[1] - t277;
+        let t757 = t744 - (c_armcross_leg4 * t753 + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t738 * t757;
+        let t759 = t757 * rate_arm_leg4;
+        let t760 = t759 / s_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t743;
+        let t765 = rate_rod_leg4 * rate_rod_leg4;
+        let t769 = 0.26 * c_cross_leg4;
+        let t771 = s_armcross_leg4 * t753 - c_armcross_leg4 * twist[2]
+            - t769 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t771;
+        let t773 = rate_cross_leg4 * rate_cross_leg4;
+        let t774 = t765 + t773;
+        let t778 = acceleration[1] - t268 + t272;
+        let t784 = acceleration[0] + t303 + t305;
+        let t786 = t784 + t744 * rate_rod_leg4;
+        let t788 = c_cross_leg4 * t760 + 0.58 * c_rod_leg4 * t774
+            - (c_armcross_leg4 * t778 + s_armcross_leg4 * acceleration[2]) + t741 * t786;
+        let rate_dot_arm_leg4 = t738 * t788;
+        let t790 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t738;
+        let t792 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t738;
+        let t794 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let garm_wz_leg4 = t267 * minus_garm_vy_leg4 + t270 * garm_vx_leg4;
+        let t798 = garm_wz_leg4 * rate_dot_arm_leg4;
+        let t799 = 9.81 * c_arm_leg4;
+        let t804 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t769 * garm_vx_leg4);
+        let t819 = 1.7241379310344827 * t771;
+        let t820 = rate_rod_leg4 * t819;
+        let t824 = t744 * rate_cross_leg4;
+        let t828 = 0.26 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t791 - c_armcross_leg4 * acceleration[2]
-                - (t837 * t774 - (t839 + t839)) - c_cross_leg4 * t843);
-        let t847 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t849 = t833 + t847 + t833;
-        let t850 = s_rod_leg4 * t849;
-        let t852 = t832 * t832;
-        let t853 = t755 * t852;
-        let t854 = grod_vx_leg4 * t853;
-        let t856 = t750 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t856;
-        let gcross_vz_leg4 = s_arm_leg4 * t856;
-        let minus_gcross_wz_leg4 = t273 * gcross_vy_leg4 + t276 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t276 * grod_vx_leg4;
-        let t866 = grod_wz_leg4 * t853;
-        let t868 = t755 * t853;
-        let t869 = t868 - t852;
-        let t872 = rate_dot_cross_leg4 - t850;
-        let t874 = c_rod_leg4 * t849 + t755 * t872;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t799;
-        let t884 = t853 + rate_dot_rod_leg4;
-        let t888 = s_rod_leg4 * t884 + c_rod_leg4 * (t779 - t868);
-        let t902 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t903 = 1.7241379310344827 * t797;
-        let t913 = c_rod_leg4 * t837;
-        let t916 = t837 * s_rod_leg4;
-        let t921 = t913 * (t852 + t779) + t916 * t884 - t757 * (t754 * t872);
-        let t923 = t843 - t812;
-        let t924 = 0.26 * t923;
-        let t925 = garm_vx_leg4 * t924;
-        let t930 = t817 + 0.26 * t774;
-        let t933 = s_cross_leg4 * t930 + c_cross_leg4 * t923;
-        let t934 = c_rod_leg4 * t933;
-        let t945 = s_cross_leg4 * t923 - c_cross_leg4 * t930;
-        let t946 = 1.7241379310344827 * t945;
-        let t947 = t276 * t946;
-        let t956 = t913 * (t853 - rate_dot_rod_leg4) + t916 * (t868 + t779)
-            - t757 * t849;
-        let t958 = s_rod_leg4 * t933;
-        let t974 = t837 * rate_dot_cross_leg4 + t757 * t786;
-        let t990 = twist[3] * twist[3];
-        let t993 = c_phi * t990 + s_phi * acceleration[3];
-        let t996 = s_phi * t990 - c_phi * acceleration[3];
+            * (s_armcross_leg4 * t778 - c_armcross_leg4 * acceleration[2]
+                - (t759 - (t824 + t824)) - c_cross_leg4 * t828);
+        let t832 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t834 = t820 + t832 + t820;
+        let t835 = s_rod_leg4 * t834;
+        let t837 = t819 * t819;
+        let t838 = t741 * t837;
+        let t839 = grod_vx_leg4 * t838;
+        let t841 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t841;
+        let gcross_vz_leg4 = s_arm_leg4 * t841;
+        let minus_gcross_wz_leg4 = t267 * gcross_vy_leg4 + t270 * minus_gcross_vx_leg4;
+        let t850 = t270 * t839;
+        let t852 = t837 + t765;
+        let t853 = t774 - t837;
+        let t855 = grod_vx_leg4 * (t853 - t852);
+        let t857 = rate_dot_cross_leg4 - t835;
+        let t859 = c_rod_leg4 * t834 + t741 * t857;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t786;
+        let t869 = t838 + rate_dot_rod_leg4;
+        let t873 = s_rod_leg4 * t869 + c_rod_leg4 * (t852 - t773);
+        let t878 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t879 = t270 * t878;
+        let t889 = 1.7241379310344827 * t784;
+        let t896 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t898 = 0.26 * s_cross_leg4;
+        let t899 = c_rod_leg4 * t898;
+        let t901 = t898 * s_rod_leg4;
+        let t906 = t899 * t852 + t901 * t869 - t769 * (t857 / c_rod_leg4);
+        let t908 = t828 - t799;
+        let t909 = 0.26 * t908;
+        let t910 = garm_vx_leg4 * t909;
+        let t914 = t804 + t760;
+        let t917 = s_cross_leg4 * t914 + c_cross_leg4 * t908;
+        let t918 = c_rod_leg4 * t917;
+        let t929 = s_cross_leg4 * t908 - c_cross_leg4 * t914;
+        let t930 = 1.7241379310344827 * t929;
+        let t931 = t270 * t930;
+        let t939 = t899 * (t838 - rate_dot_rod_leg4) + t901 * t853 - t769 * t834;
+        let t941 = s_rod_leg4 * t917;
+        let t957 = t898 * rate_dot_cross_leg4 + t769 * t773;
+        let t973 = twist[3] * twist[3];
+        let t976 = c_phi * t973 + s_phi * acceleration[3];
+        let t979 = s_phi * t973 - c_phi * acceleration[3];
         Ok([
             [
-                t69, -(garm_vx_leg1 * t78), garm_vx_leg1 * t83, t69, garm_vx_leg1 * rate_arm_leg1,
+                t67, -(garm_vx_leg1 * t76), garm_vx_leg1 * t81, t67, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t116, -(minus_gcross_vx_leg1 * t137),
-                -(minus_gcross_vx_leg1 * t153), -(minus_gcross_vx_leg1 * t134),
-                -(minus_gcross_vx_leg1 * t168), 0.0,
-                -(garm_vx_leg1 * t187 + minus_gcross_vx_leg1 * t195),
-                garm_vx_leg1 * t222 + minus_gcross_vx_leg1 * t224,
-                garm_vx_leg1 * t240 - minus_gcross_vx_leg1 * t211, garm_vx_leg1 * t199, -t319,
-                minus_garm_vx_leg2 * t328, -(minus_garm_vx_leg2 * t333), -t319,
+                minus_gcross_vx_leg1 * t113, -(minus_gcross_vx_leg1 * t133),
+                -(minus_gcross_vx_leg1 * t150), -(minus_gcross_vx_leg1 * t130),
+                -(minus_gcross_vx_leg1 * t165), 0.0,
+                garm_vx_leg1 * t183 - minus_gcross_vx_leg1 * t192,
+                garm_vx_leg1 * t218 + minus_gcross_vx_leg1 * t220,
+                garm_vx_leg1 * t236 - minus_gcross_vx_leg1 * t208, garm_vx_leg1 * t196, -t312,
+                minus_garm_vx_leg2 * t321, -(minus_garm_vx_leg2 * t326), -t312,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t366 + t370, gcross_vx_leg2 * t388 - minus_grod_vx_leg2 * t391,
-                gcross_vx_leg2 * t404 - minus_grod_vx_leg2 * t361, -(gcross_vx_leg2 * t385 + t370),
-                -(gcross_vx_leg2 * t419 + t421), minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                minus_garm_vx_leg2 * t437 + 1.7241379310344827 * t441,
-                t462 - (minus_garm_vx_leg2 * t472 + gcross_vx_leg2 * t474),
-                gcross_vx_leg2 * t461 - minus_garm_vx_leg2 * t491, -t441, -t561,
-                minus_garm_vx_leg3 * t570, -(minus_garm_vx_leg3 * t575), -t561,
+                gcross_vx_leg2 * t357 + t361, gcross_vx_leg2 * t379 - t384,
+                gcross_vx_leg2 * t396 + t398, -(gcross_vx_leg2 * t376 + t361),
+                -(gcross_vx_leg2 * t411 - t413), t420,
+                minus_garm_vx_leg2 * t429 + 1.7241379310344827 * t434,
+                t455 - (minus_garm_vx_leg2 * t464 + gcross_vx_leg2 * t466),
+                gcross_vx_leg2 * t454 - minus_garm_vx_leg2 * t483, -t434, -t550,
+                minus_garm_vx_leg3 * t559, -(minus_garm_vx_leg3 * t564), -t550,
                 minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
-                -minus_garm_vx_leg3, gcross_vx_leg3 * t608, gcross_vx_leg3 * t629,
-                gcross_vx_leg3 * t645, gcross_vx_leg3 * t626, -(gcross_vx_leg3 * t660), 0.0,
-                gcross_vx_leg3 * t677 - minus_garm_vx_leg3 * t687,
-                -(minus_garm_vx_leg3 * t714 + gcross_vx_leg3 * t716),
-                gcross_vx_leg3 * t703 - minus_garm_vx_leg3 * t733, -(minus_garm_vx_leg3 * t691),
-                t803, -(garm_vx_leg4 * t812), garm_vx_leg4 * t817, t803,
+                -minus_garm_vx_leg3, gcross_vx_leg3 * t596, gcross_vx_leg3 * t615,
+                gcross_vx_leg3 * t631, gcross_vx_leg3 * t613, -(gcross_vx_leg3 * t648), 0.0,
+                gcross_vx_leg3 * t664 - minus_garm_vx_leg3 * t675,
+                -(minus_garm_vx_leg3 * t702 + gcross_vx_leg3 * t704),
+                gcross_vx_leg3 * t691 - minus_garm_vx_leg3 * t721, -(minus_garm_vx_leg3 * t679),
+                t790, -(garm_vx_leg4 * t799), garm_vx_leg4 * t804, t790,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
-                garm_vx_leg4, -(minus_gcross_vx_leg4 * t850 + t854),
-                grod_vx_leg4 * t869 - minus_gcross_vx_leg4 * t874,
-                grod_vx_leg4 * t847 - minus_gcross_vx_leg4 * t888,
-                t854 - minus_gcross_vx_leg4 * t872, t902 - minus_gcross_vx_leg4 * t903,
-                grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t921 + 1.7241379310344827 * t925),
-                garm_vx_leg4 * t956 + minus_gcross_vx_leg4 * t958 - t946,
-                garm_vx_leg4 * t974 - minus_gcross_vx_leg4 * t945, t925, 0.0, -t993, t996,
+                garm_vx_leg4, -(minus_gcross_vx_leg4 * t835 + t839),
+                t855 - minus_gcross_vx_leg4 * t859,
+                grod_vx_leg4 * t832 - minus_gcross_vx_leg4 * t873,
+                t839 - minus_gcross_vx_leg4 * t857, t878 - minus_gcross_vx_leg4 * t889, t896,
+                -(garm_vx_leg4 * t906 + 1.7241379310344827 * t910),
+                garm_vx_leg4 * t939 + minus_gcross_vx_leg4 * t941 - t930,
+                garm_vx_leg4 * t957 - minus_gcross_vx_leg4 * t929, t910, 0.0, -t976, t979,
                 acceleration[0],
             ],
             [
-                t71, -(garm_vy_leg1 * t78), garm_vy_leg1 * t83, t71, garm_vy_leg1 * rate_arm_leg1,
+                t69, -(garm_vy_leg1 * t76), garm_vy_leg1 * t81, t69, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t116 - t123,
-                grod_vy_leg1 * t140 - minus_gcross_vy_leg1 * t137,
-                -(minus_gcross_vy_leg1 * t153 + grod_vy_leg1 * t113),
-                t123 - minus_gcross_vy_leg1 * t134, -(minus_gcross_vy_leg1 * t168 + t171),
-                grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t187 + 1.7241379310344827 * t200),
-                garm_vy_leg1 * t222 + minus_gcross_vy_leg1 * t224 - t212,
-                garm_vy_leg1 * t240 - minus_gcross_vy_leg1 * t211, t200, t321,
-                -(garm_vy_leg2 * t328), garm_vy_leg2 * t333, t321, garm_vy_leg2 * rate_arm_leg2,
+                minus_gcross_vy_leg1 * t113 - t120, t138 - minus_gcross_vy_leg1 * t133,
+                -(minus_gcross_vy_leg1 * t150 + t153), t120 - minus_gcross_vy_leg1 * t130,
+                -(minus_gcross_vy_leg1 * t165 + t168), t174,
+                garm_vy_leg1 * t183 - 1.7241379310344827 * t197,
+                garm_vy_leg1 * t218 + minus_gcross_vy_leg1 * t220 - t209,
+                garm_vy_leg1 * t236 - minus_gcross_vy_leg1 * t208, t197, t314,
+                -(garm_vy_leg2 * t321), garm_vy_leg2 * t326, t314, garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2), garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t366), -(minus_gcross_vy_leg2 * t388),
-                -(minus_gcross_vy_leg2 * t404), minus_gcross_vy_leg2 * t385,
-                minus_gcross_vy_leg2 * t419, 0.0,
-                -(garm_vy_leg2 * t437 + minus_gcross_vy_leg2 * t450),
-                garm_vy_leg2 * t472 + minus_gcross_vy_leg2 * t474,
-                garm_vy_leg2 * t491 - minus_gcross_vy_leg2 * t461, garm_vy_leg2 * t440, -t563,
-                minus_garm_vy_leg3 * t570, -(minus_garm_vy_leg3 * t575), -t563,
+                -(minus_gcross_vy_leg2 * t357), -(minus_gcross_vy_leg2 * t379),
+                -(minus_gcross_vy_leg2 * t396), minus_gcross_vy_leg2 * t376,
+                minus_gcross_vy_leg2 * t411, 0.0,
+                -(garm_vy_leg2 * t429 + minus_gcross_vy_leg2 * t443),
+                garm_vy_leg2 * t464 + minus_gcross_vy_leg2 * t466,
+                garm_vy_leg2 * t483 - minus_gcross_vy_leg2 * t454, garm_vy_leg2 * t433, -t552,
+                minus_garm_vy_leg3 * t559, -(minus_garm_vy_leg3 * t564), -t552,
                 minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
-                -minus_garm_vy_leg3, gcross_vy_leg3 * t608 + t615,
-                gcross_vy_leg3 * t629 - minus_grod_vy_leg3 * t633,
-                gcross_vy_leg3 * t645 - minus_grod_vy_leg3 * t603, gcross_vy_leg3 * t626 - t615,
-                -(gcross_vy_leg3 * t660 + t663), minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                1.7241379310344827 * t692 - minus_garm_vy_leg3 * t687,
-                t704 - (minus_garm_vy_leg3 * t714 + gcross_vy_leg3 * t716),
-                gcross_vy_leg3 * t703 - minus_garm_vy_leg3 * t733, -t692, -t805,
-                minus_garm_vy_leg4 * t812, -(minus_garm_vy_leg4 * t817), -t805,
+                -minus_garm_vy_leg3, gcross_vy_leg3 * t596 + t603, gcross_vy_leg3 * t615 - t620,
+                gcross_vy_leg3 * t631 - minus_grod_vy_leg3 * t590, gcross_vy_leg3 * t613 - t603,
+                -(gcross_vy_leg3 * t648 + t638), t655,
+                1.7241379310344827 * t680 - minus_garm_vy_leg3 * t675,
+                t692 - (minus_garm_vy_leg3 * t702 + gcross_vy_leg3 * t704),
+                gcross_vy_leg3 * t691 - minus_garm_vy_leg3 * t721, -t680, -t792,
+                minus_garm_vy_leg4 * t799, -(minus_garm_vy_leg4 * t804), -t792,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t850, gcross_vy_leg4 * t874, gcross_vy_leg4 * t888,
-                gcross_vy_leg4 * t872, gcross_vy_leg4 * t903, 0.0,
-                minus_garm_vy_leg4 * t921 + gcross_vy_leg4 * t934,
-                -(minus_garm_vy_leg4 * t956 + gcross_vy_leg4 * t958),
-                gcross_vy_leg4 * t945 - minus_garm_vy_leg4 * t974, -(minus_garm_vy_leg4 * t924),
-                0.0, -t996, -t993, acceleration[1],
+                gcross_vy_leg4 * t835, gcross_vy_leg4 * t859, gcross_vy_leg4 * t873,
+                gcross_vy_leg4 * t857, gcross_vy_leg4 * t889, 0.0,
+                minus_garm_vy_leg4 * t906 + gcross_vy_leg4 * t918,
+                -(minus_garm_vy_leg4 * t939 + gcross_vy_leg4 * t941),
+                gcross_vy_leg4 * t929 - minus_garm_vy_leg4 * t957, -(minus_garm_vy_leg4 * t909),
+                0.0, -t979, -t976, acceleration[1],
             ],
             [
-                -t73, minus_garm_vz_leg1 * t78, -(minus_garm_vz_leg1 * t83), -t73,
+                -t71, minus_garm_vz_leg1 * t76, -(minus_garm_vz_leg1 * t81), -t71,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t116), minus_minus_gcross_vz_leg1 * t137,
-                minus_minus_gcross_vz_leg1 * t153, minus_minus_gcross_vz_leg1 * t134,
-                minus_minus_gcross_vz_leg1 * t168, 0.0,
-                minus_garm_vz_leg1 * t187 + minus_minus_gcross_vz_leg1 * t195,
-                -(minus_minus_gcross_vz_leg1 * t224 + minus_garm_vz_leg1 * t222),
-                -(minus_garm_vz_leg1 * t240 - minus_minus_gcross_vz_leg1 * t211),
-                -(minus_garm_vz_leg1 * t199), -t323, minus_garm_vz_leg2 * t328,
-                -(minus_garm_vz_leg2 * t333), -t323, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t113), minus_minus_gcross_vz_leg1 * t133,
+                minus_minus_gcross_vz_leg1 * t150, minus_minus_gcross_vz_leg1 * t130,
+                minus_minus_gcross_vz_leg1 * t165, 0.0,
+                -(minus_garm_vz_leg1 * t183 - minus_minus_gcross_vz_leg1 * t192),
+                -(minus_minus_gcross_vz_leg1 * t220 + minus_garm_vz_leg1 * t218),
+                -(minus_garm_vz_leg1 * t236 - minus_minus_gcross_vz_leg1 * t208),
+                -(minus_garm_vz_leg1 * t196), -t316, minus_garm_vz_leg2 * t321,
+                -(minus_garm_vz_leg2 * t326), -t316, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t366, gcross_vz_leg2 * t388, gcross_vz_leg2 * t404,
-                -(gcross_vz_leg2 * t385), -(gcross_vz_leg2 * t419), 0.0,
-                gcross_vz_leg2 * t450 + minus_garm_vz_leg2 * t437,
-                -(minus_garm_vz_leg2 * t472 + gcross_vz_leg2 * t474),
-                gcross_vz_leg2 * t461 - minus_garm_vz_leg2 * t491, -(minus_garm_vz_leg2 * t440),
-                -t565, minus_garm_vz_leg3 * t570, -(minus_garm_vz_leg3 * t575), -t565,
+                gcross_vz_leg2 * t357, gcross_vz_leg2 * t379, gcross_vz_leg2 * t396,
+                -(gcross_vz_leg2 * t376), -(gcross_vz_leg2 * t411), 0.0,
+                gcross_vz_leg2 * t443 + minus_garm_vz_leg2 * t429,
+                -(minus_garm_vz_leg2 * t464 + gcross_vz_leg2 * t466),
+                gcross_vz_leg2 * t454 - minus_garm_vz_leg2 * t483, -(minus_garm_vz_leg2 * t433),
+                -t554, minus_garm_vz_leg3 * t559, -(minus_garm_vz_leg3 * t564), -t554,
                 minus_garm_vz_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t608, gcross_vz_leg3 * t629,
-                gcross_vz_leg3 * t645, gcross_vz_leg3 * t626, -(gcross_vz_leg3 * t660), 0.0,
-                gcross_vz_leg3 * t677 - minus_garm_vz_leg3 * t687,
-                -(minus_garm_vz_leg3 * t714 + gcross_vz_leg3 * t716),
-                gcross_vz_leg3 * t703 - minus_garm_vz_leg3 * t733, -(minus_garm_vz_leg3 * t691),
-                -t807, minus_garm_vz_leg4 * t812, -(minus_garm_vz_leg4 * t817), -t807,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t596, gcross_vz_leg3 * t615,
+                gcross_vz_leg3 * t631, gcross_vz_leg3 * t613, -(gcross_vz_leg3 * t648), 0.0,
+                gcross_vz_leg3 * t664 - minus_garm_vz_leg3 * t675,
+                -(minus_garm_vz_leg3 * t702 + gcross_vz_leg3 * t704),
+                gcross_vz_leg3 * t691 - minus_garm_vz_leg3 * t721, -(minus_garm_vz_leg3 * t679),
+                -t794, minus_garm_vz_leg4 * t799, -(minus_garm_vz_leg4 * t804), -t794,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t850, gcross_vz_leg4 * t874, gcross_vz_leg4 * t888,
-                gcross_vz_leg4 * t872, gcross_vz_leg4 * t903, 0.0,
-                minus_garm_vz_leg4 * t921 + gcross_vz_leg4 * t934,
-                -(minus_garm_vz_leg4 * t956 + gcross_vz_leg4 * t958),
-                gcross_vz_leg4 * t945 - minus_garm_vz_leg4 * t974, -(minus_garm_vz_leg4 * t924),
+                gcross_vz_leg4 * t835, gcross_vz_leg4 * t859, gcross_vz_leg4 * t873,
+                gcross_vz_leg4 * t857, gcross_vz_leg4 * t889, 0.0,
+                minus_garm_vz_leg4 * t906 + gcross_vz_leg4 * t918,
+                -(minus_garm_vz_leg4 * t939 + gcross_vz_leg4 * t941),
+                gcross_vz_leg4 * t929 - minus_garm_vz_leg4 * t957, -(minus_garm_vz_leg4 * t909),
                 0.0, 0.0, 0.0, acceleration[2] + 9.81,
             ],
             [
-                t77, -(garm_wz_leg1 * t78), garm_wz_leg1 * t83, t77, garm_wz_leg1 * rate_arm_leg1,
+                t75, -(garm_wz_leg1 * t76), garm_wz_leg1 * t81, t75, garm_wz_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_wz_leg1, rate_arm_leg1), garm_wz_leg1,
-                -(gcross_wz_leg1 * t116 + t132), gcross_wz_leg1 * t137 + grod_wz_leg1 * t140,
-                gcross_wz_leg1 * t153 - grod_wz_leg1 * t113, gcross_wz_leg1 * t134 + t132,
-                gcross_wz_leg1 * t168 - t22 * t171, grod_wz_leg1 * rate_dot_rod_leg1,
-                gcross_wz_leg1 * t195 - garm_wz_leg1 * t187 - t38 * t213,
-                garm_wz_leg1 * t222 - gcross_wz_leg1 * t224 - t213,
-                garm_wz_leg1 * t240 + gcross_wz_leg1 * t211, garm_wz_leg1 * t199, t327,
-                -(garm_wz_leg2 * t328), garm_wz_leg2 * t333, t327, garm_wz_leg2 * rate_arm_leg2,
+                -(gcross_wz_leg1 * t113 + t128), gcross_wz_leg1 * t133 + t21 * t138,
+                gcross_wz_leg1 * t150 - t21 * t153, gcross_wz_leg1 * t130 + t128,
+                gcross_wz_leg1 * t165 - t21 * t168, t21 * t174,
+                garm_wz_leg1 * t183 + gcross_wz_leg1 * t192 - t36 * t210,
+                garm_wz_leg1 * t218 - gcross_wz_leg1 * t220 - t210,
+                garm_wz_leg1 * t236 + gcross_wz_leg1 * t208, garm_wz_leg1 * t196, t320,
+                -(garm_wz_leg2 * t321), garm_wz_leg2 * t326, t320, garm_wz_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2), garm_wz_leg2,
-                -(minus_gcross_wz_leg2 * t366 + t382),
-                grod_wz_leg2 * t391 - minus_gcross_wz_leg2 * t388,
-                grod_wz_leg2 * t361 - minus_gcross_wz_leg2 * t404,
-                t382 + minus_gcross_wz_leg2 * t385, minus_gcross_wz_leg2 * t419 + t276 * t421,
-                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                -(garm_wz_leg2 * t437 + minus_gcross_wz_leg2 * t450 + t263 * t463),
-                garm_wz_leg2 * t472 + minus_gcross_wz_leg2 * t474 - t463,
-                garm_wz_leg2 * t491 - minus_gcross_wz_leg2 * t461, garm_wz_leg2 * t440, t569,
-                -(garm_wz_leg3 * t570), garm_wz_leg3 * t575, t569,
+                -(minus_gcross_wz_leg2 * t357 + t372), t270 * t384 - minus_gcross_wz_leg2 * t379,
+                -(t270 * t398 + minus_gcross_wz_leg2 * t396), t372 + minus_gcross_wz_leg2 * t376,
+                minus_gcross_wz_leg2 * t411 - t270 * t413, -(t270 * t420),
+                -(garm_wz_leg2 * t429 + minus_gcross_wz_leg2 * t443 + t257 * t456),
+                garm_wz_leg2 * t464 + minus_gcross_wz_leg2 * t466 - t456,
+                garm_wz_leg2 * t483 - minus_gcross_wz_leg2 * t454, garm_wz_leg2 * t433, t558,
+                -(garm_wz_leg3 * t559), garm_wz_leg3 * t564, t558,
                 -(garm_wz_leg3 * minus_rate_arm_leg3),
                 -::overact::math::signed(garm_wz_leg3, minus_rate_arm_leg3), garm_wz_leg3,
-                gcross_wz_leg3 * t608 - t624, gcross_wz_leg3 * t629 + grod_wz_leg3 * t633,
-                gcross_wz_leg3 * t645 + grod_wz_leg3 * t603, gcross_wz_leg3 * t626 + t624,
-                t22 * t663 - gcross_wz_leg3 * t660, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
-                garm_wz_leg3 * t687 + gcross_wz_leg3 * t677 - t527 * t705,
-                garm_wz_leg3 * t714 - gcross_wz_leg3 * t716 - t705,
-                garm_wz_leg3 * t733 + gcross_wz_leg3 * t703, garm_wz_leg3 * t691, t811,
-                -(garm_wz_leg4 * t812), garm_wz_leg4 * t817, t811, garm_wz_leg4 * rate_arm_leg4,
+                gcross_wz_leg3 * t596 - t611, gcross_wz_leg3 * t615 + t21 * t620,
+                gcross_wz_leg3 * t631 + t516 * t639, gcross_wz_leg3 * t613 + t611,
+                t639 - gcross_wz_leg3 * t648, -(t21 * t655),
+                garm_wz_leg3 * t675 + gcross_wz_leg3 * t664 - t516 * t693,
+                garm_wz_leg3 * t702 - gcross_wz_leg3 * t704 - t693,
+                garm_wz_leg3 * t721 + gcross_wz_leg3 * t691, garm_wz_leg3 * t679, t798,
+                -(garm_wz_leg4 * t799), garm_wz_leg4 * t804, t798, garm_wz_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t850 + t866),
-                grod_wz_leg4 * t869 - minus_gcross_wz_leg4 * t874,
-                grod_wz_leg4 * t847 - minus_gcross_wz_leg4 * t888,
-                t866 - minus_gcross_wz_leg4 * t872, t276 * t902 - minus_gcross_wz_leg4 * t903,
-                grod_wz_leg4 * rate_dot_rod_leg4,
-                -(garm_wz_leg4 * t921 + minus_gcross_wz_leg4 * t934 + t755 * t947),
-                garm_wz_leg4 * t956 + minus_gcross_wz_leg4 * t958 - t947,
-                garm_wz_leg4 * t974 - minus_gcross_wz_leg4 * t945, garm_wz_leg4 * t924,
+                -(minus_gcross_wz_leg4 * t835 + t850), t270 * t855 - minus_gcross_wz_leg4 * t859,
+                t741 * t879 - minus_gcross_wz_leg4 * t873, t850 - minus_gcross_wz_leg4 * t857,
+                t879 - minus_gcross_wz_leg4 * t889, t270 * t896,
+                -(garm_wz_leg4 * t906 + minus_gcross_wz_leg4 * t918 + t741 * t931),
+                garm_wz_leg4 * t939 + minus_gcross_wz_leg4 * t941 - t931,
+                garm_wz_leg4 * t957 - minus_gcross_wz_leg4 * t929, garm_wz_leg4 * t909,
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -3376,7 +3344,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1247 operations (417 additions, 806 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1018 intermediates.
+    /// 1230 operations (419 additions, 765 multiplications, 46 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1001 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3392,681 +3360,654 @@ impl Schoenflies4 {
         let t3 = 0.08660254037844387 * s_phi;
         let t4 = t2 - t3;
         let t6 = pose[0] + t4 - 0.24;
-        let t8 = pose[2] * pose[2];
-        let t9 = t6 * t6 + t8;
-        let t10 = 0.2704 * t9;
-        let t11 = 1.0 / t10;
-        let t12 = 0.52 * t6;
-        let t13 = 0.05 * s_phi;
-        let t14 = 0.08660254037844387 * c_phi;
-        let t15 = t13 + t14;
-        let t16 = pose[1] + t15;
-        let t17 = t16 * t16;
-        let t18 = t17 + -0.3364;
-        let t19 = t9 + t18;
-        let t20 = t19 + 0.0676;
-        let t22 = 0.52 * pose[2];
-        let t24 = t10 - t20 * t20;
-        ::overact::guard::reach(t24, "leg1")?;
-        let t25 = ::overact::math::sqrt(t24);
-        let c_arm_leg1 = t11 * (t12 * t20 - t22 * t25);
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t18));
-        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t33 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t19 + -0.0676) / t33;
-        let minus_s_arm_leg1 = t11 * (t22 * t20 + t12 * t25);
-        let s_cross_leg1 = t25 / t33;
+        let t7 = 0.52 * t6;
+        let t9 = pose[2] * pose[2];
+        let t10 = t6 * t6 + t9;
+        let t11 = 0.05 * s_phi;
+        let t12 = 0.08660254037844387 * c_phi;
+        let t13 = t11 + t12;
+        let t14 = pose[1] + t13;
+        let t16 = t14 * t14 + -0.3364;
+        let t17 = t10 + t16;
+        let t18 = t17 + 0.0676;
+        let t20 = 0.52 * pose[2];
+        let t21 = 0.2704 * t10;
+        let t23 = t21 - t18 * t18;
+        ::overact::guard::reach(t23, "leg1")?;
+        let t24 = ::overact::math::sqrt(t23);
+        let c_arm_leg1 = (t7 * t18 - t20 * t24) / t21;
+        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t16));
+        let t32 = 0.3016 * c_rod_leg1;
+        let c_cross_leg1 = (t17 + -0.0676) / t32;
+        let minus_s_arm_leg1 = (t20 * t18 + t7 * t24) / t21;
+        let s_cross_leg1 = t24 / t32;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t43 = 1.0 / s_cross_leg1;
-        let t44 = 3.8461538461538463 * t43;
-        let garm_vx_leg1 = c_armcross_leg1 * t44;
-        let t46 = garm_vx_leg1 * actuator_accelerations[0];
-        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t48 = t16 * grod_vy_leg1;
-        let garm_vy_leg1 = t44 * t48;
-        let t50 = garm_vy_leg1 * actuator_accelerations[0];
+        let t42 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t42;
+        let t44 = garm_vx_leg1 * actuator_accelerations[0];
+        let t45 = 0.3016 / t32;
+        let grod_vy_leg1 = 1.7241379310344827 * t45;
+        let t47 = t14 * grod_vy_leg1;
+        let garm_vy_leg1 = t42 * t47;
+        let t49 = garm_vy_leg1 * actuator_accelerations[0];
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t44;
-        let t55 = minus_garm_vz_leg1 * actuator_accelerations[0];
-        let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
-        let t59 = garm_wz_leg1 * actuator_accelerations[0];
-        let t60 = 9.81 * c_arm_leg1;
-        let t65 = 9.81 * minus_s_arm_leg1;
-        let t70 = garm_vx_leg1 * actuator_velocities[0];
-        let t71 = garm_vy_leg1 * actuator_velocities[0];
-        let t72 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t73 = garm_wz_leg1 * actuator_velocities[0];
-        let t78 = t43 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t78;
-        let s_rod_leg1 = 1.7241379310344827 * t16;
-        let t82 = t3 + t2;
-        let t84 = pose[1] + t82 - 0.24;
-        let t86 = t84 * t84 + t8;
-        let t87 = 0.2704 * t86;
-        let t88 = 1.0 / t87;
-        let t89 = 0.52 * t84;
-        let t90 = t14 - t13;
-        let t91 = pose[0] + t90;
-        let t93 = 0.3364 - t91 * t91;
-        let t94 = t86 - t93;
-        let t95 = t94 + 0.0676;
-        let t98 = t87 - t95 * t95;
-        ::overact::guard::reach(t98, "leg2")?;
-        let t99 = ::overact::math::sqrt(t98);
-        let c_arm_leg2 = t88 * (t89 * t95 - t22 * t99);
-        let t104 = 2.972651605231867 * t93;
-        ::overact::guard::reach(t104, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t104);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
+        let t54 = minus_garm_vz_leg1 * actuator_accelerations[0];
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
+        let t58 = garm_wz_leg1 * actuator_accelerations[0];
+        let t59 = 9.81 * c_arm_leg1;
+        let t64 = 9.81 * minus_s_arm_leg1;
+        let t69 = garm_vx_leg1 * actuator_velocities[0];
+        let t70 = garm_vy_leg1 * actuator_velocities[0];
+        let t71 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t72 = garm_wz_leg1 * actuator_velocities[0];
+        let t77 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t77;
+        let t79 = t3 + t2;
+        let t81 = pose[1] + t79 - 0.24;
+        let t82 = 0.52 * t81;
+        let t84 = t81 * t81 + t9;
+        let t85 = t12 - t11;
+        let t86 = pose[0] + t85;
+        let t88 = 0.3364 - t86 * t86;
+        let t89 = t84 - t88;
+        let t90 = t89 + 0.0676;
+        let t92 = 0.2704 * t84;
+        let t94 = t92 - t90 * t90;
+        ::overact::guard::reach(t94, "leg2")?;
+        let t95 = ::overact::math::sqrt(t94);
+        let c_arm_leg2 = (t82 * t90 - t20 * t95) / t92;
+        let t100 = 2.972651605231867 * t88;
+        ::overact::guard::reach(t100, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t100);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t106 = 0.3016 * c_rod_leg2;
-        let c_cross_leg2 = (-0.0676 + t94) / t106;
-        let minus_s_arm_leg2 = t88 * (t22 * t95 + t89 * t99);
-        let s_cross_leg2 = t99 / t106;
+        let t102 = 0.3016 * c_rod_leg2;
+        let c_cross_leg2 = (-0.0676 + t89) / t102;
+        let minus_s_arm_leg2 = (t20 * t90 + t82 * t95) / t92;
+        let t109 = 0.8620689655172413 * t95;
+        let t110 = t109 / c_rod_leg2;
+        let s_cross_leg2 = 3.8461538461538463 * t110;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t116 = 1.0 / s_cross_leg2;
-        let t117 = 3.8461538461538463 * t116;
-        let garm_vy_leg2 = c_armcross_leg2 * t117;
-        let t122 = pose[0] - t4 + 0.24;
-        let t124 = t122 * t122 + t8;
-        let t125 = 0.2704 * t124;
-        let t126 = pose[1] - t15;
-        let t127 = t126 * t126;
-        let t128 = 0.3364 - t127;
-        let t129 = t124 - t128;
-        let t130 = t129 + 0.0676;
-        let t132 = t125 - t130 * t130;
-        ::overact::guard::reach(t132, "leg3")?;
-        let t133 = ::overact::math::sqrt(t132);
-        let t134 = 2.972651605231867 * t128;
-        ::overact::guard::reach(t134, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t134);
+        let t114 = 3.8461538461538463 / s_cross_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t114;
+        let t116 = garm_vy_leg2 * actuator_velocities[1];
+        let t119 = pose[0] - t4 + 0.24;
+        let t121 = t119 * t119 + t9;
+        let t122 = 0.2704 * t121;
+        let t123 = pose[1] - t13;
+        let t125 = 0.3364 - t123 * t123;
+        let t126 = t121 - t125;
+        let t127 = t126 + 0.0676;
+        let t129 = t122 - t127 * t127;
+        ::overact::guard::reach(t129, "leg3")?;
+        let t130 = ::overact::math::sqrt(t129);
+        let t131 = 2.972651605231867 * t125;
+        ::overact::guard::reach(t131, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t131);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t136 = 0.3016 * c_rod_leg3;
-        let s_cross_leg3 = t133 / t136;
+        let t133 = 0.3016 * c_rod_leg3;
+        let s_cross_leg3 = t130 / t133;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
-        let t138 = 1.0 / s_cross_leg3;
-        let t139 = 3.8461538461538463 * t138;
-        let t140 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t140;
-        let t142 = t126 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t139 * t142;
-        let t147 = pose[1] - t82 + 0.24;
-        let t149 = t147 * t147 + t8;
-        let t150 = 0.2704 * t149;
-        let t151 = 1.0 / t150;
-        let t152 = 0.52 * t147;
-        let t153 = pose[0] - t90;
-        let t155 = 0.3364 - t153 * t153;
-        let t156 = t149 - t155;
-        let t157 = t156 + 0.0676;
-        let t160 = t150 - t157 * t157;
+        let t135 = 3.8461538461538463 / s_cross_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
+        let t137 = t123 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t135 * t137;
+        let t139 = garm_vy_leg3 * actuator_velocities[2];
+        let t142 = pose[1] - t79 + 0.24;
+        let t143 = 0.52 * t142;
+        let t145 = t142 * t142 + t9;
+        let t146 = pose[0] - t85;
+        let t148 = 0.3364 - t146 * t146;
+        let t149 = t145 - t148;
+        let t150 = t149 + 0.0676;
+        let t152 = 0.2704 * t145;
+        let t154 = t152 - t150 * t150;
+        ::overact::guard::reach(t154, "leg4")?;
+        let t155 = ::overact::math::sqrt(t154);
+        let minus_c_arm_leg4 = (t143 * t150 + t20 * t155) / t152;
+        let t160 = 2.972651605231867 * t148;
         ::overact::guard::reach(t160, "leg4")?;
-        let t161 = ::overact::math::sqrt(t160);
-        let minus_c_arm_leg4 = t151 * (t152 * t157 + t22 * t161);
-        let t166 = 2.972651605231867 * t155;
-        ::overact::guard::reach(t166, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t166);
+        let c_rod_leg4 = ::overact::math::sqrt(t160);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t168 = 0.3016 * c_rod_leg4;
-        let c_cross_leg4 = (-0.0676 + t156) / t168;
-        let s_arm_leg4 = t151 * (t152 * t161 - t22 * t157);
-        let s_cross_leg4 = t161 / t168;
+        let c_cross_leg4 = (-0.0676 + t149) / (0.3016 * c_rod_leg4);
+        let s_arm_leg4 = (t143 * t155 - t20 * t150) / t152;
+        let t169 = 0.8620689655172413 * t155;
+        let t170 = t169 / c_rod_leg4;
+        let s_cross_leg4 = 3.8461538461538463 * t170;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t178 = 1.0 / s_cross_leg4;
-        let t179 = 3.8461538461538463 * t178;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t179;
-        let t184 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t184;
-        let t186 = t91 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t117 * t186;
-        let t190 = 1.0 / t125;
-        let t191 = 0.52 * t122;
-        let minus_c_arm_leg3 = t190 * (t191 * t130 + t22 * t133);
-        let c_cross_leg3 = (-0.0676 + t129) / t136;
-        let s_arm_leg3 = t190 * (t191 * t133 - t22 * t130);
+        let t174 = 3.8461538461538463 / s_cross_leg4;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t174;
+        let t176 = garm_vy_leg4 * actuator_velocities[3];
+        let minus_grod_vx_leg2 = 0.52 / t102;
+        let t179 = t86 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t114 * t179;
+        let t181 = garm_vx_leg2 * actuator_velocities[1];
+        let t183 = 0.52 * t119;
+        let minus_c_arm_leg3 = (t183 * t127 + t20 * t130) / t122;
+        let c_cross_leg3 = (-0.0676 + t126) / t133;
+        let s_arm_leg3 = (t183 * t130 - t20 * t127) / t122;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t139;
-        let t208 = 1.0 / c_rod_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t208;
-        let t210 = t153 * grod_vx_leg4;
-        let garm_vx_leg4 = t179 * t210;
-        let t213 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t135;
+        let t198 = garm_vx_leg3 * actuator_velocities[2];
+        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
+        let t201 = t146 * grod_vx_leg4;
+        let garm_vx_leg4 = t174 * t201;
+        let t203 = garm_vx_leg4 * actuator_velocities[3];
+        let t204 = t69 + t181 + t198 + t203;
+        let t211 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t220 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t218 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t220, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t220, 19.507470815645043, "actuators")?;
-        let t221 = 1.0 / t220;
-        let t222 = t213 * t221;
-        let t224 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t213 * t222;
-        ::overact::guard::platform(t224, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t224, 16.505615550045768, "actuators")?;
-        let t225 = 1.0 / t224;
-        let t226 = garm_vy_leg2 * actuator_velocities[1];
-        let t228 = garm_vy_leg3 * actuator_velocities[2];
-        let t230 = garm_vy_leg4 * actuator_velocities[3];
-        let t232 = garm_vx_leg2 * actuator_velocities[1];
-        let t234 = garm_vx_leg3 * actuator_velocities[2];
-        let t236 = garm_vx_leg4 * actuator_velocities[3];
-        let t237 = t70 + t232 + t234 + t236;
-        let t239 = t71 + t226 + t228 + t230 - t237 * t222;
+        ::overact::guard::platform(t218, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t218, 19.507470815645043, "actuators")?;
+        let t219 = t211 / t218;
+        let t221 = t70 + t116 + t139 + t176 - t204 * t219;
+        let t230 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t211 * t219;
+        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t117;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t114;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t139;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t135;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t179;
-        let t259 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t174;
+        let t250 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t260 = t259 * t221;
-        let t269 = t213 * t260
+        let t251 = t250 / t218;
+        let t260 = t211 * t251
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t270 = t269 * t225;
-        let t281 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t261 = t260 / t230;
+        let t263 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t265 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t267 = minus_garm_vz_leg4 * actuator_velocities[3];
+        let t271 = t204 * t251 - (t71 + t263 + t265 + t267) - t261 * t221;
+        let t282 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t259 * t260 - t269 * t270;
-        ::overact::guard::platform(t281, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t281, 31.11733818900117, "actuators")?;
-        let t282 = 1.0 / t281;
-        let t284 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t286 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t288 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t292 = t237 * t260 - (t72 + t284 + t286 + t288) - t270 * t239;
-        let garm_wz_leg2 = t90 * garm_vy_leg2 - t82 * garm_vx_leg2;
-        let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let garm_wz_leg4 = t82 * garm_vx_leg4 - t90 * garm_vy_leg4;
-        let t309 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t250 * t251 - t260 * t261;
+        ::overact::guard::platform(t282, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t282, 31.11733818900117, "actuators")?;
+        let garm_wz_leg2 = t85 * garm_vy_leg2 - t79 * garm_vx_leg2;
+        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t79 * garm_vx_leg4 - t85 * garm_vy_leg4;
+        let t299 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
             + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t310 = t309 * t221;
-        let t328 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t213 * t310;
-        let t329 = t328 * t225;
-        let t331 = t259 * t310
+        let t300 = t299 / t218;
+        let t318 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t211 * t300;
+        let t319 = t318 / t230;
+        let t321 = t250 * t300
             - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
                 + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t269 * t329;
-        let t332 = t331 * t282;
-        let t343 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t309 * t310
-            - t328 * t329;
-        let t345 = t343 - t331 * t332;
-        ::overact::guard::platform(t345, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t345, 0.35106548211906174, "actuators")?;
-        let t346 = 1.0 / t345;
-        let t347 = garm_wz_leg2 * actuator_velocities[1];
-        let t349 = garm_wz_leg3 * actuator_velocities[2];
-        let t351 = garm_wz_leg4 * actuator_velocities[3];
-        let t359 = t346
-            * (t73 + t347 + t349 + t351 - t237 * t310 - t329 * t239 - t332 * t292);
-        let t361 = t282 * t292 - t332 * t359;
-        let t365 = t225 * t239 - t270 * t361 - t329 * t359;
-        let t366 = t4 * t359;
-        let t367 = t365 + t366;
-        let t368 = 0.26 * c_cross_leg1;
-        let t376 = t237 * t221 - t222 * t365 + t260 * t361 - t310 * t359;
-        let t377 = t15 * t359;
+            - t260 * t319;
+        let t322 = t321 / t282;
+        let t323 = garm_wz_leg2 * actuator_velocities[1];
+        let t325 = garm_wz_leg3 * actuator_velocities[2];
+        let t327 = garm_wz_leg4 * actuator_velocities[3];
+        let t345 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t299 * t300
+            - t318 * t319;
+        let t347 = t345 - t321 * t322;
+        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
+        let t348 = (t72 + t323 + t325 + t327 - t204 * t300 - t319 * t221 - t322 * t271)
+            / t347;
+        let t350 = t271 / t282 - t322 * t348;
+        let t354 = t221 / t230 - t261 * t350 - t319 * t348;
+        let t355 = t4 * t348;
+        let t356 = t354 + t355;
+        let t357 = 0.26 * c_cross_leg1;
+        let t365 = t204 / t218 - t219 * t354 + t251 * t350 - t300 * t348;
+        let t366 = t13 * t348;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (actuator_velocities[0] * t368 + s_armcross_leg1 * (t376 - t377)
-                + c_armcross_leg1 * t361);
-        let t384 = t367 * minus_rate_cross_leg1;
-        let t385 = 1.7241379310344827 * t384;
-        let t386 = actuator_velocities[0] * actuator_velocities[0];
-        let t387 = 0.26 * t386;
-        let t389 = 0.26 * actuator_accelerations[0];
-        let t392 = 0.58 * c_rod_leg1;
-        let t393 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t367;
-        let t395 = rate_rod_leg1 * rate_rod_leg1;
-        let t399 = t359 * t366;
-        let t402 = t359 * t377;
-        let t403 = t16 * t395;
-        let rate_dot_arm_leg1 = t44
-            * (t368 * t386 + t392 * (t393 + t395) - c_armcross_leg1 * t399
-                - t48 * (t402 - t403));
-        let t408 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t410 = 0.26 * c_cross_leg2;
-        let t411 = actuator_velocities[1] * actuator_velocities[1];
-        let t414 = t82 * t359;
-        let t415 = t376 - t414;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t415;
-        let t417 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t418 = t90 * t359;
+            * (actuator_velocities[0] * t357 + s_armcross_leg1 * (t365 - t366)
+                + c_armcross_leg1 * t350);
+        let t373 = t356 * minus_rate_cross_leg1;
+        let t374 = 1.7241379310344827 * t373;
+        let s_rod_leg1 = 1.7241379310344827 * t14;
+        let t376 = 0.26 * actuator_accelerations[0];
+        let t378 = actuator_velocities[0] * actuator_velocities[0];
+        let t380 = 0.58 * c_rod_leg1;
+        let t381 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t356;
+        let t383 = rate_rod_leg1 * rate_rod_leg1;
+        let t387 = t348 * t355;
+        let t390 = t348 * t366;
+        let t391 = t14 * t383;
+        let rate_dot_arm_leg1 = t42
+            * (t357 * t378 + t380 * (t381 + t383) - c_armcross_leg1 * t387
+                - t47 * (t390 - t391));
+        let t396 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t398 = 0.26 * c_cross_leg2;
+        let t399 = actuator_velocities[1] * actuator_velocities[1];
+        let t402 = t79 * t348;
+        let t403 = t365 - t402;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t403;
+        let t405 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t406 = t85 * t348;
         let minus_rate_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * (t365 + t418) + c_armcross_leg2 * t361
-                + actuator_velocities[1] * t410);
-        let t426 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t430 = t359 * t414;
-        let t433 = t359 * t418;
-        let t434 = t91 * t417;
-        let t437 = t410 * t411 + 0.58 * c_rod_leg2 * (t417 + t426)
-            - c_armcross_leg2 * t430 - t186 * (t433 - t434);
-        let rate_dot_arm_leg2 = t117 * t437;
-        let t439 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t443 = 0.26 * c_cross_leg3;
-        let t444 = actuator_velocities[2] * actuator_velocities[2];
-        let t446 = 0.58 * c_rod_leg3;
-        let t447 = t365 - t366;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t447;
-        let t449 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+            * (s_armcross_leg2 * (t354 + t406) + c_armcross_leg2 * t350
+                + actuator_velocities[1] * t398);
+        let t414 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t418 = t348 * t402;
+        let t421 = t348 * t406;
+        let t422 = t86 * t405;
+        let t425 = t398 * t399 + 0.58 * c_rod_leg2 * (t405 + t414)
+            - c_armcross_leg2 * t418 - t179 * (t421 - t422);
+        let rate_dot_arm_leg2 = t114 * t425;
+        let t427 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t431 = 0.26 * c_cross_leg3;
+        let t432 = actuator_velocities[2] * actuator_velocities[2];
+        let t434 = 0.58 * c_rod_leg3;
+        let t435 = t354 - t355;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t435;
+        let t437 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
         let rate_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * (t376 + t377) + minus_c_armcross_leg3 * t361
-                - actuator_velocities[2] * t443);
-        let t457 = rate_cross_leg3 * rate_cross_leg3;
-        let t462 = t126 * t449;
-        let rate_dot_arm_leg3 = t139
-            * (minus_c_armcross_leg3 * t399 + t443 * t444 + t446 * (t449 + t457)
-                + t142 * (t402 + t462));
-        let t467 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t471 = 0.26 * c_cross_leg4;
-        let t472 = actuator_velocities[3] * actuator_velocities[3];
-        let t475 = t376 + t414;
-        let rate_rod_leg4 = grod_vx_leg4 * t475;
-        let t477 = rate_rod_leg4 * rate_rod_leg4;
+            * (s_armcross_leg3 * (t365 + t366) + minus_c_armcross_leg3 * t350
+                - actuator_velocities[2] * t431);
+        let t445 = rate_cross_leg3 * rate_cross_leg3;
+        let t446 = t437 + t445;
+        let t450 = t123 * t437;
+        let rate_dot_arm_leg3 = t135
+            * (minus_c_armcross_leg3 * t387 + t431 * t432 + t434 * t446
+                + t137 * (t390 + t450));
+        let t455 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t459 = 0.26 * c_cross_leg4;
+        let t460 = actuator_velocities[3] * actuator_velocities[3];
+        let t463 = t365 + t402;
+        let rate_rod_leg4 = grod_vx_leg4 * t463;
+        let t465 = rate_rod_leg4 * rate_rod_leg4;
         let rate_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * (t365 - t418) + minus_c_armcross_leg4 * t361
-                - actuator_velocities[3] * t471);
-        let t485 = rate_cross_leg4 * rate_cross_leg4;
-        let t490 = t153 * t477;
-        let t493 = minus_c_armcross_leg4 * t430 + t471 * t472
-            + 0.58 * c_rod_leg4 * (t477 + t485) + t210 * (t433 + t490);
-        let rate_dot_arm_leg4 = t179 * t493;
-        let t495 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t497 = garm_vx_leg1 * t408 + garm_vx_leg2 * t439 + garm_vx_leg3 * t467
-            + garm_vx_leg4 * t495;
-        let t507 = garm_vy_leg1 * t408 + garm_vy_leg2 * t439 + garm_vy_leg3 * t467
-            + garm_vy_leg4 * t495 - t222 * t497;
-        let t519 = t260 * t497
-            - (minus_garm_vz_leg1 * t408 + minus_garm_vz_leg2 * t439
-                + minus_garm_vz_leg3 * t467 + minus_garm_vz_leg4 * t495) - t270 * t507;
-        let t531 = garm_wz_leg1 * t408 + garm_wz_leg2 * t439 + garm_wz_leg3 * t467
-            + garm_wz_leg4 * t495 - t310 * t497 - t329 * t507;
-        let t534 = t346 * (t531 - t332 * t519);
-        let t536 = t282 * t519 - t332 * t534;
-        let t540 = t225 * t507 - t270 * t536 - t329 * t534;
-        let t546 = t221 * t497 - t222 * t540 + t260 * t536 - t310 * t534;
-        let t547 = t15 * t534;
-        let t554 = s_cross_leg1 * t387 + c_cross_leg1 * t389
-            + s_armcross_leg1 * (t546 - t547 - t399) + c_armcross_leg1 * t536;
-        let t555 = t48 * t384;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * (t554 + t555 + t555);
-        let t559 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t561 = t385 + t559 + t385;
-        let t562 = s_rod_leg1 * t561;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t368 * garm_vy_leg1);
-        let t567 = 2.972651605231867 * t393;
-        let t568 = t16 * t567;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t78;
-        let gcross_wz_leg1 = t15 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+            * (s_armcross_leg4 * (t354 - t406) + minus_c_armcross_leg4 * t350
+                - actuator_velocities[3] * t459);
+        let t473 = rate_cross_leg4 * rate_cross_leg4;
+        let t478 = t146 * t465;
+        let t481 = minus_c_armcross_leg4 * t418 + t459 * t460
+            + 0.58 * c_rod_leg4 * (t465 + t473) + t201 * (t421 + t478);
+        let rate_dot_arm_leg4 = t174 * t481;
+        let t483 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t485 = garm_vx_leg1 * t396 + garm_vx_leg2 * t427 + garm_vx_leg3 * t455
+            + garm_vx_leg4 * t483;
+        let t495 = garm_vy_leg1 * t396 + garm_vy_leg2 * t427 + garm_vy_leg3 * t455
+            + garm_vy_leg4 * t483 - t219 * t485;
+        let t507 = t251 * t485
+            - (minus_garm_vz_leg1 * t396 + minus_garm_vz_leg2 * t427
+                + minus_garm_vz_leg3 * t455 + minus_garm_vz_leg4 * t483) - t261 * t495;
+        let t519 = garm_wz_leg1 * t396 + garm_wz_leg2 * t427 + garm_wz_leg3 * t455
+            + garm_wz_leg4 * t483 - t300 * t485 - t319 * t495;
+        let t522 = (t519 - t322 * t507) / t347;
+        let t524 = t507 / t282 - t322 * t522;
+        let t528 = t495 / t230 - t261 * t524 - t319 * t522;
+        let t534 = t485 / t218 - t219 * t528 + t251 * t524 - t300 * t522;
+        let t535 = t13 * t522;
+        let t541 = 0.26 * t378;
+        let t543 = t47 * t373;
+        let t547 = c_cross_leg1 * t376 + s_armcross_leg1 * (t534 - t535 - t387)
+            + c_armcross_leg1 * t524 + s_cross_leg1 * t541 + t543 + t543;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t547;
+        let t549 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t551 = t374 + t549 + t374;
+        let t552 = c_rod_leg1 * t551;
+        let t553 = t47 * t552;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t357 * garm_vy_leg1);
+        let t559 = t14 * (2.972651605231867 * t381);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t77;
+        let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
         let grod_wz_leg1 = t4 * grod_vy_leg1;
-        let t577 = t392 * t568;
-        let t578 = grod_wz_leg1 * t577;
-        let t580 = t562 - minus_rate_dot_cross_leg1;
-        let t583 = t48 * t580 - c_rod_leg1 * t561;
-        let t585 = t17 * t567;
-        let t586 = t395 - t585;
-        let t587 = t393 + t586;
-        let t588 = t585 + t395;
-        let t589 = t588 - t587;
-        let t597 = t4 * t534;
-        let t599 = t540 + t597 - t402;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t599 + t403);
-        let t602 = t577 + rate_dot_rod_leg1;
-        let t605 = s_rod_leg1 * t602 + c_rod_leg1 * t586;
-        let t620 = 1.7241379310344827 * t599;
-        let t623 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t633 = 0.8620689655172413 * t25;
-        let t635 = t48 * t633;
-        let t638 = 0.4482758620689655 * (c_cross_leg1 * t554) + t633 * t587
-            + t635 * t602;
-        let t640 = t389 - t60;
-        let t642 = t65 - t387;
-        let t644 = c_cross_leg1 * t640 - s_cross_leg1 * t642;
-        let t645 = c_rod_leg1 * t644;
-        let t649 = 0.26 * t640;
-        let t650 = garm_vy_leg1 * t649;
-        let t661 = c_cross_leg1 * t642 + s_cross_leg1 * t640;
-        let t662 = 1.7241379310344827 * t661;
-        let t663 = t4 * t662;
-        let t671 = t633 * (t577 - rate_dot_rod_leg1) + t635 * t588 + t368 * t561;
-        let t673 = s_rod_leg1 * t644;
-        let t690 = t368 * t393 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.26);
-        let t706 = garm_vx_leg2 * actuator_accelerations[1];
-        let t707 = garm_vy_leg2 * actuator_accelerations[1];
-        let t708 = minus_garm_vz_leg2 * actuator_accelerations[1];
-        let t709 = garm_wz_leg2 * actuator_accelerations[1];
-        let t710 = 9.81 * c_arm_leg2;
-        let t715 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t410 * garm_vx_leg2);
-        let t726 = t415 * minus_rate_cross_leg2;
-        let t727 = 1.7241379310344827 * t726;
-        let minus_s_rod_leg2 = 1.7241379310344827 * t91;
-        let t729 = t90 * t534;
-        let t735 = 0.26 * t411;
-        let t737 = t186 * t726;
-        let t741 = 0.26 * actuator_accelerations[1];
-        let t743 = s_armcross_leg2 * (t540 + t729 - t430) + c_armcross_leg2 * t536
-            + s_cross_leg2 * t735 + t737 + t737 + c_cross_leg2 * t741;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t743;
-        let t745 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t747 = t727 + t745 + t727;
-        let t748 = c_rod_leg2 * t747;
-        let t749 = t186 * t748;
-        let t751 = t104 * t426;
-        let t752 = t186 * t751;
-        let t753 = minus_grod_vx_leg2 * t752;
-        let t755 = t116 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t755;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t755;
-        let grod_wz_leg2 = t82 * minus_grod_vx_leg2;
-        let t761 = grod_wz_leg2 * t752;
-        let gcross_wz_leg2 = t82 * minus_gcross_vx_leg2 - t90 * minus_gcross_vy_leg2;
-        let t767 = t749 - minus_rate_dot_cross_leg2;
-        let t769 = t748 - t186 * t767;
-        let t771 = t91 * t753;
-        let t772 = t771 - t751;
-        let t780 = t82 * t534;
-        let t782 = t546 - t780 - t433;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t782 + t434);
-        let t785 = t752 + minus_rate_dot_rod_leg2;
-        let t789 = minus_s_rod_leg2 * t785 + c_rod_leg2 * (t417 - t771);
-        let t804 = 1.7241379310344827 * t782;
-        let t806 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t817 = 0.8620689655172413 * t99;
-        let t820 = t186 * t817;
-        let t823 = t410 * (t184 * t767) - (t817 * (t751 + t417) + t820 * t785);
-        let t825 = t741 - t710;
-        let t826 = 0.26 * t825;
-        let t827 = garm_vx_leg2 * t826;
-        let t832 = t715 - t735;
-        let t834 = c_cross_leg2 * t825 - s_cross_leg2 * t832;
-        let t835 = c_rod_leg2 * t834;
-        let t846 = c_cross_leg2 * t832 + s_cross_leg2 * t825;
-        let t847 = 1.7241379310344827 * t846;
-        let t848 = t82 * t847;
-        let t857 = t817 * (minus_rate_dot_rod_leg2 - t752) - t820 * (t771 + t417)
-            - t410 * t747;
-        let t859 = minus_s_rod_leg2 * t834;
-        let t876 = t410 * t426 - minus_rate_dot_cross_leg2 * (s_cross_leg2 * 0.26);
-        let t892 = garm_vx_leg3 * actuator_accelerations[2];
-        let t893 = garm_vy_leg3 * actuator_accelerations[2];
-        let t894 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t895 = garm_wz_leg3 * actuator_accelerations[2];
-        let t896 = 9.81 * minus_c_arm_leg3;
-        let t901 = 9.81 * s_arm_leg3;
-        let t910 = t138 * minus_grod_vy_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t910;
-        let t912 = t447 * rate_cross_leg3;
-        let t913 = 1.7241379310344827 * t912;
-        let minus_s_rod_leg3 = 1.7241379310344827 * t126;
-        let t920 = 0.26 * t444;
-        let t922 = t142 * t912;
-        let t926 = 0.26 * actuator_accelerations[2];
-        let t928 = s_armcross_leg3 * (t546 + t547 + t399) + minus_c_armcross_leg3 * t536
-            - (s_cross_leg3 * t920 - (t922 + t922)) - c_cross_leg3 * t926;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t928;
-        let t930 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t932 = t913 + t930 + t913;
-        let t933 = c_rod_leg3 * t932;
-        let t934 = t142 * t933;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t443 * garm_vy_leg3);
-        let t939 = 2.972651605231867 * t457;
-        let t940 = t126 * t939;
-        let gcross_vz_leg3 = s_arm_leg3 * t910;
-        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t15 * minus_gcross_vx_leg3;
-        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
-        let t949 = t446 * t940;
-        let t950 = grod_wz_leg3 * t949;
-        let t952 = rate_dot_cross_leg3 - t934;
-        let t954 = t142 * t952 + t933;
-        let t957 = t127 * t939;
-        let t958 = t449 - t957;
-        let t959 = t457 + t958;
-        let t960 = t957 + t449;
-        let t961 = t960 - t959;
-        let t969 = t540 - t597 + t402;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t969 + t462);
-        let t972 = t949 + minus_rate_dot_rod_leg3;
-        let t975 = minus_s_rod_leg3 * t972 + c_rod_leg3 * t958;
-        let t990 = 1.7241379310344827 * t969;
-        let t993 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t1001 = t901 + t920;
-        let t1003 = t896 + t926;
-        let t1005 = s_cross_leg3 * t1001 + c_cross_leg3 * t1003;
-        let t1006 = c_rod_leg3 * t1005;
-        let t1008 = 0.8620689655172413 * t133;
-        let t1010 = t142 * t1008;
-        let t1015 = t1008 * t959 + t1010 * t972 - t443 * (t140 * t952);
-        let t1019 = 0.26 * t1003;
-        let t1020 = garm_vy_leg3 * t1019;
-        let t1031 = s_cross_leg3 * t1003 - c_cross_leg3 * t1001;
-        let t1032 = 1.7241379310344827 * t1031;
-        let t1033 = t4 * t1032;
-        let t1041 = t1008 * (minus_rate_dot_rod_leg3 - t949) - t1010 * t960
-            + t443 * t932;
-        let t1043 = minus_s_rod_leg3 * t1005;
-        let t1060 = rate_dot_cross_leg3 * (s_cross_leg3 * 0.26) + t443 * t457;
-        let t1076 = garm_vx_leg4 * actuator_accelerations[3];
-        let t1077 = garm_vy_leg4 * actuator_accelerations[3];
-        let t1078 = minus_garm_vz_leg4 * actuator_accelerations[3];
-        let t1079 = garm_wz_leg4 * actuator_accelerations[3];
-        let t1080 = 9.81 * minus_c_arm_leg4;
-        let t1085 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t471 * garm_vx_leg4);
-        let t1096 = t475 * rate_cross_leg4;
-        let t1097 = 1.7241379310344827 * t1096;
-        let s_rod_leg4 = 1.7241379310344827 * t153;
-        let t1104 = 0.26 * t472;
-        let t1106 = t210 * t1096;
-        let t1110 = 0.26 * actuator_accelerations[3];
-        let t1112 = s_armcross_leg4 * (t540 - t729 + t430) + minus_c_armcross_leg4 * t536
-            - (s_cross_leg4 * t1104 - (t1106 + t1106)) - c_cross_leg4 * t1110;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * t1112;
-        let t1114 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1116 = t1097 + t1114 + t1097;
-        let t1117 = c_rod_leg4 * t1116;
-        let t1118 = t210 * t1117;
-        let t1120 = t166 * t485;
-        let t1121 = t210 * t1120;
-        let t1122 = grod_vx_leg4 * t1121;
-        let t1124 = t178 * grod_vx_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t1124;
-        let gcross_vz_leg4 = s_arm_leg4 * t1124;
-        let minus_gcross_wz_leg4 = t82 * minus_gcross_vx_leg4
-            - t90 * minus_gcross_vy_leg4;
-        let grod_wz_leg4 = t82 * grod_vx_leg4;
-        let t1134 = grod_wz_leg4 * t1121;
-        let t1136 = t153 * t1122;
-        let t1137 = t1136 - t1120;
-        let t1139 = rate_dot_cross_leg4 - t1118;
-        let t1141 = t1117 + t210 * t1139;
-        let t1151 = t546 + t780 + t433;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * (t1151 + t490);
-        let t1154 = t1121 + rate_dot_rod_leg4;
-        let t1158 = s_rod_leg4 * t1154 + c_rod_leg4 * (t477 - t1136);
-        let t1172 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t1173 = 1.7241379310344827 * t1151;
-        let t1183 = 0.8620689655172413 * t161;
-        let t1186 = t210 * t1183;
-        let t1191 = t1183 * (t1120 + t477) + t1186 * t1154 - t471 * (t208 * t1139);
-        let t1193 = t1080 + t1110;
-        let t1194 = 0.26 * t1193;
-        let t1195 = garm_vx_leg4 * t1194;
-        let t1198 = t1085 + t1104;
-        let t1201 = s_cross_leg4 * t1198 + c_cross_leg4 * t1193;
-        let t1202 = c_rod_leg4 * t1201;
-        let t1214 = s_cross_leg4 * t1193 - c_cross_leg4 * t1198;
-        let t1215 = 1.7241379310344827 * t1214;
-        let t1216 = t82 * t1215;
-        let t1225 = t1183 * (t1121 - rate_dot_rod_leg4) + t1186 * (t1136 + t477)
-            - t471 * t1116;
-        let t1227 = s_rod_leg4 * t1201;
-        let t1244 = rate_dot_cross_leg4 * (s_cross_leg4 * 0.26) + t471 * t485;
-        let t1260 = t359 * t359;
-        let t1263 = c_phi * t1260 + s_phi * t534;
-        let t1266 = s_phi * t1260 - c_phi * t534;
+        let t568 = t380 * t559;
+        let t569 = grod_wz_leg1 * t568;
+        let t571 = t553 - minus_rate_dot_cross_leg1;
+        let t573 = t47 * t571 - t552;
+        let t575 = t47 * t568;
+        let t576 = t383 - t575;
+        let t577 = t381 + t576;
+        let t578 = t575 + t383;
+        let t579 = t578 - t577;
+        let t587 = t4 * t522;
+        let t589 = t528 + t587 - t390;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t589 + t391);
+        let t592 = t568 + rate_dot_rod_leg1;
+        let t595 = s_rod_leg1 * t592 + c_rod_leg1 * t576;
+        let t610 = 1.7241379310344827 * t589;
+        let t613 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t623 = 0.8620689655172413 * t24;
+        let t625 = t45 * t623;
+        let t626 = s_rod_leg1 * t625;
+        let t629 = t357 * (t45 * t571) - (t623 * t577 + t626 * t592);
+        let t631 = t376 - t59;
+        let t633 = t64 - t541;
+        let t635 = c_cross_leg1 * t631 - s_cross_leg1 * t633;
+        let t636 = c_rod_leg1 * t635;
+        let t640 = 0.26 * t631;
+        let t641 = garm_vy_leg1 * t640;
+        let t652 = c_cross_leg1 * t633 + s_cross_leg1 * t631;
+        let t653 = 1.7241379310344827 * t652;
+        let t654 = t4 * t653;
+        let t662 = t623 * (t568 - rate_dot_rod_leg1) + t626 * t578 + t357 * t551;
+        let t664 = s_rod_leg1 * t635;
+        let t680 = t357 * t381 - minus_rate_dot_cross_leg1 * t625;
+        let t696 = garm_vx_leg2 * actuator_accelerations[1];
+        let t697 = garm_vy_leg2 * actuator_accelerations[1];
+        let t698 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t699 = garm_wz_leg2 * actuator_accelerations[1];
+        let t700 = 9.81 * c_arm_leg2;
+        let t705 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t398 * garm_vx_leg2);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t86;
+        let t717 = t403 * minus_rate_cross_leg2;
+        let t718 = 1.7241379310344827 * t717;
+        let t719 = t85 * t522;
+        let t725 = 0.26 * t399;
+        let t727 = t179 * t717;
+        let t732 = s_armcross_leg2 * (t528 + t719 - t418) + c_armcross_leg2 * t524
+            + s_cross_leg2 * t725 + t727 + t727 + actuator_accelerations[1] * t398;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t732;
+        let t734 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t736 = t718 + t734 + t718;
+        let t737 = minus_s_rod_leg2 * t736;
+        let t739 = t100 * t414;
+        let t740 = t179 * t739;
+        let t741 = minus_grod_vx_leg2 * t740;
+        let t743 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t743;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t743;
+        let t748 = t79 * t741;
+        let gcross_wz_leg2 = t79 * minus_gcross_vx_leg2 - t85 * minus_gcross_vy_leg2;
+        let t755 = t737 - minus_rate_dot_cross_leg2;
+        let t757 = c_rod_leg2 * t736 - t179 * t755;
+        let t759 = t414 - t739;
+        let t761 = minus_grod_vx_leg2 * (t759 - t739);
+        let t768 = t79 * t522;
+        let t770 = t534 - t768 - t421;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t770 + t422);
+        let t773 = t740 + minus_rate_dot_rod_leg2;
+        let t777 = minus_s_rod_leg2 * t773 + c_rod_leg2 * (t405 - t759);
+        let t779 = minus_grod_vx_leg2 * t734;
+        let t792 = 1.7241379310344827 * t770;
+        let t794 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t801 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t807 = t179 * t109;
+        let t810 = t398 * (t755 / c_rod_leg2) - (t109 * (t739 + t405) + t807 * t773);
+        let t813 = 0.26 * actuator_accelerations[1] - t700;
+        let t814 = 0.26 * t813;
+        let t815 = garm_vx_leg2 * t814;
+        let t820 = t705 - t725;
+        let t822 = c_cross_leg2 * t813 - s_cross_leg2 * t820;
+        let t823 = c_rod_leg2 * t822;
+        let t834 = c_cross_leg2 * t820 + s_cross_leg2 * t813;
+        let t835 = 1.7241379310344827 * t834;
+        let t836 = t79 * t835;
+        let t845 = t109 * (minus_rate_dot_rod_leg2 - t740) - t807 * (t759 + t405)
+            - t398 * t736;
+        let t847 = minus_s_rod_leg2 * t822;
+        let t863 = t398 * t414 - minus_rate_dot_cross_leg2 * t110;
+        let t879 = garm_vx_leg3 * actuator_accelerations[2];
+        let t880 = garm_vy_leg3 * actuator_accelerations[2];
+        let t881 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t882 = garm_wz_leg3 * actuator_accelerations[2];
+        let t883 = 9.81 * minus_c_arm_leg3;
+        let t888 = 9.81 * s_arm_leg3;
+        let t897 = minus_grod_vy_leg3 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t897;
+        let t899 = t435 * rate_cross_leg3;
+        let t900 = 1.7241379310344827 * t899;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t123;
+        let t907 = 0.8620689655172413 * t130;
+        let t908 = t907 / c_rod_leg3;
+        let t910 = t137 * t899;
+        let t914 = 0.26 * actuator_accelerations[2];
+        let t916 = s_armcross_leg3 * (t534 + t535 + t387) + minus_c_armcross_leg3 * t524
+            - (t432 * t908 - (t910 + t910)) - c_cross_leg3 * t914;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t916;
+        let t918 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t920 = t900 + t918 + t900;
+        let t921 = c_rod_leg3 * t920;
+        let t922 = t137 * t921;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t431 * garm_vy_leg3);
+        let t928 = t123 * (2.972651605231867 * t445);
+        let gcross_vz_leg3 = s_arm_leg3 * t897;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
+        let t936 = t4 * t928;
+        let t938 = rate_dot_cross_leg3 - t922;
+        let t939 = t938 / c_rod_leg3;
+        let t941 = minus_s_rod_leg3 * t939 + t921;
+        let t944 = t434 * t928;
+        let t945 = t137 * t944;
+        let t946 = t446 - t945;
+        let t947 = t945 + t437;
+        let t949 = minus_grod_vy_leg3 * (t947 - t946);
+        let t956 = t528 - t587 + t390;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t956 + t450);
+        let t959 = t944 + minus_rate_dot_rod_leg3;
+        let t963 = minus_s_rod_leg3 * t959 + c_rod_leg3 * (t437 - t945);
+        let t965 = minus_grod_vy_leg3 * t918;
+        let t978 = 1.7241379310344827 * t956;
+        let t981 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t987 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
+        let t990 = t888 + 0.26 * t432;
+        let t992 = t883 + t914;
+        let t994 = s_cross_leg3 * t990 + c_cross_leg3 * t992;
+        let t995 = c_rod_leg3 * t994;
+        let t998 = t137 * t907;
+        let t1002 = t907 * t946 + t998 * t959 - t431 * t939;
+        let t1006 = 0.26 * t992;
+        let t1007 = garm_vy_leg3 * t1006;
+        let t1018 = s_cross_leg3 * t992 - c_cross_leg3 * t990;
+        let t1019 = 1.7241379310344827 * t1018;
+        let t1020 = t4 * t1019;
+        let t1028 = t907 * (minus_rate_dot_rod_leg3 - t944) - t998 * t947 + t431 * t920;
+        let t1030 = minus_s_rod_leg3 * t994;
+        let t1046 = rate_dot_cross_leg3 * t908 + t431 * t445;
+        let t1062 = garm_vx_leg4 * actuator_accelerations[3];
+        let t1063 = garm_vy_leg4 * actuator_accelerations[3];
+        let t1064 = minus_garm_vz_leg4 * actuator_accelerations[3];
+        let t1065 = garm_wz_leg4 * actuator_accelerations[3];
+        let t1066 = 9.81 * minus_c_arm_leg4;
+        let t1071 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t459 * garm_vx_leg4);
+        let s_rod_leg4 = 1.7241379310344827 * t146;
+        let t1083 = t463 * rate_cross_leg4;
+        let t1084 = 1.7241379310344827 * t1083;
+        let t1091 = t201 * t1083;
+        let t1096 = s_armcross_leg4 * (t528 - t719 + t418) + minus_c_armcross_leg4 * t524
+            - (t460 * t170 - (t1091 + t1091)) - actuator_accelerations[3] * t459;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t1096;
+        let t1098 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1100 = t1084 + t1098 + t1084;
+        let t1101 = s_rod_leg4 * t1100;
+        let t1103 = t160 * t473;
+        let t1104 = t201 * t1103;
+        let t1105 = grod_vx_leg4 * t1104;
+        let t1107 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t1107;
+        let gcross_vz_leg4 = s_arm_leg4 * t1107;
+        let minus_gcross_wz_leg4 = t79 * minus_gcross_vx_leg4
+            - t85 * minus_gcross_vy_leg4;
+        let t1116 = t79 * t1105;
+        let t1118 = t473 - t1103;
+        let t1120 = grod_vx_leg4 * (t1118 - t1103);
+        let t1122 = rate_dot_cross_leg4 - t1101;
+        let t1123 = t1122 / c_rod_leg4;
+        let t1125 = c_rod_leg4 * t1100 + s_rod_leg4 * t1123;
+        let t1133 = grod_vx_leg4 * t1098;
+        let t1135 = t534 + t768 + t421;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * (t1135 + t478);
+        let t1138 = t1104 + rate_dot_rod_leg4;
+        let t1142 = s_rod_leg4 * t1138 + c_rod_leg4 * (t465 - t1118);
+        let t1156 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t1157 = 1.7241379310344827 * t1135;
+        let t1165 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t1169 = s_rod_leg4 * t170;
+        let t1173 = t169 * (t1103 + t465) + t1169 * t1138 - t459 * t1123;
+        let t1176 = t1066 + 0.26 * actuator_accelerations[3];
+        let t1177 = 0.26 * t1176;
+        let t1178 = garm_vx_leg4 * t1177;
+        let t1182 = t1071 + 0.26 * t460;
+        let t1185 = s_cross_leg4 * t1182 + c_cross_leg4 * t1176;
+        let t1186 = c_rod_leg4 * t1185;
+        let t1198 = s_cross_leg4 * t1176 - c_cross_leg4 * t1182;
+        let t1199 = 1.7241379310344827 * t1198;
+        let t1200 = t79 * t1199;
+        let t1209 = t169 * (t1104 - rate_dot_rod_leg4) + t1169 * (t1118 + t465)
+            - t459 * t1100;
+        let t1211 = s_rod_leg4 * t1185;
+        let t1227 = rate_dot_cross_leg4 * t170 + t459 * t473;
+        let t1243 = t348 * t348;
+        let t1246 = c_phi * t1243 + s_phi * t522;
+        let t1249 = s_phi * t1243 - c_phi * t522;
         Ok([
             [
-                t46, -(garm_vx_leg1 * t60), -(garm_vx_leg1 * t65), t46, t70,
+                t44, -(garm_vx_leg1 * t59), -(garm_vx_leg1 * t64), t44, t69,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t562, -(minus_gcross_vx_leg1 * t583),
-                -(minus_gcross_vx_leg1 * t605), -(minus_gcross_vx_leg1 * t580),
-                -(minus_gcross_vx_leg1 * t620), 0.0,
-                -(garm_vx_leg1 * t638 + minus_gcross_vx_leg1 * t645),
-                garm_vx_leg1 * t671 + minus_gcross_vx_leg1 * t673,
-                garm_vx_leg1 * t690 - minus_gcross_vx_leg1 * t661, garm_vx_leg1 * t649, t706,
-                -(garm_vx_leg2 * t710), -(garm_vx_leg2 * t715), t706, t232,
+                minus_gcross_vx_leg1 * t553, -(minus_gcross_vx_leg1 * t573),
+                -(minus_gcross_vx_leg1 * t595), -(minus_gcross_vx_leg1 * t571),
+                -(minus_gcross_vx_leg1 * t610), 0.0,
+                garm_vx_leg1 * t629 - minus_gcross_vx_leg1 * t636,
+                garm_vx_leg1 * t662 + minus_gcross_vx_leg1 * t664,
+                garm_vx_leg1 * t680 - minus_gcross_vx_leg1 * t652, garm_vx_leg1 * t640, t696,
+                -(garm_vx_leg2 * t700), -(garm_vx_leg2 * t705), t696, t181,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t749 - t753,
-                -(minus_gcross_vx_leg2 * t769 + minus_grod_vx_leg2 * t772),
-                -(minus_gcross_vx_leg2 * t789 + minus_grod_vx_leg2 * t745),
-                t753 - minus_gcross_vx_leg2 * t767, minus_gcross_vx_leg2 * t804 + t806,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg2 * t823 - 1.7241379310344827 * t827,
-                garm_vx_leg2 * t857 - minus_gcross_vx_leg2 * t859 + t847,
-                garm_vx_leg2 * t876 - minus_gcross_vx_leg2 * t846, t827, t892, garm_vx_leg3 * t896,
-                garm_vx_leg3 * t901, t892, t234,
+                minus_gcross_vx_leg2 * t737 - t741, -(minus_gcross_vx_leg2 * t757 + t761),
+                -(minus_gcross_vx_leg2 * t777 + t779), t741 - minus_gcross_vx_leg2 * t755,
+                minus_gcross_vx_leg2 * t792 + t794, t801,
+                garm_vx_leg2 * t810 - 1.7241379310344827 * t815,
+                garm_vx_leg2 * t845 - minus_gcross_vx_leg2 * t847 + t835,
+                garm_vx_leg2 * t863 - minus_gcross_vx_leg2 * t834, t815, t879, garm_vx_leg3 * t883,
+                garm_vx_leg3 * t888, t879, t198,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t934), minus_gcross_vx_leg3 * t954,
-                -(minus_gcross_vx_leg3 * t975), -(minus_gcross_vx_leg3 * t952),
-                minus_gcross_vx_leg3 * t990, 0.0,
-                -(minus_gcross_vx_leg3 * t1006 + garm_vx_leg3 * t1015),
-                garm_vx_leg3 * t1041 - minus_gcross_vx_leg3 * t1043,
-                garm_vx_leg3 * t1060 - minus_gcross_vx_leg3 * t1031, garm_vx_leg3 * t1019, t1076,
-                garm_vx_leg4 * t1080, garm_vx_leg4 * t1085, t1076, t236,
+                -(minus_gcross_vx_leg3 * t922), minus_gcross_vx_leg3 * t941,
+                -(minus_gcross_vx_leg3 * t963), -(minus_gcross_vx_leg3 * t938),
+                minus_gcross_vx_leg3 * t978, 0.0,
+                -(minus_gcross_vx_leg3 * t995 + garm_vx_leg3 * t1002),
+                garm_vx_leg3 * t1028 - minus_gcross_vx_leg3 * t1030,
+                garm_vx_leg3 * t1046 - minus_gcross_vx_leg3 * t1018, garm_vx_leg3 * t1006, t1062,
+                garm_vx_leg4 * t1066, garm_vx_leg4 * t1071, t1062, t203,
                 ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t1118 + t1122),
-                grod_vx_leg4 * t1137 - minus_gcross_vx_leg4 * t1141,
-                grod_vx_leg4 * t1114 - minus_gcross_vx_leg4 * t1158,
-                t1122 - minus_gcross_vx_leg4 * t1139, t1172 - minus_gcross_vx_leg4 * t1173,
-                grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t1191 + 1.7241379310344827 * t1195),
-                garm_vx_leg4 * t1225 + minus_gcross_vx_leg4 * t1227 - t1215,
-                garm_vx_leg4 * t1244 - minus_gcross_vx_leg4 * t1214, t1195, 0.0, -t1263, t1266,
-                t546,
+                -(minus_gcross_vx_leg4 * t1101 + t1105), t1120 - minus_gcross_vx_leg4 * t1125,
+                t1133 - minus_gcross_vx_leg4 * t1142, t1105 - minus_gcross_vx_leg4 * t1122,
+                t1156 - minus_gcross_vx_leg4 * t1157, t1165,
+                -(garm_vx_leg4 * t1173 + 1.7241379310344827 * t1178),
+                garm_vx_leg4 * t1209 + minus_gcross_vx_leg4 * t1211 - t1199,
+                garm_vx_leg4 * t1227 - minus_gcross_vx_leg4 * t1198, t1178, 0.0, -t1246, t1249,
+                t534,
             ],
             [
-                t50, -(garm_vy_leg1 * t60), -(garm_vy_leg1 * t65), t50, t71,
+                t49, -(garm_vy_leg1 * t59), -(garm_vy_leg1 * t64), t49, t70,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t562 - t568,
-                grod_vy_leg1 * t589 - minus_gcross_vy_leg1 * t583,
-                -(minus_gcross_vy_leg1 * t605 + grod_vy_leg1 * t559),
-                t568 - minus_gcross_vy_leg1 * t580, -(minus_gcross_vy_leg1 * t620 + t623),
-                grod_vy_leg1 * rate_dot_rod_leg1,
-                -(garm_vy_leg1 * t638 + 1.7241379310344827 * t650),
-                garm_vy_leg1 * t671 + minus_gcross_vy_leg1 * t673 - t662,
-                garm_vy_leg1 * t690 - minus_gcross_vy_leg1 * t661, t650, t707,
-                -(garm_vy_leg2 * t710), -(garm_vy_leg2 * t715), t707, t226,
+                minus_gcross_vy_leg1 * t553 - t559,
+                grod_vy_leg1 * t579 - minus_gcross_vy_leg1 * t573,
+                -(minus_gcross_vy_leg1 * t595 + grod_vy_leg1 * t549),
+                t559 - minus_gcross_vy_leg1 * t571, -(minus_gcross_vy_leg1 * t610 + t613),
+                grod_vy_leg1 * rate_dot_rod_leg1, garm_vy_leg1 * t629 - 1.7241379310344827 * t641,
+                garm_vy_leg1 * t662 + minus_gcross_vy_leg1 * t664 - t653,
+                garm_vy_leg1 * t680 - minus_gcross_vy_leg1 * t652, t641, t697,
+                -(garm_vy_leg2 * t700), -(garm_vy_leg2 * t705), t697, t116,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]), garm_vy_leg2,
-                minus_gcross_vy_leg2 * t749, -(minus_gcross_vy_leg2 * t769),
-                -(minus_gcross_vy_leg2 * t789), -(minus_gcross_vy_leg2 * t767),
-                minus_gcross_vy_leg2 * t804, 0.0, garm_vy_leg2 * t823 - minus_gcross_vy_leg2 * t835,
-                garm_vy_leg2 * t857 - minus_gcross_vy_leg2 * t859,
-                garm_vy_leg2 * t876 - minus_gcross_vy_leg2 * t846, garm_vy_leg2 * t826, t893,
-                garm_vy_leg3 * t896, garm_vy_leg3 * t901, t893, t228,
+                minus_gcross_vy_leg2 * t737, -(minus_gcross_vy_leg2 * t757),
+                -(minus_gcross_vy_leg2 * t777), -(minus_gcross_vy_leg2 * t755),
+                minus_gcross_vy_leg2 * t792, 0.0, garm_vy_leg2 * t810 - minus_gcross_vy_leg2 * t823,
+                garm_vy_leg2 * t845 - minus_gcross_vy_leg2 * t847,
+                garm_vy_leg2 * t863 - minus_gcross_vy_leg2 * t834, garm_vy_leg2 * t814, t880,
+                garm_vy_leg3 * t883, garm_vy_leg3 * t888, t880, t139,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t934 + t940),
-                -(minus_grod_vy_leg3 * t961 - minus_gcross_vy_leg3 * t954),
-                minus_grod_vy_leg3 * t930 - minus_gcross_vy_leg3 * t975,
-                t940 - minus_gcross_vy_leg3 * t952, minus_gcross_vy_leg3 * t990 - t993,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                -(garm_vy_leg3 * t1015 + 1.7241379310344827 * t1020),
-                garm_vy_leg3 * t1041 - minus_gcross_vy_leg3 * t1043 + t1032,
-                garm_vy_leg3 * t1060 - minus_gcross_vy_leg3 * t1031, t1020, t1077,
-                garm_vy_leg4 * t1080, garm_vy_leg4 * t1085, t1077, t230,
+                -(minus_gcross_vy_leg3 * t922 + t928), -(t949 - minus_gcross_vy_leg3 * t941),
+                t965 - minus_gcross_vy_leg3 * t963, t928 - minus_gcross_vy_leg3 * t938,
+                minus_gcross_vy_leg3 * t978 - t981, t987,
+                -(garm_vy_leg3 * t1002 + 1.7241379310344827 * t1007),
+                garm_vy_leg3 * t1028 - minus_gcross_vy_leg3 * t1030 + t1019,
+                garm_vy_leg3 * t1046 - minus_gcross_vy_leg3 * t1018, t1007, t1063,
+                garm_vy_leg4 * t1066, garm_vy_leg4 * t1071, t1063, t176,
                 ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]), garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t1118), -(minus_gcross_vy_leg4 * t1141),
-                -(minus_gcross_vy_leg4 * t1158), -(minus_gcross_vy_leg4 * t1139),
-                -(minus_gcross_vy_leg4 * t1173), 0.0,
-                -(minus_gcross_vy_leg4 * t1202 + garm_vy_leg4 * t1191),
-                garm_vy_leg4 * t1225 + minus_gcross_vy_leg4 * t1227,
-                garm_vy_leg4 * t1244 - minus_gcross_vy_leg4 * t1214, garm_vy_leg4 * t1194, 0.0,
-                -t1266, -t1263, t540,
+                -(minus_gcross_vy_leg4 * t1101), -(minus_gcross_vy_leg4 * t1125),
+                -(minus_gcross_vy_leg4 * t1142), -(minus_gcross_vy_leg4 * t1122),
+                -(minus_gcross_vy_leg4 * t1157), 0.0,
+                -(minus_gcross_vy_leg4 * t1186 + garm_vy_leg4 * t1173),
+                garm_vy_leg4 * t1209 + minus_gcross_vy_leg4 * t1211,
+                garm_vy_leg4 * t1227 - minus_gcross_vy_leg4 * t1198, garm_vy_leg4 * t1177, 0.0,
+                -t1249, -t1246, t528,
             ],
             [
-                -t55, minus_garm_vz_leg1 * t60, minus_garm_vz_leg1 * t65, -t55, -t72,
+                -t54, minus_garm_vz_leg1 * t59, minus_garm_vz_leg1 * t64, -t54, -t71,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t562, -(minus_gcross_vz_leg1 * t583),
-                -(minus_gcross_vz_leg1 * t605), -(minus_gcross_vz_leg1 * t580),
-                -(minus_gcross_vz_leg1 * t620), 0.0,
-                -(minus_gcross_vz_leg1 * t645 - minus_garm_vz_leg1 * t638),
-                minus_gcross_vz_leg1 * t673 - minus_garm_vz_leg1 * t671,
-                -(minus_garm_vz_leg1 * t690 + minus_gcross_vz_leg1 * t661),
-                -(minus_garm_vz_leg1 * t649), -t708, minus_garm_vz_leg2 * t710,
-                minus_garm_vz_leg2 * t715, -t708, -t284,
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t553, -(minus_gcross_vz_leg1 * t573),
+                -(minus_gcross_vz_leg1 * t595), -(minus_gcross_vz_leg1 * t571),
+                -(minus_gcross_vz_leg1 * t610), 0.0,
+                -(minus_garm_vz_leg1 * t629 + minus_gcross_vz_leg1 * t636),
+                minus_gcross_vz_leg1 * t664 - minus_garm_vz_leg1 * t662,
+                -(minus_garm_vz_leg1 * t680 + minus_gcross_vz_leg1 * t652),
+                -(minus_garm_vz_leg1 * t640), -t698, minus_garm_vz_leg2 * t700,
+                minus_garm_vz_leg2 * t705, -t698, -t263,
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
-                -minus_garm_vz_leg2, minus_gcross_vz_leg2 * t749, -(minus_gcross_vz_leg2 * t769),
-                -(minus_gcross_vz_leg2 * t789), -(minus_gcross_vz_leg2 * t767),
-                minus_gcross_vz_leg2 * t804, 0.0,
-                -(minus_gcross_vz_leg2 * t835 + minus_garm_vz_leg2 * t823),
-                -(minus_gcross_vz_leg2 * t859 + minus_garm_vz_leg2 * t857),
-                -(minus_gcross_vz_leg2 * t846 + minus_garm_vz_leg2 * t876),
-                -(minus_garm_vz_leg2 * t826), -t894, -(minus_garm_vz_leg3 * t896),
-                -(minus_garm_vz_leg3 * t901), -t894, -t286,
+                -minus_garm_vz_leg2, minus_gcross_vz_leg2 * t737, -(minus_gcross_vz_leg2 * t757),
+                -(minus_gcross_vz_leg2 * t777), -(minus_gcross_vz_leg2 * t755),
+                minus_gcross_vz_leg2 * t792, 0.0,
+                -(minus_gcross_vz_leg2 * t823 + minus_garm_vz_leg2 * t810),
+                -(minus_gcross_vz_leg2 * t847 + minus_garm_vz_leg2 * t845),
+                -(minus_gcross_vz_leg2 * t834 + minus_garm_vz_leg2 * t863),
+                -(minus_garm_vz_leg2 * t814), -t881, -(minus_garm_vz_leg3 * t883),
+                -(minus_garm_vz_leg3 * t888), -t881, -t265,
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t934, -(gcross_vz_leg3 * t954),
-                gcross_vz_leg3 * t975, gcross_vz_leg3 * t952, -(gcross_vz_leg3 * t990), 0.0,
-                minus_garm_vz_leg3 * t1015 + gcross_vz_leg3 * t1006,
-                gcross_vz_leg3 * t1043 - minus_garm_vz_leg3 * t1041,
-                gcross_vz_leg3 * t1031 - minus_garm_vz_leg3 * t1060, -(minus_garm_vz_leg3 * t1019),
-                -t1078, -(minus_garm_vz_leg4 * t1080), -(minus_garm_vz_leg4 * t1085), -t1078, -t288,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t922, -(gcross_vz_leg3 * t941),
+                gcross_vz_leg3 * t963, gcross_vz_leg3 * t938, -(gcross_vz_leg3 * t978), 0.0,
+                minus_garm_vz_leg3 * t1002 + gcross_vz_leg3 * t995,
+                gcross_vz_leg3 * t1030 - minus_garm_vz_leg3 * t1028,
+                gcross_vz_leg3 * t1018 - minus_garm_vz_leg3 * t1046, -(minus_garm_vz_leg3 * t1006),
+                -t1064, -(minus_garm_vz_leg4 * t1066), -(minus_garm_vz_leg4 * t1071), -t1064, -t267,
                 -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]),
-                -minus_garm_vz_leg4, gcross_vz_leg4 * t1118, gcross_vz_leg4 * t1141,
-                gcross_vz_leg4 * t1158, gcross_vz_leg4 * t1139, gcross_vz_leg4 * t1173, 0.0,
-                minus_garm_vz_leg4 * t1191 + gcross_vz_leg4 * t1202,
-                -(minus_garm_vz_leg4 * t1225 + gcross_vz_leg4 * t1227),
-                gcross_vz_leg4 * t1214 - minus_garm_vz_leg4 * t1244, -(minus_garm_vz_leg4 * t1194),
-                0.0, 0.0, 0.0, t536 + 9.81,
+                -minus_garm_vz_leg4, gcross_vz_leg4 * t1101, gcross_vz_leg4 * t1125,
+                gcross_vz_leg4 * t1142, gcross_vz_leg4 * t1122, gcross_vz_leg4 * t1157, 0.0,
+                minus_garm_vz_leg4 * t1173 + gcross_vz_leg4 * t1186,
+                -(minus_garm_vz_leg4 * t1209 + gcross_vz_leg4 * t1211),
+                gcross_vz_leg4 * t1198 - minus_garm_vz_leg4 * t1227, -(minus_garm_vz_leg4 * t1177),
+                0.0, 0.0, 0.0, t524 + 9.81,
             ],
             [
-                t59, -(garm_wz_leg1 * t60), -(garm_wz_leg1 * t65), t59, t73,
+                t58, -(garm_wz_leg1 * t59), -(garm_wz_leg1 * t64), t58, t72,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]), garm_wz_leg1,
-                -(gcross_wz_leg1 * t562 + t578), gcross_wz_leg1 * t583 + grod_wz_leg1 * t589,
-                gcross_wz_leg1 * t605 - grod_wz_leg1 * t559, gcross_wz_leg1 * t580 + t578,
-                gcross_wz_leg1 * t620 - t4 * t623, grod_wz_leg1 * rate_dot_rod_leg1,
-                gcross_wz_leg1 * t645 - garm_wz_leg1 * t638 - t48 * t663,
-                garm_wz_leg1 * t671 - gcross_wz_leg1 * t673 - t663,
-                garm_wz_leg1 * t690 + gcross_wz_leg1 * t661, garm_wz_leg1 * t649, t709,
-                -(garm_wz_leg2 * t710), -(garm_wz_leg2 * t715), t709, t347,
+                -(gcross_wz_leg1 * t553 + t569), gcross_wz_leg1 * t573 + grod_wz_leg1 * t579,
+                gcross_wz_leg1 * t595 - grod_wz_leg1 * t549, gcross_wz_leg1 * t571 + t569,
+                gcross_wz_leg1 * t610 - t4 * t613, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t629 + gcross_wz_leg1 * t636 - t47 * t654,
+                garm_wz_leg1 * t662 - gcross_wz_leg1 * t664 - t654,
+                garm_wz_leg1 * t680 + gcross_wz_leg1 * t652, garm_wz_leg1 * t640, t699,
+                -(garm_wz_leg2 * t700), -(garm_wz_leg2 * t705), t699, t323,
                 ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]), garm_wz_leg2,
-                t761 - gcross_wz_leg2 * t749, gcross_wz_leg2 * t769 + grod_wz_leg2 * t772,
-                gcross_wz_leg2 * t789 + grod_wz_leg2 * t745, gcross_wz_leg2 * t767 - t761,
-                -(gcross_wz_leg2 * t804 + t82 * t806), -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                garm_wz_leg2 * t823 + gcross_wz_leg2 * t835 + t186 * t848,
-                garm_wz_leg2 * t857 + gcross_wz_leg2 * t859 - t848,
-                garm_wz_leg2 * t876 + gcross_wz_leg2 * t846, garm_wz_leg2 * t826, t895,
-                garm_wz_leg3 * t896, garm_wz_leg3 * t901, t895, t349,
+                t748 - gcross_wz_leg2 * t737, gcross_wz_leg2 * t757 + t79 * t761,
+                gcross_wz_leg2 * t777 + t79 * t779, gcross_wz_leg2 * t755 - t748,
+                -(gcross_wz_leg2 * t792 + t79 * t794), -(t79 * t801),
+                garm_wz_leg2 * t810 + gcross_wz_leg2 * t823 + t179 * t836,
+                garm_wz_leg2 * t845 + gcross_wz_leg2 * t847 - t836,
+                garm_wz_leg2 * t863 + gcross_wz_leg2 * t834, garm_wz_leg2 * t814, t882,
+                garm_wz_leg3 * t883, garm_wz_leg3 * t888, t882, t325,
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]), garm_wz_leg3,
-                gcross_wz_leg3 * t934 + t950, grod_wz_leg3 * t961 - gcross_wz_leg3 * t954,
-                gcross_wz_leg3 * t975 - grod_wz_leg3 * t930, gcross_wz_leg3 * t952 - t950,
-                t4 * t993 - gcross_wz_leg3 * t990, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
-                gcross_wz_leg3 * t1006 - garm_wz_leg3 * t1015 + t142 * t1033,
-                garm_wz_leg3 * t1041 + gcross_wz_leg3 * t1043 - t1033,
-                garm_wz_leg3 * t1060 + gcross_wz_leg3 * t1031, garm_wz_leg3 * t1019, t1079,
-                garm_wz_leg4 * t1080, garm_wz_leg4 * t1085, t1079, t351,
+                gcross_wz_leg3 * t922 + t936, t4 * t949 - gcross_wz_leg3 * t941,
+                gcross_wz_leg3 * t963 - t4 * t965, gcross_wz_leg3 * t938 - t936,
+                t4 * t981 - gcross_wz_leg3 * t978, -(t4 * t987),
+                gcross_wz_leg3 * t995 - garm_wz_leg3 * t1002 + t137 * t1020,
+                garm_wz_leg3 * t1028 + gcross_wz_leg3 * t1030 - t1020,
+                garm_wz_leg3 * t1046 + gcross_wz_leg3 * t1018, garm_wz_leg3 * t1006, t1065,
+                garm_wz_leg4 * t1066, garm_wz_leg4 * t1071, t1065, t327,
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t1118 + t1134),
-                grod_wz_leg4 * t1137 - minus_gcross_wz_leg4 * t1141,
-                grod_wz_leg4 * t1114 - minus_gcross_wz_leg4 * t1158,
-                t1134 - minus_gcross_wz_leg4 * t1139, t82 * t1172 - minus_gcross_wz_leg4 * t1173,
-                grod_wz_leg4 * rate_dot_rod_leg4,
-                -(garm_wz_leg4 * t1191 + minus_gcross_wz_leg4 * t1202 + t210 * t1216),
-                garm_wz_leg4 * t1225 + minus_gcross_wz_leg4 * t1227 - t1216,
-                garm_wz_leg4 * t1244 - minus_gcross_wz_leg4 * t1214, garm_wz_leg4 * t1194, t534,
-                c_phi * t540 - s_phi * t546, -(s_phi * t540 + c_phi * t546), 0.0,
+                -(minus_gcross_wz_leg4 * t1101 + t1116), t79 * t1120 - minus_gcross_wz_leg4 * t1125,
+                t79 * t1133 - minus_gcross_wz_leg4 * t1142, t1116 - minus_gcross_wz_leg4 * t1122,
+                t79 * t1156 - minus_gcross_wz_leg4 * t1157, t79 * t1165,
+                -(garm_wz_leg4 * t1173 + minus_gcross_wz_leg4 * t1186 + t201 * t1200),
+                garm_wz_leg4 * t1209 + minus_gcross_wz_leg4 * t1211 - t1200,
+                garm_wz_leg4 * t1227 - minus_gcross_wz_leg4 * t1198, garm_wz_leg4 * t1177, t522,
+                c_phi * t528 - s_phi * t534, -(s_phi * t528 + c_phi * t534), 0.0,
             ],
         ])
     }
@@ -6007,7 +5948,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 958 operations (301 additions, 637 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 764 intermediates.
+    /// 941 operations (298 additions, 610 multiplications, 33 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 747 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6024,482 +5965,468 @@ impl Schoenflies4 {
         let t17 = 0.08660254037844387 * s_phi;
         let t18 = t16 - t17;
         let t20 = pose[0] + t18 - 0.24;
-        let t22 = pose[2] * pose[2];
-        let t23 = t20 * t20 + t22;
-        let t24 = 0.2704 * t23;
-        let t25 = 1.0 / t24;
-        let t26 = 0.52 * t20;
-        let t27 = 0.05 * s_phi;
-        let t28 = 0.08660254037844387 * c_phi;
-        let t29 = t27 + t28;
-        let t30 = pose[1] + t29;
-        let t32 = t30 * t30 + -0.3364;
-        let t33 = t23 + t32;
-        let t34 = t33 + 0.0676;
-        let t36 = 0.52 * pose[2];
-        let t38 = t24 - t34 * t34;
-        ::overact::guard::reach(t38, "leg1")?;
-        let t39 = ::overact::math::sqrt(t38);
-        let c_arm_leg1 = t25 * (t26 * t34 - t36 * t39);
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t32));
+        let t21 = 0.52 * t20;
+        let t23 = pose[2] * pose[2];
+        let t24 = t20 * t20 + t23;
+        let t25 = 0.05 * s_phi;
+        let t26 = 0.08660254037844387 * c_phi;
+        let t27 = t25 + t26;
+        let t28 = pose[1] + t27;
+        let t30 = t28 * t28 + -0.3364;
+        let t31 = t24 + t30;
+        let t32 = t31 + 0.0676;
+        let t34 = 0.52 * pose[2];
+        let t35 = 0.2704 * t24;
+        let t37 = t35 - t32 * t32;
+        ::overact::guard::reach(t37, "leg1")?;
+        let t38 = ::overact::math::sqrt(t37);
+        let c_arm_leg1 = (t21 * t32 - t34 * t38) / t35;
+        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t30));
         ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t47 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t33 + -0.0676) / t47;
-        let minus_s_arm_leg1 = t25 * (t36 * t34 + t26 * t39);
-        let s_cross_leg1 = t39 / t47;
+        let t46 = 0.3016 * c_rod_leg1;
+        let c_cross_leg1 = (t31 + -0.0676) / t46;
+        let minus_s_arm_leg1 = (t34 * t32 + t21 * t38) / t35;
+        let s_cross_leg1 = t38 / t46;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t57 = 1.0 / s_cross_leg1;
-        let t58 = 3.8461538461538463 * t57;
-        let garm_vx_leg1 = c_armcross_leg1 * t58;
-        let t60 = t29 * acceleration[3];
-        let t62 = t18 * twist[3];
-        let t63 = twist[3] * t62;
-        let t64 = acceleration[0] - t60 - t63;
+        let t56 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t56;
+        let t58 = t27 * acceleration[3];
+        let t60 = t18 * twist[3];
+        let t61 = twist[3] * t60;
+        let t62 = acceleration[0] - t58 - t61;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t71 = 0.26 * c_cross_leg1;
-        let t72 = t29 * twist[3];
-        let t73 = twist[0] - t72;
+        let t69 = t27 * twist[3];
+        let t70 = twist[0] - t69;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t78 = t30 * grod_vy_leg1;
-        let t79 = twist[1] + t62;
-        let t80 = t78 * t79;
-        let rate_arm_leg1 = t58
-            * (c_armcross_leg1 * t73 - s_armcross_leg1 * twist[2] + t80);
-        let t83 = rate_arm_leg1 * rate_arm_leg1;
-        let t85 = 0.58 * c_rod_leg1;
-        let t90 = t71 * rate_arm_leg1 + s_armcross_leg1 * t73
+        let t75 = t28 * grod_vy_leg1;
+        let t76 = twist[1] + t60;
+        let t77 = t75 * t76;
+        let t78 = c_armcross_leg1 * t70 - s_armcross_leg1 * twist[2] + t77;
+        let rate_arm_leg1 = t56 * t78;
+        let t80 = t78 * rate_arm_leg1;
+        let t81 = t80 / s_cross_leg1;
+        let t84 = 0.26 * c_cross_leg1;
+        let t89 = t84 * rate_arm_leg1 + s_armcross_leg1 * t70
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t90;
-        let t92 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t79;
-        let t94 = rate_rod_leg1 * rate_rod_leg1;
-        let t99 = t18 * acceleration[3];
-        let t101 = twist[3] * t72;
-        let t102 = acceleration[1] + t99 - t101;
-        let t104 = t102 + t30 * t94;
-        let t106 = c_armcross_leg1 * t64 - s_armcross_leg1 * acceleration[2] + t71 * t83
-            + t85 * (t92 + t94) + t78 * t104;
-        let rate_dot_arm_leg1 = t58 * t106;
-        let garm_vy_leg1 = t58 * t78;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t58;
-        let garm_wz_leg1 = t18 * garm_vy_leg1 - t29 * garm_vx_leg1;
-        let t117 = t17 + t16;
-        let t119 = pose[1] + t117 - 0.24;
-        let t121 = t119 * t119 + t22;
-        let t122 = 0.2704 * t121;
-        let t123 = t28 - t27;
-        let t124 = pose[0] + t123;
-        let t125 = t124 * t124;
-        let t126 = 0.3364 - t125;
-        let t127 = t121 - t126;
-        let t128 = t127 + 0.0676;
-        let t130 = t122 - t128 * t128;
-        ::overact::guard::reach(t130, "leg2")?;
-        let t131 = ::overact::math::sqrt(t130);
-        let t132 = 2.972651605231867 * t126;
-        ::overact::guard::reach(t132, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t132);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t134 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t131 / t134;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t89;
+        let t91 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t76;
+        let t93 = rate_rod_leg1 * rate_rod_leg1;
+        let t98 = t18 * acceleration[3];
+        let t100 = twist[3] * t69;
+        let t101 = acceleration[1] + t98 - t100;
+        let t103 = t101 + t28 * t93;
+        let t105 = c_armcross_leg1 * t62 - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t81 - grod_vy_leg1 * t30 * (t91 + t93) + t75 * t103;
+        let rate_dot_arm_leg1 = t56 * t105;
+        let garm_vy_leg1 = t56 * t75;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t56;
+        let garm_wz_leg1 = t18 * garm_vy_leg1 - t27 * garm_vx_leg1;
+        let t116 = t17 + t16;
+        let t118 = pose[1] + t116 - 0.24;
+        let t120 = t118 * t118 + t23;
+        let t121 = 0.2704 * t120;
+        let t122 = t26 - t25;
+        let t123 = pose[0] + t122;
+        let t125 = 0.3364 - t123 * t123;
+        let t126 = t120 - t125;
+        let t127 = t126 + 0.0676;
+        let t129 = t121 - t127 * t127;
+        ::overact::guard::reach(t129, "leg2")?;
+        let t130 = ::overact::math::sqrt(t129);
+        let t131 = 2.972651605231867 * t125;
+        ::overact::guard::reach(t131, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t131);
+        let t133 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t130 / t133;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t136 = 1.0 / s_cross_leg2;
-        let t137 = 3.8461538461538463 * t136;
-        let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let t139 = t124 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t137 * t139;
-        let t141 = 1.0 / t122;
-        let t142 = 0.52 * t119;
-        let c_arm_leg2 = t141 * (t142 * t128 - t36 * t131);
-        let c_cross_leg2 = (-0.0676 + t127) / t134;
-        let minus_s_arm_leg2 = t141 * (t36 * t128 + t142 * t131);
+        let t135 = 3.8461538461538463 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 0.52 / t133;
+        let t137 = t123 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t135 * t137;
+        let t139 = 0.52 * t118;
+        let c_arm_leg2 = (t139 * t127 - t34 * t130) / t121;
+        let c_cross_leg2 = (-0.0676 + t126) / t133;
+        let minus_s_arm_leg2 = (t34 * t127 + t139 * t130) / t121;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t156 = t123 * acceleration[3];
-        let t158 = t117 * twist[3];
-        let t159 = twist[3] * t158;
-        let t160 = acceleration[1] + t156 - t159;
+        let t153 = t122 * acceleration[3];
+        let t155 = t116 * twist[3];
+        let t156 = twist[3] * t155;
+        let t157 = acceleration[1] + t153 - t156;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t167 = 0.26 * c_cross_leg2;
-        let t168 = t123 * twist[3];
-        let t169 = twist[1] + t168;
-        let t173 = twist[0] - t158;
-        let t174 = t139 * t173;
-        let rate_arm_leg2 = t137
-            * (c_armcross_leg2 * t169 - s_armcross_leg2 * twist[2] + t174);
-        let t177 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t173;
-        let t181 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t186 = s_armcross_leg2 * t169 + c_armcross_leg2 * twist[2]
-            + t167 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t186;
-        let t188 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t193 = t117 * acceleration[3];
-        let t195 = twist[3] * t168;
-        let t196 = acceleration[0] - t193 - t195;
-        let t198 = t196 + t124 * t181;
-        let t200 = c_armcross_leg2 * t160 - s_armcross_leg2 * acceleration[2]
-            + t167 * t177 + 0.58 * c_rod_leg2 * (t181 + t188) + t139 * t198;
-        let rate_dot_arm_leg2 = t137 * t200;
-        let garm_vy_leg2 = c_armcross_leg2 * t137;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t137;
-        let garm_wz_leg2 = t123 * garm_vy_leg2 - t117 * garm_vx_leg2;
-        let t212 = pose[0] - t18 + 0.24;
-        let t214 = t212 * t212 + t22;
-        let t215 = 0.2704 * t214;
-        let t216 = 1.0 / t215;
-        let t217 = 0.52 * t212;
-        let t218 = pose[1] - t29;
-        let t220 = 0.3364 - t218 * t218;
-        let t221 = t214 - t220;
-        let t222 = t221 + 0.0676;
-        let t225 = t215 - t222 * t222;
-        ::overact::guard::reach(t225, "leg3")?;
-        let t226 = ::overact::math::sqrt(t225);
-        let minus_c_arm_leg3 = t216 * (t217 * t222 + t36 * t226);
-        let t231 = 2.972651605231867 * t220;
-        ::overact::guard::reach(t231, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t231);
-        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t233 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t221) / t233;
-        let s_arm_leg3 = t216 * (t217 * t226 - t36 * t222);
-        let s_cross_leg3 = t226 / t233;
+        let t164 = t122 * twist[3];
+        let t165 = twist[1] + t164;
+        let t169 = twist[0] - t155;
+        let t170 = t137 * t169;
+        let t171 = c_armcross_leg2 * t165 - s_armcross_leg2 * twist[2] + t170;
+        let rate_arm_leg2 = t135 * t171;
+        let t173 = t171 * rate_arm_leg2;
+        let t174 = t173 / s_cross_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t169;
+        let t178 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t182 = 0.26 * c_cross_leg2;
+        let t184 = s_armcross_leg2 * t165 + c_armcross_leg2 * twist[2]
+            + t182 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t184;
+        let t186 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t191 = t116 * acceleration[3];
+        let t193 = twist[3] * t164;
+        let t194 = acceleration[0] - t191 - t193;
+        let t196 = t194 + t170 * minus_rate_rod_leg2;
+        let t198 = c_armcross_leg2 * t157 - s_armcross_leg2 * acceleration[2]
+            + c_cross_leg2 * t174 + minus_grod_vx_leg2 * t125 * (t178 + t186)
+            + t137 * t196;
+        let rate_dot_arm_leg2 = t135 * t198;
+        let garm_vy_leg2 = c_armcross_leg2 * t135;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t135;
+        let garm_wz_leg2 = t122 * garm_vy_leg2 - t116 * garm_vx_leg2;
+        let t210 = pose[0] - t18 + 0.24;
+        let t211 = 0.52 * t210;
+        let t213 = t210 * t210 + t23;
+        let t214 = pose[1] - t27;
+        let t216 = 0.3364 - t214 * t214;
+        let t217 = t213 - t216;
+        let t218 = t217 + 0.0676;
+        let t220 = 0.2704 * t213;
+        let t222 = t220 - t218 * t218;
+        ::overact::guard::reach(t222, "leg3")?;
+        let t223 = ::overact::math::sqrt(t222);
+        let minus_c_arm_leg3 = (t211 * t218 + t34 * t223) / t220;
+        let t228 = 2.972651605231867 * t216;
+        ::overact::guard::reach(t228, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t228);
+        let t230 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t217) / t230;
+        let s_arm_leg3 = (t211 * t223 - t34 * t218) / t220;
+        let s_cross_leg3 = t223 / t230;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t243 = 1.0 / s_cross_leg3;
-        let t244 = 3.8461538461538463 * t243;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t244;
-        let t247 = acceleration[0] + t60 + t63;
+        let t240 = 3.8461538461538463 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t240;
+        let t243 = acceleration[0] + t58 + t61;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t254 = 0.26 * c_cross_leg3;
-        let t255 = twist[0] + t72;
-        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t260 = t218 * minus_grod_vy_leg3;
-        let t261 = twist[1] - t62;
-        let t262 = t260 * t261;
-        let rate_arm_leg3 = t244
-            * (minus_c_armcross_leg3 * t255 - s_armcross_leg3 * twist[2] + t262);
-        let t265 = rate_arm_leg3 * rate_arm_leg3;
-        let t267 = 0.58 * c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t261;
-        let t269 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t274 = s_armcross_leg3 * t255 + minus_c_armcross_leg3 * twist[2]
-            - t254 * rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t274;
-        let t276 = rate_cross_leg3 * rate_cross_leg3;
-        let t282 = acceleration[1] - t99 + t101;
-        let t284 = t282 + t218 * t269;
-        let t286 = minus_c_armcross_leg3 * t247 - s_armcross_leg3 * acceleration[2]
-            + t254 * t265 + t267 * (t269 + t276) + t260 * t284;
-        let rate_dot_arm_leg3 = t244 * t286;
-        let garm_vy_leg3 = t244 * t260;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t244;
-        let garm_wz_leg3 = t29 * garm_vx_leg3 - t18 * garm_vy_leg3;
-        let t298 = pose[1] - t117 + 0.24;
-        let t300 = t298 * t298 + t22;
-        let t301 = 0.2704 * t300;
-        let t302 = pose[0] - t123;
-        let t303 = t302 * t302;
-        let t304 = 0.3364 - t303;
-        let t305 = t300 - t304;
-        let t306 = t305 + 0.0676;
-        let t308 = t301 - t306 * t306;
+        let t250 = twist[0] + t69;
+        let minus_grod_vy_leg3 = 0.52 / t230;
+        let t255 = t214 * minus_grod_vy_leg3;
+        let t256 = twist[1] - t60;
+        let t257 = t255 * t256;
+        let t258 = minus_c_armcross_leg3 * t250 - s_armcross_leg3 * twist[2] + t257;
+        let rate_arm_leg3 = t240 * t258;
+        let t260 = t258 * rate_arm_leg3;
+        let t261 = t260 / s_cross_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t256;
+        let t265 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t269 = 0.26 * c_cross_leg3;
+        let t271 = s_armcross_leg3 * t250 + minus_c_armcross_leg3 * twist[2]
+            - t269 * rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t271;
+        let t273 = rate_cross_leg3 * rate_cross_leg3;
+        let t279 = acceleration[1] - t98 + t100;
+        let t281 = t279 + t257 * minus_rate_rod_leg3;
+        let t283 = minus_c_armcross_leg3 * t243 - s_armcross_leg3 * acceleration[2]
+            + c_cross_leg3 * t261 + minus_grod_vy_leg3 * t216 * (t265 + t273)
+            + t255 * t281;
+        let rate_dot_arm_leg3 = t240 * t283;
+        let garm_vy_leg3 = t240 * t255;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t240;
+        let garm_wz_leg3 = t27 * garm_vx_leg3 - t18 * garm_vy_leg3;
+        let t295 = pose[1] - t116 + 0.24;
+        let t297 = t295 * t295 + t23;
+        let t298 = 0.2704 * t297;
+        let t299 = pose[0] - t122;
+        let t301 = 0.3364 - t299 * t299;
+        let t302 = t297 - t301;
+        let t303 = t302 + 0.0676;
+        let t305 = t298 - t303 * t303;
+        ::overact::guard::reach(t305, "leg4")?;
+        let t306 = ::overact::math::sqrt(t305);
+        let t307 = 0.8620689655172413 * t306;
+        let t308 = 2.972651605231867 * t301;
         ::overact::guard::reach(t308, "leg4")?;
-        let t309 = ::overact::math::sqrt(t308);
-        let t310 = 2.972651605231867 * t304;
-        ::overact::guard::reach(t310, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t310);
+        let c_rod_leg4 = ::overact::math::sqrt(t308);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t312 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t309 / t312;
+        let t310 = t307 / c_rod_leg4;
+        let s_cross_leg4 = 3.8461538461538463 * t310;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t314 = 1.0 / s_cross_leg4;
-        let t315 = 3.8461538461538463 * t314;
-        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t317 = t302 * grod_vx_leg4;
-        let garm_vx_leg4 = t315 * t317;
-        let t319 = 1.0 / t301;
-        let t320 = 0.52 * t298;
-        let minus_c_arm_leg4 = t319 * (t320 * t306 + t36 * t309);
-        let c_cross_leg4 = (-0.0676 + t305) / t312;
-        let s_arm_leg4 = t319 * (t320 * t309 - t36 * t306);
+        let t312 = 3.8461538461538463 / s_cross_leg4;
+        let t313 = 0.3016 * c_rod_leg4;
+        let grod_vx_leg4 = 0.52 / t313;
+        let t315 = t299 * grod_vx_leg4;
+        let garm_vx_leg4 = t312 * t315;
+        let t317 = 0.52 * t295;
+        let minus_c_arm_leg4 = (t317 * t303 + t34 * t306) / t298;
+        let c_cross_leg4 = (-0.0676 + t302) / t313;
+        let s_arm_leg4 = (t317 * t306 - t34 * t303) / t298;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t335 = acceleration[1] - t156 + t159;
+        let t332 = acceleration[1] - t153 + t156;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t342 = 0.26 * c_cross_leg4;
-        let t343 = twist[1] - t168;
-        let t347 = twist[0] + t158;
-        let t348 = t317 * t347;
-        let rate_arm_leg4 = t315
-            * (minus_c_armcross_leg4 * t343 - s_armcross_leg4 * twist[2] + t348);
-        let t351 = rate_arm_leg4 * rate_arm_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t347;
-        let t355 = rate_rod_leg4 * rate_rod_leg4;
-        let t360 = s_armcross_leg4 * t343 + minus_c_armcross_leg4 * twist[2]
-            - t342 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t360;
-        let t362 = rate_cross_leg4 * rate_cross_leg4;
-        let t368 = acceleration[0] + t193 + t195;
-        let t370 = t368 + t302 * t355;
-        let t372 = minus_c_armcross_leg4 * t335 - s_armcross_leg4 * acceleration[2]
-            + t342 * t351 + 0.58 * c_rod_leg4 * (t355 + t362) + t317 * t370;
-        let rate_dot_arm_leg4 = t315 * t372;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t315;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t315;
-        let garm_wz_leg4 = t117 * garm_vx_leg4 - t123 * garm_vy_leg4;
-        let t383 = 9.81 * c_arm_leg1;
-        let t388 = 9.81 * c_arm_leg2;
-        let t393 = 9.81 * minus_c_arm_leg3;
-        let t398 = 9.81 * minus_c_arm_leg4;
-        let t403 = 9.81 * minus_s_arm_leg1;
-        let t408 = 9.81 * minus_s_arm_leg2;
-        let t413 = 9.81 * s_arm_leg3;
-        let t418 = 9.81 * s_arm_leg4;
-        let t455 = t57 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t455;
-        let t458 = rate_rod_leg1 * (1.7241379310344827 * t90);
-        let s_rod_leg1 = 1.7241379310344827 * t30;
-        let t460 = 0.26 * rate_dot_arm_leg1;
-        let t465 = 0.26 * t83;
-        let t467 = t80 * minus_rate_cross_leg1;
+        let t339 = twist[1] - t164;
+        let t343 = twist[0] + t155;
+        let t344 = t315 * t343;
+        let t345 = minus_c_armcross_leg4 * t339 - s_armcross_leg4 * twist[2] + t344;
+        let rate_arm_leg4 = t312 * t345;
+        let t347 = 0.26 * c_cross_leg4;
+        let t348 = t347 * rate_arm_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t343;
+        let t352 = rate_rod_leg4 * rate_rod_leg4;
+        let t356 = s_armcross_leg4 * t339 + minus_c_armcross_leg4 * twist[2] - t348;
+        let rate_cross_leg4 = grod_vx_leg4 * t356;
+        let t358 = rate_cross_leg4 * rate_cross_leg4;
+        let t364 = acceleration[0] + t191 + t193;
+        let t366 = t364 + t344 * rate_rod_leg4;
+        let t368 = minus_c_armcross_leg4 * t332 - s_armcross_leg4 * acceleration[2]
+            + rate_arm_leg4 * t348 + grod_vx_leg4 * t301 * (t352 + t358) + t315 * t366;
+        let rate_dot_arm_leg4 = t312 * t368;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t312;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t312;
+        let garm_wz_leg4 = t116 * garm_vx_leg4 - t122 * garm_vy_leg4;
+        let t379 = 9.81 * c_arm_leg1;
+        let t384 = 9.81 * c_arm_leg2;
+        let t389 = 9.81 * minus_c_arm_leg3;
+        let t394 = 9.81 * minus_c_arm_leg4;
+        let t399 = 9.81 * minus_s_arm_leg1;
+        let t404 = 9.81 * minus_s_arm_leg2;
+        let t409 = 9.81 * s_arm_leg3;
+        let t414 = 9.81 * s_arm_leg4;
+        let t451 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t451;
+        let s_rod_leg1 = 1.7241379310344827 * t28;
+        let t454 = 1.7241379310344827 * t89;
+        let t455 = rate_rod_leg1 * t454;
+        let t456 = 0.26 * rate_dot_arm_leg1;
+        let t461 = t77 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t460 + s_armcross_leg1 * t64
-                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t465 + t467 + t467);
-        let t473 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t475 = t458 + t473 + t458;
-        let t476 = c_rod_leg1 * t475;
-        let t477 = t78 * t476;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t71 * garm_vy_leg1);
-        let t482 = t92 * s_rod_leg1;
-        let t483 = 1.7241379310344827 * t482;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t455;
-        let gcross_wz_leg1 = t29 * minus_gcross_vx_leg1 - t18 * minus_gcross_vy_leg1;
+            * (c_cross_leg1 * t456 + s_armcross_leg1 * t62
+                + c_armcross_leg1 * acceleration[2] + t80 + t461 + t461);
+        let t467 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t469 = t455 + t467 + t455;
+        let t470 = s_rod_leg1 * t469;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t84 * garm_vy_leg1);
+        let t475 = t454 * t454;
+        let t476 = t75 * t475;
+        let t477 = t476 / c_rod_leg1;
+        let t478 = 1.7241379310344827 * t477;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t451;
+        let gcross_wz_leg1 = t27 * minus_gcross_vx_leg1 - t18 * minus_gcross_vy_leg1;
         let grod_wz_leg1 = t18 * grod_vy_leg1;
-        let t492 = t85 * t483;
-        let t493 = grod_wz_leg1 * t492;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t167 * garm_vx_leg2);
-        let t498 = minus_rate_rod_leg2 * (1.7241379310344827 * t186);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t124;
-        let t503 = 0.26 * t177;
-        let t505 = t174 * minus_rate_cross_leg2;
-        let t509 = 0.26 * rate_dot_arm_leg2;
+        let t487 = grod_wz_leg1 * t476;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t182 * garm_vx_leg2);
+        let t492 = minus_rate_rod_leg2 * (1.7241379310344827 * t184);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t123;
+        let t497 = t170 * minus_rate_cross_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t160 + c_armcross_leg2 * acceleration[2]
-                + s_cross_leg2 * t503 + t505 + t505 + c_cross_leg2 * t509);
-        let t513 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t515 = t498 + t513 + t498;
-        let t516 = c_rod_leg2 * t515;
-        let t517 = t139 * t516;
-        let t520 = 2.972651605231867 * (t125 * t188);
-        let t521 = t188 - t520;
-        let t522 = t139 * t521;
-        let t523 = minus_grod_vx_leg2 * t522;
-        let t525 = t136 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t525;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t525;
-        let grod_wz_leg2 = t117 * minus_grod_vx_leg2;
-        let t531 = grod_wz_leg2 * t522;
-        let gcross_wz_leg2 = t117 * minus_gcross_vx_leg2 - t123 * minus_gcross_vy_leg2;
-        let t537 = t243 * minus_grod_vy_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t537;
-        let t540 = minus_rate_rod_leg3 * (1.7241379310344827 * t274);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t218;
-        let t545 = 0.26 * t265;
-        let t547 = t262 * rate_cross_leg3;
-        let t551 = 0.26 * rate_dot_arm_leg3;
+            * (s_armcross_leg2 * t157 + c_armcross_leg2 * acceleration[2] + t173 + t497
+                + t497 + t182 * rate_dot_arm_leg2);
+        let t504 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t506 = t492 + t504 + t492;
+        let t507 = c_rod_leg2 * t506;
+        let t508 = t137 * t507;
+        let t510 = t131 * t186;
+        let t511 = t137 * t510;
+        let t512 = minus_grod_vx_leg2 * t511;
+        let t514 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t514;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t514;
+        let t519 = t116 * t512;
+        let gcross_wz_leg2 = t116 * minus_gcross_vx_leg2 - t122 * minus_gcross_vy_leg2;
+        let t525 = minus_grod_vy_leg3 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t525;
+        let t528 = minus_rate_rod_leg3 * (1.7241379310344827 * t271);
+        let minus_s_rod_leg3 = 1.7241379310344827 * t214;
+        let t533 = t257 * rate_cross_leg3;
+        let t537 = 0.26 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t247 + minus_c_armcross_leg3 * acceleration[2]
-                - (s_cross_leg3 * t545 - t547 - t547) - c_cross_leg3 * t551);
-        let t555 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t557 = t540 + t555 + t540;
-        let t558 = c_rod_leg3 * t557;
-        let t559 = t260 * t558;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t254 * garm_vy_leg3);
-        let t564 = t276 * minus_s_rod_leg3;
-        let t565 = 1.7241379310344827 * t564;
-        let gcross_vz_leg3 = s_arm_leg3 * t537;
-        let gcross_wz_leg3 = t18 * minus_gcross_vy_leg3 - t29 * minus_gcross_vx_leg3;
-        let grod_wz_leg3 = t18 * minus_grod_vy_leg3;
-        let t574 = t267 * t565;
-        let t575 = grod_wz_leg3 * t574;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t342 * garm_vx_leg4);
-        let t580 = rate_rod_leg4 * (1.7241379310344827 * t360);
-        let s_rod_leg4 = 1.7241379310344827 * t302;
-        let t585 = 0.26 * t351;
-        let t587 = t348 * rate_cross_leg4;
-        let t591 = 0.26 * rate_dot_arm_leg4;
+            * (s_armcross_leg3 * t243 + minus_c_armcross_leg3 * acceleration[2]
+                - (t260 - t533 - t533) - c_cross_leg3 * t537);
+        let t541 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t543 = t528 + t541 + t528;
+        let t544 = c_rod_leg3 * t543;
+        let t545 = t255 * t544;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t269 * garm_vy_leg3);
+        let t550 = t273 * minus_s_rod_leg3;
+        let t551 = 1.7241379310344827 * t550;
+        let gcross_vz_leg3 = s_arm_leg3 * t525;
+        let gcross_wz_leg3 = t18 * minus_gcross_vy_leg3 - t27 * minus_gcross_vx_leg3;
+        let t559 = t18 * t551;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t347 * garm_vx_leg4);
+        let s_rod_leg4 = 1.7241379310344827 * t299;
+        let t564 = 1.7241379310344827 * t356;
+        let t565 = rate_rod_leg4 * t564;
+        let t569 = t345 * rate_arm_leg4;
+        let t570 = t344 * rate_cross_leg4;
+        let t574 = 0.26 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t335 + minus_c_armcross_leg4 * acceleration[2]
-                - (s_cross_leg4 * t585 - t587 - t587) - c_cross_leg4 * t591);
-        let t595 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t597 = t580 + t595 + t580;
-        let t598 = c_rod_leg4 * t597;
-        let t599 = t317 * t598;
-        let t602 = 2.972651605231867 * (t303 * t362);
-        let t603 = t362 - t602;
-        let t604 = t317 * t603;
-        let t605 = grod_vx_leg4 * t604;
-        let t607 = t314 * grod_vx_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t607;
-        let gcross_vz_leg4 = s_arm_leg4 * t607;
-        let minus_gcross_wz_leg4 = t117 * minus_gcross_vx_leg4
-            - t123 * minus_gcross_vy_leg4;
-        let grod_wz_leg4 = t117 * grod_vx_leg4;
-        let t617 = grod_wz_leg4 * t604;
-        let t619 = t477 - minus_rate_dot_cross_leg1;
-        let t621 = t78 * t619 - t476;
-        let t623 = t30 * t483;
-        let t625 = t623 - (t92 - t623);
-        let t633 = t517 - minus_rate_dot_cross_leg2;
-        let t635 = t516 - t139 * t633;
-        let t637 = t520 - t521;
-        let t645 = rate_dot_cross_leg3 - t559;
-        let t647 = t260 * t645 + t558;
-        let t650 = t218 * t565;
-        let t652 = t650 - (t276 - t650);
-        let t659 = t602 - t603;
-        let t661 = rate_dot_cross_leg4 - t599;
-        let t663 = t598 + t317 * t661;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t104;
-        let t676 = s_rod_leg1 * (t492 + rate_dot_rod_leg1) + c_rod_leg1 * (t94 - t623);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t198;
-        let t690 = minus_s_rod_leg2 * (t522 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t181 - t520);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t284;
-        let t704 = minus_s_rod_leg3 * (t574 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t269 - t650);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t370;
-        let t719 = s_rod_leg4 * (t604 + rate_dot_rod_leg4) + c_rod_leg4 * (t355 - t602);
-        let t751 = 1.7241379310344827 * t102;
-        let t754 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t760 = 1.7241379310344827 * t196;
-        let t762 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t769 = 1.7241379310344827 * t282;
-        let t772 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t778 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t779 = 1.7241379310344827 * t368;
-        let t795 = s_cross_leg1 * 0.26;
-        let t799 = t71 * t475 - t795 * (t751 - t482);
-        let t801 = t460 - t383;
-        let t803 = t403 - t465;
-        let t806 = s_rod_leg1 * (c_cross_leg1 * t801 - s_cross_leg1 * t803);
-        let t814 = c_cross_leg1 * t803 + s_cross_leg1 * t801;
-        let t815 = 1.7241379310344827 * t814;
-        let t825 = 0.8620689655172413 * t131;
-        let t833 = t825 * (minus_rate_dot_rod_leg2 - t522) - t139 * t825 * (t520 + t181)
-            - t167 * t515;
-        let t835 = t509 - t388;
-        let t837 = t408 - t503;
-        let t840 = minus_s_rod_leg2 * (c_cross_leg2 * t835 - s_cross_leg2 * t837);
-        let t845 = c_cross_leg2 * t837 + s_cross_leg2 * t835;
-        let t846 = 1.7241379310344827 * t845;
-        let t859 = 0.26 * s_cross_leg3;
-        let t863 = t859 * (t769 - t564) + t254 * t557;
-        let t865 = t413 + t545;
-        let t867 = t393 + t551;
-        let t870 = minus_s_rod_leg3 * (s_cross_leg3 * t865 + c_cross_leg3 * t867);
-        let t878 = s_cross_leg3 * t867 - c_cross_leg3 * t865;
-        let t879 = 1.7241379310344827 * t878;
-        let t889 = 0.8620689655172413 * t309;
-        let t897 = t889 * (t604 - rate_dot_rod_leg4) + t317 * t889 * (t602 + t355)
-            - t342 * t597;
-        let t899 = t418 + t585;
-        let t901 = t398 + t591;
-        let t904 = s_rod_leg4 * (s_cross_leg4 * t899 + c_cross_leg4 * t901);
-        let t909 = s_cross_leg4 * t901 - c_cross_leg4 * t899;
-        let t910 = 1.7241379310344827 * t909;
-        let t925 = t71 * t92 - minus_rate_dot_cross_leg1 * t795;
-        let t941 = t167 * t188 - minus_rate_dot_cross_leg2 * (0.26 * s_cross_leg2);
-        let t956 = rate_dot_cross_leg3 * t859 + t254 * t276;
-        let t972 = rate_dot_cross_leg4 * (0.26 * s_cross_leg4) + t342 * t362;
+            * (s_armcross_leg4 * t332 + minus_c_armcross_leg4 * acceleration[2]
+                - (t569 - t570 - t570) - c_cross_leg4 * t574);
+        let t578 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t580 = t565 + t578 + t565;
+        let t581 = s_rod_leg4 * t580;
+        let t583 = t564 * t564;
+        let t584 = t315 * t583;
+        let t585 = grod_vx_leg4 * t584;
+        let t587 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t587;
+        let gcross_vz_leg4 = s_arm_leg4 * t587;
+        let minus_gcross_wz_leg4 = t116 * minus_gcross_vx_leg4
+            - t122 * minus_gcross_vy_leg4;
+        let t596 = t116 * t585;
+        let t598 = t470 - minus_rate_dot_cross_leg1;
+        let t601 = t75 * t598 - c_rod_leg1 * t469;
+        let t603 = t28 * t478;
+        let t604 = t603 - t475;
+        let t612 = t508 - minus_rate_dot_cross_leg2;
+        let t614 = t507 - t137 * t612;
+        let t616 = t137 * t511;
+        let t618 = minus_grod_vx_leg2 * (t616 - t510);
+        let t625 = rate_dot_cross_leg3 - t545;
+        let t627 = t255 * t625 + t544;
+        let t630 = minus_s_rod_leg3 * t550;
+        let t633 = minus_grod_vy_leg3 * (t630 - (t273 - t630));
+        let t639 = t299 * t585;
+        let t641 = grod_vx_leg4 * (t639 - t583);
+        let t643 = rate_dot_cross_leg4 - t581;
+        let t645 = c_rod_leg4 * t580 + t315 * t643;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t103;
+        let t658 = s_rod_leg1 * (t476 + rate_dot_rod_leg1) + c_rod_leg1 * (t93 - t603);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t196;
+        let t672 = minus_s_rod_leg2 * (t511 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t178 - t616);
+        let t674 = minus_grod_vx_leg2 * t504;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t281;
+        let t687 = minus_s_rod_leg3 * (c_rod_leg3 * t550 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t265 - t630);
+        let t694 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t695 = t18 * t694;
+        let t698 = grod_vx_leg4 * t578;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t366;
+        let t704 = s_rod_leg4 * (t584 + rate_dot_rod_leg4) + c_rod_leg4 * (t352 - t639);
+        let t736 = 1.7241379310344827 * t101;
+        let t739 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t745 = 1.7241379310344827 * t194;
+        let t747 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t754 = 1.7241379310344827 * t279;
+        let t761 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t762 = 1.7241379310344827 * t364;
+        let t772 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t774 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
+        let t776 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t778 = s_cross_leg1 * 0.26;
+        let t782 = t84 * t469 - t778 * (t736 - t477);
+        let t784 = t456 - t379;
+        let t786 = t399 - t81;
+        let t789 = s_rod_leg1 * (c_cross_leg1 * t784 - s_cross_leg1 * t786);
+        let t797 = c_cross_leg1 * t786 + s_cross_leg1 * t784;
+        let t798 = 1.7241379310344827 * t797;
+        let t808 = 0.8620689655172413 * t130;
+        let t816 = t808 * (minus_rate_dot_rod_leg2 - t511) - t137 * t808 * (t616 + t178)
+            - t182 * t506;
+        let t819 = 0.26 * rate_dot_arm_leg2 - t384;
+        let t821 = t404 - t174;
+        let t824 = minus_s_rod_leg2 * (c_cross_leg2 * t819 - s_cross_leg2 * t821);
+        let t829 = c_cross_leg2 * t821 + s_cross_leg2 * t819;
+        let t830 = 1.7241379310344827 * t829;
+        let t843 = 0.26 * s_cross_leg3;
+        let t847 = t843 * (t754 - t550) + t269 * t543;
+        let t849 = t409 + t261;
+        let t851 = t389 + t537;
+        let t854 = minus_s_rod_leg3 * (s_cross_leg3 * t849 + c_cross_leg3 * t851);
+        let t862 = s_cross_leg3 * t851 - c_cross_leg3 * t849;
+        let t863 = 1.7241379310344827 * t862;
+        let t880 = t307 * (t584 - rate_dot_rod_leg4) + s_rod_leg4 * t310 * (t639 + t352)
+            - t347 * t580;
+        let t883 = t414 + t569 / s_cross_leg4;
+        let t885 = t394 + t574;
+        let t888 = s_rod_leg4 * (s_cross_leg4 * t883 + c_cross_leg4 * t885);
+        let t893 = s_cross_leg4 * t885 - c_cross_leg4 * t883;
+        let t894 = 1.7241379310344827 * t893;
+        let t909 = t84 * t91 - minus_rate_dot_cross_leg1 * t778;
+        let t925 = t182 * t186 - minus_rate_dot_cross_leg2 * (0.26 * s_cross_leg2);
+        let t940 = rate_dot_cross_leg3 * t843 + t269 * t273;
+        let t955 = rate_dot_cross_leg4 * t310 + t347 * t358;
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 garm_vx_leg2 * rate_dot_arm_leg2, garm_vx_leg3 * rate_dot_arm_leg3,
-                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t383), -(garm_vx_leg2 * t388),
-                garm_vx_leg3 * t393, garm_vx_leg4 * t398, -(garm_vx_leg1 * t403),
-                -(garm_vx_leg2 * t408), garm_vx_leg3 * t413, garm_vx_leg4 * t418,
+                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t379), -(garm_vx_leg2 * t384),
+                garm_vx_leg3 * t389, garm_vx_leg4 * t394, -(garm_vx_leg1 * t399),
+                -(garm_vx_leg2 * t404), garm_vx_leg3 * t409, garm_vx_leg4 * t414,
                 garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t477,
-                minus_gcross_vx_leg2 * t517 - t523, -(minus_gcross_vx_leg3 * t559),
-                -(minus_gcross_vx_leg4 * t599 + t605), -(minus_gcross_vx_leg1 * t621),
-                -(minus_gcross_vx_leg2 * t635 + minus_grod_vx_leg2 * t637),
-                minus_gcross_vx_leg3 * t647, grod_vx_leg4 * t659 - minus_gcross_vx_leg4 * t663,
-                -(minus_gcross_vx_leg1 * t676),
-                -(minus_gcross_vx_leg2 * t690 + minus_grod_vx_leg2 * t513),
-                -(minus_gcross_vx_leg3 * t704), grod_vx_leg4 * t595 - minus_gcross_vx_leg4 * t719,
-                -(minus_gcross_vx_leg1 * t619), t523 - minus_gcross_vx_leg2 * t633,
-                -(minus_gcross_vx_leg3 * t645), t605 - minus_gcross_vx_leg4 * t661,
-                -(minus_gcross_vx_leg1 * t751), minus_gcross_vx_leg2 * t760 + t762,
-                minus_gcross_vx_leg3 * t769, t778 - minus_gcross_vx_leg4 * t779, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
-                garm_vx_leg1 * t799 + minus_gcross_vx_leg1 * t806,
-                garm_vx_leg2 * t833 - minus_gcross_vx_leg2 * t840 + t846,
-                garm_vx_leg3 * t863 - minus_gcross_vx_leg3 * t870,
-                garm_vx_leg4 * t897 + minus_gcross_vx_leg4 * t904 - t910,
-                garm_vx_leg1 * t925 - minus_gcross_vx_leg1 * t814,
-                garm_vx_leg2 * t941 - minus_gcross_vx_leg2 * t845,
-                garm_vx_leg3 * t956 - minus_gcross_vx_leg3 * t878,
-                garm_vx_leg4 * t972 - minus_gcross_vx_leg4 * t909,
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t470,
+                minus_gcross_vx_leg2 * t508 - t512, -(minus_gcross_vx_leg3 * t545),
+                -(minus_gcross_vx_leg4 * t581 + t585), -(minus_gcross_vx_leg1 * t601),
+                -(minus_gcross_vx_leg2 * t614 + t618), minus_gcross_vx_leg3 * t627,
+                t641 - minus_gcross_vx_leg4 * t645, -(minus_gcross_vx_leg1 * t658),
+                -(minus_gcross_vx_leg2 * t672 + t674), -(minus_gcross_vx_leg3 * t687),
+                t698 - minus_gcross_vx_leg4 * t704, -(minus_gcross_vx_leg1 * t598),
+                t512 - minus_gcross_vx_leg2 * t612, -(minus_gcross_vx_leg3 * t625),
+                t585 - minus_gcross_vx_leg4 * t643, -(minus_gcross_vx_leg1 * t736),
+                minus_gcross_vx_leg2 * t745 + t747, minus_gcross_vx_leg3 * t754,
+                t761 - minus_gcross_vx_leg4 * t762, 0.0, t772, 0.0, t776,
+                garm_vx_leg1 * t782 + minus_gcross_vx_leg1 * t789,
+                garm_vx_leg2 * t816 - minus_gcross_vx_leg2 * t824 + t830,
+                garm_vx_leg3 * t847 - minus_gcross_vx_leg3 * t854,
+                garm_vx_leg4 * t880 + minus_gcross_vx_leg4 * t888 - t894,
+                garm_vx_leg1 * t909 - minus_gcross_vx_leg1 * t797,
+                garm_vx_leg2 * t925 - minus_gcross_vx_leg2 * t829,
+                garm_vx_leg3 * t940 - minus_gcross_vx_leg3 * t862,
+                garm_vx_leg4 * t955 - minus_gcross_vx_leg4 * t893,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
                 garm_vy_leg2 * rate_dot_arm_leg2, garm_vy_leg3 * rate_dot_arm_leg3,
-                garm_vy_leg4 * rate_dot_arm_leg4, -(garm_vy_leg1 * t383), -(garm_vy_leg2 * t388),
-                garm_vy_leg3 * t393, garm_vy_leg4 * t398, -(garm_vy_leg1 * t403),
-                -(garm_vy_leg2 * t408), garm_vy_leg3 * t413, garm_vy_leg4 * t418,
+                garm_vy_leg4 * rate_dot_arm_leg4, -(garm_vy_leg1 * t379), -(garm_vy_leg2 * t384),
+                garm_vy_leg3 * t389, garm_vy_leg4 * t394, -(garm_vy_leg1 * t399),
+                -(garm_vy_leg2 * t404), garm_vy_leg3 * t409, garm_vy_leg4 * t414,
                 garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t477 - t483,
-                minus_gcross_vy_leg2 * t517, -(minus_gcross_vy_leg3 * t559 + t565),
-                -(minus_gcross_vy_leg4 * t599), grod_vy_leg1 * t625 - minus_gcross_vy_leg1 * t621,
-                -(minus_gcross_vy_leg2 * t635),
-                -(minus_grod_vy_leg3 * t652 - minus_gcross_vy_leg3 * t647),
-                -(minus_gcross_vy_leg4 * t663),
-                -(minus_gcross_vy_leg1 * t676 + grod_vy_leg1 * t473),
-                -(minus_gcross_vy_leg2 * t690),
-                minus_grod_vy_leg3 * t555 - minus_gcross_vy_leg3 * t704,
-                -(minus_gcross_vy_leg4 * t719), t483 - minus_gcross_vy_leg1 * t619,
-                -(minus_gcross_vy_leg2 * t633), t565 - minus_gcross_vy_leg3 * t645,
-                -(minus_gcross_vy_leg4 * t661), -(minus_gcross_vy_leg1 * t751 + t754),
-                minus_gcross_vy_leg2 * t760, minus_gcross_vy_leg3 * t769 - t772,
-                -(minus_gcross_vy_leg4 * t779), grod_vy_leg1 * rate_dot_rod_leg1, 0.0,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
-                garm_vy_leg1 * t799 + minus_gcross_vy_leg1 * t806 - t815,
-                garm_vy_leg2 * t833 - minus_gcross_vy_leg2 * t840,
-                garm_vy_leg3 * t863 - minus_gcross_vy_leg3 * t870 + t879,
-                garm_vy_leg4 * t897 + minus_gcross_vy_leg4 * t904,
-                garm_vy_leg1 * t925 - minus_gcross_vy_leg1 * t814,
-                garm_vy_leg2 * t941 - minus_gcross_vy_leg2 * t845,
-                garm_vy_leg3 * t956 - minus_gcross_vy_leg3 * t878,
-                garm_vy_leg4 * t972 - minus_gcross_vy_leg4 * t909,
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t470 - t478,
+                minus_gcross_vy_leg2 * t508, -(minus_gcross_vy_leg3 * t545 + t551),
+                -(minus_gcross_vy_leg4 * t581), grod_vy_leg1 * t604 - minus_gcross_vy_leg1 * t601,
+                -(minus_gcross_vy_leg2 * t614), -(t633 - minus_gcross_vy_leg3 * t627),
+                -(minus_gcross_vy_leg4 * t645),
+                -(minus_gcross_vy_leg1 * t658 + grod_vy_leg1 * t467),
+                -(minus_gcross_vy_leg2 * t672),
+                minus_grod_vy_leg3 * t541 - minus_gcross_vy_leg3 * t687,
+                -(minus_gcross_vy_leg4 * t704), t478 - minus_gcross_vy_leg1 * t598,
+                -(minus_gcross_vy_leg2 * t612), t551 - minus_gcross_vy_leg3 * t625,
+                -(minus_gcross_vy_leg4 * t643), -(minus_gcross_vy_leg1 * t736 + t739),
+                minus_gcross_vy_leg2 * t745, minus_gcross_vy_leg3 * t754 - t694,
+                -(minus_gcross_vy_leg4 * t762), grod_vy_leg1 * rate_dot_rod_leg1, 0.0, t774, 0.0,
+                garm_vy_leg1 * t782 + minus_gcross_vy_leg1 * t789 - t798,
+                garm_vy_leg2 * t816 - minus_gcross_vy_leg2 * t824,
+                garm_vy_leg3 * t847 - minus_gcross_vy_leg3 * t854 + t863,
+                garm_vy_leg4 * t880 + minus_gcross_vy_leg4 * t888,
+                garm_vy_leg1 * t909 - minus_gcross_vy_leg1 * t797,
+                garm_vy_leg2 * t925 - minus_gcross_vy_leg2 * t829,
+                garm_vy_leg3 * t940 - minus_gcross_vy_leg3 * t862,
+                garm_vy_leg4 * t955 - minus_gcross_vy_leg4 * t893,
             ],
             [
                 0.0, 0.0, 0.0, acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t383,
-                minus_garm_vz_leg2 * t388, -(minus_garm_vz_leg3 * t393),
-                -(minus_garm_vz_leg4 * t398), minus_garm_vz_leg1 * t403, minus_garm_vz_leg2 * t408,
-                -(minus_garm_vz_leg3 * t413), -(minus_garm_vz_leg4 * t418),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t379,
+                minus_garm_vz_leg2 * t384, -(minus_garm_vz_leg3 * t389),
+                -(minus_garm_vz_leg4 * t394), minus_garm_vz_leg1 * t399, minus_garm_vz_leg2 * t404,
+                -(minus_garm_vz_leg3 * t409), -(minus_garm_vz_leg4 * t414),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6507,60 +6434,56 @@ impl Schoenflies4 {
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t477, minus_gcross_vz_leg2 * t517, gcross_vz_leg3 * t559,
-                gcross_vz_leg4 * t599, -(minus_gcross_vz_leg1 * t621),
-                -(minus_gcross_vz_leg2 * t635), -(gcross_vz_leg3 * t647), gcross_vz_leg4 * t663,
-                -(minus_gcross_vz_leg1 * t676), -(minus_gcross_vz_leg2 * t690),
-                gcross_vz_leg3 * t704, gcross_vz_leg4 * t719, -(minus_gcross_vz_leg1 * t619),
-                -(minus_gcross_vz_leg2 * t633), gcross_vz_leg3 * t645, gcross_vz_leg4 * t661,
-                -(minus_gcross_vz_leg1 * t751), minus_gcross_vz_leg2 * t760,
-                -(gcross_vz_leg3 * t769), gcross_vz_leg4 * t779, 0.0, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t806 - minus_garm_vz_leg1 * t799,
-                -(minus_gcross_vz_leg2 * t840 + minus_garm_vz_leg2 * t833),
-                gcross_vz_leg3 * t870 - minus_garm_vz_leg3 * t863,
-                -(minus_garm_vz_leg4 * t897 + gcross_vz_leg4 * t904),
-                -(minus_garm_vz_leg1 * t925 + minus_gcross_vz_leg1 * t814),
-                -(minus_gcross_vz_leg2 * t845 + minus_garm_vz_leg2 * t941),
-                gcross_vz_leg3 * t878 - minus_garm_vz_leg3 * t956,
-                gcross_vz_leg4 * t909 - minus_garm_vz_leg4 * t972,
+                minus_gcross_vz_leg1 * t470, minus_gcross_vz_leg2 * t508, gcross_vz_leg3 * t545,
+                gcross_vz_leg4 * t581, -(minus_gcross_vz_leg1 * t601),
+                -(minus_gcross_vz_leg2 * t614), -(gcross_vz_leg3 * t627), gcross_vz_leg4 * t645,
+                -(minus_gcross_vz_leg1 * t658), -(minus_gcross_vz_leg2 * t672),
+                gcross_vz_leg3 * t687, gcross_vz_leg4 * t704, -(minus_gcross_vz_leg1 * t598),
+                -(minus_gcross_vz_leg2 * t612), gcross_vz_leg3 * t625, gcross_vz_leg4 * t643,
+                -(minus_gcross_vz_leg1 * t736), minus_gcross_vz_leg2 * t745,
+                -(gcross_vz_leg3 * t754), gcross_vz_leg4 * t762, 0.0, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t789 - minus_garm_vz_leg1 * t782,
+                -(minus_gcross_vz_leg2 * t824 + minus_garm_vz_leg2 * t816),
+                gcross_vz_leg3 * t854 - minus_garm_vz_leg3 * t847,
+                -(minus_garm_vz_leg4 * t880 + gcross_vz_leg4 * t888),
+                -(minus_garm_vz_leg1 * t909 + minus_gcross_vz_leg1 * t797),
+                -(minus_gcross_vz_leg2 * t829 + minus_garm_vz_leg2 * t925),
+                gcross_vz_leg3 * t862 - minus_garm_vz_leg3 * t940,
+                gcross_vz_leg4 * t893 - minus_garm_vz_leg4 * t955,
             ],
             [
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 garm_wz_leg1 * rate_dot_arm_leg1, garm_wz_leg2 * rate_dot_arm_leg2,
                 garm_wz_leg3 * rate_dot_arm_leg3, garm_wz_leg4 * rate_dot_arm_leg4,
-                -(garm_wz_leg1 * t383), -(garm_wz_leg2 * t388), garm_wz_leg3 * t393,
-                garm_wz_leg4 * t398, -(garm_wz_leg1 * t403), -(garm_wz_leg2 * t408),
-                garm_wz_leg3 * t413, garm_wz_leg4 * t418, garm_wz_leg1 * rate_arm_leg1,
+                -(garm_wz_leg1 * t379), -(garm_wz_leg2 * t384), garm_wz_leg3 * t389,
+                garm_wz_leg4 * t394, -(garm_wz_leg1 * t399), -(garm_wz_leg2 * t404),
+                garm_wz_leg3 * t409, garm_wz_leg4 * t414, garm_wz_leg1 * rate_arm_leg1,
                 garm_wz_leg2 * rate_arm_leg2, garm_wz_leg3 * rate_arm_leg3,
                 garm_wz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_wz_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
-                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t477 + t493),
-                t531 - gcross_wz_leg2 * t517, gcross_wz_leg3 * t559 + t575,
-                -(minus_gcross_wz_leg4 * t599 + t617), gcross_wz_leg1 * t621 + grod_wz_leg1 * t625,
-                gcross_wz_leg2 * t635 + grod_wz_leg2 * t637,
-                grod_wz_leg3 * t652 - gcross_wz_leg3 * t647,
-                grod_wz_leg4 * t659 - minus_gcross_wz_leg4 * t663,
-                gcross_wz_leg1 * t676 - grod_wz_leg1 * t473,
-                gcross_wz_leg2 * t690 + grod_wz_leg2 * t513,
-                gcross_wz_leg3 * t704 - grod_wz_leg3 * t555,
-                grod_wz_leg4 * t595 - minus_gcross_wz_leg4 * t719, gcross_wz_leg1 * t619 + t493,
-                gcross_wz_leg2 * t633 - t531, gcross_wz_leg3 * t645 - t575,
-                t617 - minus_gcross_wz_leg4 * t661, gcross_wz_leg1 * t751 - t18 * t754,
-                -(gcross_wz_leg2 * t760 + t117 * t762), t18 * t772 - gcross_wz_leg3 * t769,
-                t117 * t778 - minus_gcross_wz_leg4 * t779, grod_wz_leg1 * rate_dot_rod_leg1,
-                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
-                garm_wz_leg1 * t799 - gcross_wz_leg1 * t806 - t18 * t815,
-                garm_wz_leg2 * t833 + gcross_wz_leg2 * t840 - t117 * t846,
-                garm_wz_leg3 * t863 + gcross_wz_leg3 * t870 - t18 * t879,
-                garm_wz_leg4 * t897 + minus_gcross_wz_leg4 * t904 - t117 * t910,
-                garm_wz_leg1 * t925 + gcross_wz_leg1 * t814,
-                garm_wz_leg2 * t941 + gcross_wz_leg2 * t845,
-                garm_wz_leg3 * t956 + gcross_wz_leg3 * t878,
-                garm_wz_leg4 * t972 - minus_gcross_wz_leg4 * t909,
+                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t470 + t487),
+                t519 - gcross_wz_leg2 * t508, gcross_wz_leg3 * t545 + t559,
+                -(minus_gcross_wz_leg4 * t581 + t596), gcross_wz_leg1 * t601 + grod_wz_leg1 * t604,
+                gcross_wz_leg2 * t614 + t116 * t618, t18 * t633 - gcross_wz_leg3 * t627,
+                t116 * t641 - minus_gcross_wz_leg4 * t645,
+                gcross_wz_leg1 * t658 - grod_wz_leg1 * t467, gcross_wz_leg2 * t672 + t116 * t674,
+                gcross_wz_leg3 * t687 - t255 * t695, t116 * t698 - minus_gcross_wz_leg4 * t704,
+                gcross_wz_leg1 * t598 + t487, gcross_wz_leg2 * t612 - t519,
+                gcross_wz_leg3 * t625 - t559, t596 - minus_gcross_wz_leg4 * t643,
+                gcross_wz_leg1 * t736 - t18 * t739, -(gcross_wz_leg2 * t745 + t116 * t747),
+                t695 - gcross_wz_leg3 * t754, t116 * t761 - minus_gcross_wz_leg4 * t762,
+                grod_wz_leg1 * rate_dot_rod_leg1, -(t116 * t772), -(t18 * t774), t116 * t776,
+                garm_wz_leg1 * t782 - gcross_wz_leg1 * t789 - t18 * t798,
+                garm_wz_leg2 * t816 + gcross_wz_leg2 * t824 - t116 * t830,
+                garm_wz_leg3 * t847 + gcross_wz_leg3 * t854 - t18 * t863,
+                garm_wz_leg4 * t880 + minus_gcross_wz_leg4 * t888 - t116 * t894,
+                garm_wz_leg1 * t909 + gcross_wz_leg1 * t797,
+                garm_wz_leg2 * t925 + gcross_wz_leg2 * t829,
+                garm_wz_leg3 * t940 + gcross_wz_leg3 * t862,
+                garm_wz_leg4 * t955 - minus_gcross_wz_leg4 * t893,
             ],
         ])
     }
@@ -6575,7 +6498,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 861 operations (264 additions, 589 multiplications, 8 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 682 intermediates.
+    /// 847 operations (262 additions, 565 multiplications, 20 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 668 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6606,342 +6529,342 @@ impl Schoenflies4 {
         let t8 = s_phi * t2 - c_phi * acceleration[3];
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t26 = 1.0 / s_cross_leg1;
-        let t27 = 3.8461538461538463 * t26;
-        let garm_vx_leg1 = c_armcross_leg1 * t27;
-        let t29 = 0.05 * s_phi;
-        let t30 = 0.08660254037844387 * c_phi;
-        let t31 = t29 + t30;
-        let t32 = t31 * acceleration[3];
-        let t34 = 0.05 * c_phi;
-        let t35 = 0.08660254037844387 * s_phi;
-        let t36 = t34 - t35;
-        let t37 = t36 * twist[3];
-        let t38 = twist[3] * t37;
-        let t39 = acceleration[0] - t32 - t38;
-        let t43 = 0.26 * c_cross_leg1;
-        let t44 = t31 * twist[3];
-        let t45 = twist[0] - t44;
-        let t51 = 1.0 / c_rod_leg1;
-        let t52 = s_rod_leg1 * t51;
-        let t53 = twist[1] + t37;
-        let t54 = t52 * t53;
-        let rate_arm_leg1 = t27
-            * (c_armcross_leg1 * t45 - s_armcross_leg1 * twist[2] + t54);
-        let t57 = rate_arm_leg1 * rate_arm_leg1;
-        let t59 = 0.58 * c_rod_leg1;
-        let grod_vy_leg1 = 1.7241379310344827 * t51;
-        let t65 = t43 * rate_arm_leg1 + s_armcross_leg1 * t45
+        let t26 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t26;
+        let t28 = 0.05 * s_phi;
+        let t29 = 0.08660254037844387 * c_phi;
+        let t30 = t28 + t29;
+        let t31 = t30 * acceleration[3];
+        let t33 = 0.05 * c_phi;
+        let t34 = 0.08660254037844387 * s_phi;
+        let t35 = t33 - t34;
+        let t36 = t35 * twist[3];
+        let t37 = twist[3] * t36;
+        let t38 = acceleration[0] - t31 - t37;
+        let t42 = t30 * twist[3];
+        let t43 = twist[0] - t42;
+        let t49 = s_rod_leg1 / c_rod_leg1;
+        let t50 = twist[1] + t36;
+        let t51 = t49 * t50;
+        let t52 = c_armcross_leg1 * t43 - s_armcross_leg1 * twist[2] + t51;
+        let rate_arm_leg1 = t26 * t52;
+        let t54 = t52 * rate_arm_leg1;
+        let t55 = t54 / s_cross_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
+        let t59 = 0.26 * c_cross_leg1;
+        let t64 = t59 * rate_arm_leg1 + s_armcross_leg1 * t43
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t65;
-        let t67 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t53;
-        let t69 = rate_rod_leg1 * rate_rod_leg1;
-        let t74 = t36 * acceleration[3];
-        let t76 = twist[3] * t44;
-        let t77 = acceleration[1] + t74 - t76;
-        let t79 = t77 + t54 * rate_rod_leg1;
-        let t81 = c_armcross_leg1 * t39 - s_armcross_leg1 * acceleration[2] + t43 * t57
-            + t59 * (t67 + t69) + t52 * t79;
-        let rate_dot_arm_leg1 = t27 * t81;
-        let garm_vy_leg1 = t27 * t52;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t27;
-        let garm_wz_leg1 = garm_vy_leg1 * t36 - t31 * garm_vx_leg1;
-        let t94 = 1.0 / s_cross_leg2;
-        let t95 = 3.8461538461538463 * t94;
-        let t98 = 1.0 / c_rod_leg2;
-        let t99 = s_rod_leg2 * t98;
-        let minus_garm_vx_leg2 = t95 * t99;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t64;
+        let t66 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t50;
+        let t68 = rate_rod_leg1 * rate_rod_leg1;
+        let t73 = t35 * acceleration[3];
+        let t75 = twist[3] * t42;
+        let t76 = acceleration[1] + t73 - t75;
+        let t78 = t76 + t51 * rate_rod_leg1;
+        let t80 = c_armcross_leg1 * t38 - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t55 + 0.58 * c_rod_leg1 * (t66 + t68) + t49 * t78;
+        let rate_dot_arm_leg1 = t26 * t80;
+        let garm_vy_leg1 = t26 * t49;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t26;
+        let garm_wz_leg1 = garm_vy_leg1 * t35 - t30 * garm_vx_leg1;
+        let t93 = 3.8461538461538463 / s_cross_leg2;
+        let t96 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t93 * t96;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t109 = t30 - t29;
-        let t110 = t109 * acceleration[3];
-        let t112 = t35 + t34;
-        let t113 = t112 * twist[3];
-        let t114 = twist[3] * t113;
-        let t115 = acceleration[1] + t110 - t114;
-        let t119 = 0.26 * c_cross_leg2;
-        let t120 = t109 * twist[3];
-        let t121 = twist[1] + t120;
-        let t125 = twist[0] - t113;
-        let t126 = t99 * t125;
-        let rate_arm_leg2 = t95
-            * (c_armcross_leg2 * t121 - s_armcross_leg2 * twist[2] - t126);
-        let t129 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t98;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t125;
-        let t134 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t139 = s_armcross_leg2 * t121 + c_armcross_leg2 * twist[2]
-            + t119 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t139;
-        let t141 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t146 = t112 * acceleration[3];
-        let t148 = twist[3] * t120;
-        let t149 = acceleration[0] - t146 - t148;
-        let t151 = t149 - t126 * minus_rate_rod_leg2;
-        let t153 = c_armcross_leg2 * t115 - s_armcross_leg2 * acceleration[2]
-            + t119 * t129 + 0.58 * c_rod_leg2 * (t134 + t141) - t99 * t151;
-        let rate_dot_arm_leg2 = t95 * t153;
-        let garm_vy_leg2 = c_armcross_leg2 * t95;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t95;
-        let garm_wz_leg2 = t109 * garm_vy_leg2 + minus_garm_vx_leg2 * t112;
+        let t106 = t29 - t28;
+        let t107 = t106 * acceleration[3];
+        let t109 = t34 + t33;
+        let t110 = t109 * twist[3];
+        let t111 = twist[3] * t110;
+        let t112 = acceleration[1] + t107 - t111;
+        let t116 = t106 * twist[3];
+        let t117 = twist[1] + t116;
+        let t121 = twist[0] - t110;
+        let t122 = t96 * t121;
+        let t123 = c_armcross_leg2 * t117 - s_armcross_leg2 * twist[2] - t122;
+        let rate_arm_leg2 = t93 * t123;
+        let t125 = t123 * rate_arm_leg2;
+        let t126 = t125 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t121;
+        let t131 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t135 = 0.26 * c_cross_leg2;
+        let t137 = s_armcross_leg2 * t117 + c_armcross_leg2 * twist[2]
+            + t135 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t137;
+        let t139 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t144 = t109 * acceleration[3];
+        let t146 = twist[3] * t116;
+        let t147 = acceleration[0] - t144 - t146;
+        let t149 = t147 - t122 * minus_rate_rod_leg2;
+        let t151 = c_armcross_leg2 * t112 - s_armcross_leg2 * acceleration[2]
+            + c_cross_leg2 * t126 + 0.58 * c_rod_leg2 * (t131 + t139) - t96 * t149;
+        let rate_dot_arm_leg2 = t93 * t151;
+        let garm_vy_leg2 = c_armcross_leg2 * t93;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t93;
+        let garm_wz_leg2 = t106 * garm_vy_leg2 + minus_garm_vx_leg2 * t109;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t174 = 1.0 / s_cross_leg3;
-        let t175 = 3.8461538461538463 * t174;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t175;
-        let t177 = 0.26 * c_cross_leg3;
-        let t178 = twist[0] + t44;
-        let t184 = 1.0 / c_rod_leg3;
-        let t185 = s_rod_leg3 * t184;
-        let t186 = twist[1] - t37;
-        let t187 = t185 * t186;
-        let minus_rate_arm_leg3 = t175
-            * (c_armcross_leg3 * t178 + s_armcross_leg3 * twist[2] + t187);
-        let t190 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t192 = 0.58 * c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t184;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t186;
-        let t195 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t200 = s_armcross_leg3 * t178 - c_armcross_leg3 * twist[2]
-            + t177 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t200;
-        let t202 = rate_cross_leg3 * rate_cross_leg3;
-        let t207 = acceleration[0] + t32 + t38;
-        let t213 = acceleration[1] - t74 + t76;
-        let t215 = t213 - t187 * minus_rate_rod_leg3;
-        let t217 = t177 * t190 + t192 * (t195 + t202)
-            - (c_armcross_leg3 * t207 + s_armcross_leg3 * acceleration[2]) - t185 * t215;
-        let rate_dot_arm_leg3 = t175 * t217;
-        let minus_garm_vy_leg3 = t175 * t185;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t175;
-        let garm_wz_leg3 = t36 * minus_garm_vy_leg3 - t31 * minus_garm_vx_leg3;
-        let t230 = 1.0 / s_cross_leg4;
-        let t231 = 3.8461538461538463 * t230;
-        let t234 = 1.0 / c_rod_leg4;
-        let t235 = s_rod_leg4 * t234;
-        let garm_vx_leg4 = t231 * t235;
-        let t237 = 0.26 * c_cross_leg4;
-        let t238 = twist[0] + t113;
-        let t239 = t235 * t238;
+        let t172 = 3.8461538461538463 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t172;
+        let t174 = twist[0] + t42;
+        let t180 = s_rod_leg3 / c_rod_leg3;
+        let t181 = twist[1] - t36;
+        let t182 = t180 * t181;
+        let t183 = c_armcross_leg3 * t174 + s_armcross_leg3 * twist[2] + t182;
+        let minus_rate_arm_leg3 = t172 * t183;
+        let t185 = t183 * minus_rate_arm_leg3;
+        let t186 = t185 / s_cross_leg3;
+        let t188 = 0.58 * c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t181;
+        let t191 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t195 = 0.26 * c_cross_leg3;
+        let t197 = s_armcross_leg3 * t174 - c_armcross_leg3 * twist[2]
+            + t195 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t197;
+        let t199 = rate_cross_leg3 * rate_cross_leg3;
+        let t204 = acceleration[0] + t31 + t37;
+        let t210 = acceleration[1] - t73 + t75;
+        let t212 = t210 - t182 * minus_rate_rod_leg3;
+        let t214 = c_cross_leg3 * t186 + t188 * (t191 + t199)
+            - (c_armcross_leg3 * t204 + s_armcross_leg3 * acceleration[2]) - t180 * t212;
+        let rate_dot_arm_leg3 = t172 * t214;
+        let minus_garm_vy_leg3 = t172 * t180;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t172;
+        let garm_wz_leg3 = t35 * minus_garm_vy_leg3 - t30 * minus_garm_vx_leg3;
+        let t227 = 3.8461538461538463 / s_cross_leg4;
+        let t230 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t227 * t230;
+        let t232 = twist[0] + t110;
+        let t233 = t230 * t232;
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t248 = twist[1] - t120;
-        let rate_arm_leg4 = t231
-            * (t239 - (c_armcross_leg4 * t248 + s_armcross_leg4 * twist[2]));
-        let t254 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t234;
-        let rate_rod_leg4 = grod_vx_leg4 * t238;
-        let t259 = rate_rod_leg4 * rate_rod_leg4;
-        let t264 = s_armcross_leg4 * t248 - c_armcross_leg4 * twist[2]
-            - t237 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t264;
-        let t266 = rate_cross_leg4 * rate_cross_leg4;
-        let t271 = acceleration[1] - t110 + t114;
-        let t277 = acceleration[0] + t146 + t148;
-        let t279 = t277 + t239 * rate_rod_leg4;
-        let t281 = t237 * t254 + 0.58 * c_rod_leg4 * (t259 + t266)
-            - (c_armcross_leg4 * t271 + s_armcross_leg4 * acceleration[2]) + t235 * t279;
-        let rate_dot_arm_leg4 = t231 * t281;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t231;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t231;
-        let garm_wz_leg4 = t109 * minus_garm_vy_leg4 + t112 * garm_vx_leg4;
-        let t292 = 9.81 * c_arm_leg1;
-        let t297 = 9.81 * c_arm_leg2;
-        let t302 = 9.81 * c_arm_leg3;
-        let t307 = 9.81 * c_arm_leg4;
-        let t312 = 9.81 * s_arm_leg1;
-        let t317 = 9.81 * s_arm_leg2;
-        let t322 = 9.81 * s_arm_leg3;
-        let t327 = 9.81 * s_arm_leg4;
-        let t364 = t26 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t364;
-        let t367 = rate_rod_leg1 * (1.7241379310344827 * t65);
-        let t368 = 0.26 * rate_dot_arm_leg1;
-        let t373 = 0.26 * s_cross_leg1;
-        let t375 = t54 * minus_rate_cross_leg1;
+        let t242 = twist[1] - t116;
+        let t246 = t233 - (c_armcross_leg4 * t242 + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t227 * t246;
+        let t248 = 0.26 * c_cross_leg4;
+        let t249 = t248 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t232;
+        let t254 = rate_rod_leg4 * rate_rod_leg4;
+        let t258 = s_armcross_leg4 * t242 - c_armcross_leg4 * twist[2] - t249;
+        let rate_cross_leg4 = grod_vx_leg4 * t258;
+        let t260 = rate_cross_leg4 * rate_cross_leg4;
+        let t265 = acceleration[1] - t107 + t111;
+        let t271 = acceleration[0] + t144 + t146;
+        let t273 = t271 + t233 * rate_rod_leg4;
+        let t275 = rate_arm_leg4 * t249 + 0.58 * c_rod_leg4 * (t254 + t260)
+            - (c_armcross_leg4 * t265 + s_armcross_leg4 * acceleration[2]) + t230 * t273;
+        let rate_dot_arm_leg4 = t227 * t275;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t227;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t227;
+        let garm_wz_leg4 = t106 * minus_garm_vy_leg4 + t109 * garm_vx_leg4;
+        let t286 = 9.81 * c_arm_leg1;
+        let t291 = 9.81 * c_arm_leg2;
+        let t296 = 9.81 * c_arm_leg3;
+        let t301 = 9.81 * c_arm_leg4;
+        let t306 = 9.81 * s_arm_leg1;
+        let t311 = 9.81 * s_arm_leg2;
+        let t316 = 9.81 * s_arm_leg3;
+        let t321 = 9.81 * s_arm_leg4;
+        let t358 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t358;
+        let t360 = 1.7241379310344827 * t64;
+        let t361 = rate_rod_leg1 * t360;
+        let t362 = 0.26 * rate_dot_arm_leg1;
+        let t367 = t51 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t368 + s_armcross_leg1 * t39
-                + c_armcross_leg1 * acceleration[2] + t373 * t57 + t375 + t375);
-        let t381 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t383 = t367 + t381 + t367;
-        let t384 = s_rod_leg1 * t383;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
-        let t389 = s_rod_leg1 * t67;
-        let t390 = 1.7241379310344827 * t389;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t364;
-        let gcross_wz_leg1 = t31 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t36;
-        let grod_wz_leg1 = grod_vy_leg1 * t36;
-        let t399 = t59 * t390;
-        let t400 = grod_wz_leg1 * t399;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t119 * minus_garm_vx_leg2);
-        let t407 = 0.26 * s_cross_leg2;
-        let t409 = t126 * minus_rate_cross_leg2;
-        let t413 = 0.26 * rate_dot_arm_leg2;
+            * (c_cross_leg1 * t362 + s_armcross_leg1 * t38
+                + c_armcross_leg1 * acceleration[2] + t54 + t367 + t367);
+        let t373 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t375 = t361 + t373 + t361;
+        let t376 = s_rod_leg1 * t375;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t59 * garm_vy_leg1);
+        let t381 = s_rod_leg1 * t66;
+        let t382 = c_rod_leg1 * t381;
+        let t383 = grod_vy_leg1 * t382;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t358;
+        let gcross_wz_leg1 = t30 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t35;
+        let t391 = t35 * t383;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t135 * minus_garm_vx_leg2);
+        let t398 = t122 * minus_rate_cross_leg2;
+        let t402 = 0.26 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t115 + c_armcross_leg2 * acceleration[2] + t407 * t129
-                - t409 - t409 + c_cross_leg2 * t413);
-        let t417 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t418 = 1.7241379310344827 * t139;
-        let t419 = minus_rate_rod_leg2 * t418;
-        let t421 = t419 - t417 + t419;
-        let t422 = s_rod_leg2 * t421;
-        let t425 = t418 * (s_rod_leg2 * minus_rate_cross_leg2);
-        let t426 = minus_grod_vx_leg2 * t425;
-        let t428 = t94 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t428;
-        let gcross_vz_leg2 = s_arm_leg2 * t428;
-        let minus_gcross_wz_leg2 = t109 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t112;
-        let grod_wz_leg2 = minus_grod_vx_leg2 * t112;
-        let t438 = grod_wz_leg2 * t425;
-        let t440 = t174 * minus_grod_vy_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t440;
-        let t445 = 0.26 * s_cross_leg3;
-        let t447 = t187 * rate_cross_leg3;
-        let t451 = 0.26 * rate_dot_arm_leg3;
-        let t453 = s_armcross_leg3 * t207 - c_armcross_leg3 * acceleration[2]
-            - (t445 * t190 + t447 + t447) - c_cross_leg3 * t451;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t453;
-        let t455 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t457 = minus_rate_rod_leg3 * (1.7241379310344827 * t200);
-        let t459 = t455 - t457 - t457;
-        let t460 = s_rod_leg3 * t459;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t177 * minus_garm_vy_leg3);
-        let t465 = s_rod_leg3 * t202;
-        let t466 = 1.7241379310344827 * t465;
-        let gcross_vz_leg3 = s_arm_leg3 * t440;
-        let gcross_wz_leg3 = t31 * gcross_vx_leg3 - t36 * gcross_vy_leg3;
-        let grod_wz_leg3 = t36 * minus_grod_vy_leg3;
-        let t475 = t192 * t466;
-        let t476 = grod_wz_leg3 * t475;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t237 * garm_vx_leg4);
-        let t480 = 1.7241379310344827 * t264;
-        let t481 = rate_rod_leg4 * t480;
-        let t485 = 0.26 * s_cross_leg4;
-        let t487 = t239 * rate_cross_leg4;
-        let t491 = 0.26 * rate_dot_arm_leg4;
+            * (s_armcross_leg2 * t112 + c_armcross_leg2 * acceleration[2] + t125 - t398
+                - t398 + c_cross_leg2 * t402);
+        let t406 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t407 = 1.7241379310344827 * t137;
+        let t408 = minus_rate_rod_leg2 * t407;
+        let t410 = t408 - t406 + t408;
+        let t411 = s_rod_leg2 * t410;
+        let t414 = t407 * (t96 * t407);
+        let t415 = minus_grod_vx_leg2 * t414;
+        let t417 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t417;
+        let gcross_vz_leg2 = s_arm_leg2 * t417;
+        let minus_gcross_wz_leg2 = t106 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t109;
+        let grod_wz_leg2 = minus_grod_vx_leg2 * t109;
+        let t427 = grod_wz_leg2 * t414;
+        let t429 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t429;
+        let t434 = t182 * rate_cross_leg3;
+        let t438 = 0.26 * rate_dot_arm_leg3;
+        let t440 = s_armcross_leg3 * t204 - c_armcross_leg3 * acceleration[2]
+            - (t185 + t434 + t434) - c_cross_leg3 * t438;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t440;
+        let t442 = 1.7241379310344827 * t197;
+        let t443 = minus_rate_rod_leg3 * t442;
+        let t448 = s_rod_leg3 * t443 + c_rod_leg3 * (1.7241379310344827 * (t440 + t434));
+        let t449 = rate_dot_cross_leg3 - t448;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t195 * minus_garm_vy_leg3);
+        let t454 = s_rod_leg3 * t199;
+        let t455 = 1.7241379310344827 * t454;
+        let gcross_vz_leg3 = s_arm_leg3 * t429;
+        let gcross_wz_leg3 = t30 * gcross_vx_leg3 - t35 * gcross_vy_leg3;
+        let grod_wz_leg3 = t35 * minus_grod_vy_leg3;
+        let t464 = t188 * t455;
+        let t465 = grod_wz_leg3 * t464;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t248 * garm_vx_leg4);
+        let t469 = 1.7241379310344827 * t258;
+        let t470 = rate_rod_leg4 * t469;
+        let t474 = t246 * rate_arm_leg4;
+        let t475 = t233 * rate_cross_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t271 - c_armcross_leg4 * acceleration[2]
-                - (t485 * t254 - t487 - t487) - c_cross_leg4 * t491);
-        let t495 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t497 = t481 + t495 + t481;
-        let t498 = s_rod_leg4 * t497;
-        let t501 = t480 * (s_rod_leg4 * rate_cross_leg4);
-        let t502 = grod_vx_leg4 * t501;
-        let t504 = t230 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t504;
-        let gcross_vz_leg4 = s_arm_leg4 * t504;
-        let minus_gcross_wz_leg4 = t109 * gcross_vy_leg4 + t112 * minus_gcross_vx_leg4;
-        let grod_wz_leg4 = t112 * grod_vx_leg4;
-        let t514 = grod_wz_leg4 * t501;
-        let t516 = s_rod_leg1 * t367;
-        let t519 = t516 + t384 - (minus_rate_dot_cross_leg1 + t516);
-        let t522 = t52 * t519 - c_rod_leg1 * t383;
-        let t524 = t52 * t399;
-        let t526 = t524 - (t67 - t524);
-        let t534 = s_rod_leg2 * t419;
-        let t537 = t534 - minus_rate_dot_cross_leg2 - t422 - t534;
-        let t540 = t99 * t537 + c_rod_leg2 * t421;
-        let t542 = t99 * t425;
-        let t544 = t542 - (t141 - t542);
-        let t556 = s_rod_leg3 * t457 + c_rod_leg3 * (1.7241379310344827 * (t453 + t447));
-        let t559 = t185 * t556 + c_rod_leg3 * t459;
-        let t562 = t185 * t475;
-        let t564 = t562 - (t202 - t562);
-        let t571 = t235 * t501;
-        let t573 = t571 - (t266 - t571);
-        let t576 = s_rod_leg4 * t481;
-        let t579 = rate_dot_cross_leg4 + t576 - t498 - t576;
-        let t581 = c_rod_leg4 * t497 + t235 * t579;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t79;
-        let t594 = s_rod_leg1 * (t399 + rate_dot_rod_leg1) + c_rod_leg1 * (t69 - t524);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t151;
-        let t608 = s_rod_leg2 * (t425 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t134 - t542);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t215;
-        let t622 = s_rod_leg3 * (t475 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t195 - t562);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t279;
-        let t637 = s_rod_leg4 * (t501 + rate_dot_rod_leg4) + c_rod_leg4 * (t259 - t571);
-        let t669 = 1.7241379310344827 * t77;
-        let t672 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t678 = 1.7241379310344827 * t149;
-        let t680 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t687 = 1.7241379310344827 * t213;
-        let t690 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t696 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t697 = 1.7241379310344827 * t277;
-        let t716 = t43 * t383 - t373 * (t669 - t389);
-        let t719 = t312 + 0.26 * t57;
-        let t721 = t368 - t292;
-        let t724 = s_rod_leg1 * (s_cross_leg1 * t719 + c_cross_leg1 * t721);
-        let t732 = s_cross_leg1 * t721 - c_cross_leg1 * t719;
-        let t733 = 1.7241379310344827 * t732;
-        let t743 = t413 - t297;
-        let t746 = t317 + 0.26 * t129;
-        let t748 = s_cross_leg2 * t743 - c_cross_leg2 * t746;
-        let t749 = 1.7241379310344827 * t748;
-        let t758 = t407 * (c_rod_leg2 * (t425 + minus_rate_dot_rod_leg2))
-            + t407 * s_rod_leg2 * (t542 + t134) - t119 * t421;
-        let t763 = s_rod_leg2 * (s_cross_leg2 * t746 + c_cross_leg2 * t743);
-        let t781 = t445 * (t687 + t465) - t177 * t459;
-        let t784 = t322 + 0.26 * t190;
-        let t786 = t451 - t302;
-        let t789 = s_rod_leg3 * (s_cross_leg3 * t784 + c_cross_leg3 * t786);
-        let t794 = s_cross_leg3 * t786 - c_cross_leg3 * t784;
-        let t795 = 1.7241379310344827 * t794;
-        let t816 = t485 * (c_rod_leg4 * (t501 - rate_dot_rod_leg4))
-            + t485 * s_rod_leg4 * (t571 + t259) - t237 * t497;
-        let t819 = t327 + 0.26 * t254;
-        let t821 = t491 - t307;
-        let t824 = s_rod_leg4 * (s_cross_leg4 * t819 + c_cross_leg4 * t821);
-        let t829 = s_cross_leg4 * t821 - c_cross_leg4 * t819;
-        let t830 = 1.7241379310344827 * t829;
-        let t845 = t43 * t67 - t373 * minus_rate_dot_cross_leg1;
-        let t861 = t119 * t141 - t407 * minus_rate_dot_cross_leg2;
-        let t876 = t445 * rate_dot_cross_leg3 + t177 * t202;
-        let t890 = t485 * rate_dot_cross_leg4 + t237 * t266;
+            * (s_armcross_leg4 * t265 - c_armcross_leg4 * acceleration[2]
+                - (t474 - t475 - t475) - t248 * rate_dot_arm_leg4);
+        let t482 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t484 = t470 + t482 + t470;
+        let t485 = c_rod_leg4 * t484;
+        let t486 = t230 * t485;
+        let t488 = s_rod_leg4 * rate_cross_leg4;
+        let t489 = t469 * t488;
+        let t490 = grod_vx_leg4 * t489;
+        let t492 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t492;
+        let gcross_vz_leg4 = s_arm_leg4 * t492;
+        let minus_gcross_wz_leg4 = t106 * gcross_vy_leg4 + t109 * minus_gcross_vx_leg4;
+        let t501 = t109 * t490;
+        let t503 = s_rod_leg1 * t361;
+        let t506 = t503 + t376 - (minus_rate_dot_cross_leg1 + t503);
+        let t509 = t49 * t506 - c_rod_leg1 * t375;
+        let t511 = t360 * t360;
+        let t512 = t66 - t511;
+        let t514 = grod_vy_leg1 * (t512 - t511);
+        let t521 = s_rod_leg2 * t408;
+        let t524 = t521 - minus_rate_dot_cross_leg2 - t411 - t521;
+        let t527 = t96 * t524 + c_rod_leg2 * t410;
+        let t529 = t96 * t414;
+        let t531 = t529 - t407 * t407;
+        let t540 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t542 = t540 - t443 - t443;
+        let t544 = t180 * t448 + c_rod_leg3 * t542;
+        let t547 = s_rod_leg3 * t454;
+        let t549 = t547 - t442 * t442;
+        let t556 = t488 * t488;
+        let t559 = grod_vx_leg4 * (t556 - t469 * t469);
+        let t560 = s_rod_leg4 * t470;
+        let t563 = rate_dot_cross_leg4 + t560 - t486 - t560;
+        let t565 = t485 + t230 * t563;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t78;
+        let t578 = s_rod_leg1 * (t382 + rate_dot_rod_leg1) + c_rod_leg1 * (t68 - t512);
+        let t581 = grod_vy_leg1 * t373;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t149;
+        let t592 = s_rod_leg2 * (t414 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t131 - t529);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t212;
+        let t606 = s_rod_leg3 * (t464 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t191 - t547);
+        let t615 = grod_vx_leg4 * t482;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t273;
+        let t621 = s_rod_leg4 * (t489 + rate_dot_rod_leg4) + c_rod_leg4 * (t254 - t556);
+        let t653 = 1.7241379310344827 * t76;
+        let t656 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t662 = 1.7241379310344827 * t147;
+        let t664 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t671 = 1.7241379310344827 * t210;
+        let t674 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t680 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t681 = 1.7241379310344827 * t271;
+        let t689 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t695 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t697 = 0.26 * s_cross_leg1;
+        let t701 = t59 * t375 - t697 * (t653 - t381);
+        let t703 = t306 + t55;
+        let t705 = t362 - t286;
+        let t708 = s_rod_leg1 * (s_cross_leg1 * t703 + c_cross_leg1 * t705);
+        let t716 = s_cross_leg1 * t705 - c_cross_leg1 * t703;
+        let t717 = 1.7241379310344827 * t716;
+        let t727 = t402 - t291;
+        let t729 = t311 + t126;
+        let t731 = s_cross_leg2 * t727 - c_cross_leg2 * t729;
+        let t732 = 1.7241379310344827 * t731;
+        let t733 = 0.26 * s_cross_leg2;
+        let t742 = t733 * (c_rod_leg2 * (t414 + minus_rate_dot_rod_leg2))
+            + t733 * s_rod_leg2 * (t529 + t131) - t135 * t410;
+        let t747 = s_rod_leg2 * (s_cross_leg2 * t729 + c_cross_leg2 * t727);
+        let t762 = 0.26 * s_cross_leg3;
+        let t766 = t762 * (t671 + t454) - t195 * t542;
+        let t768 = t316 + t186;
+        let t770 = t438 - t296;
+        let t773 = s_rod_leg3 * (s_cross_leg3 * t768 + c_cross_leg3 * t770);
+        let t778 = s_cross_leg3 * t770 - c_cross_leg3 * t768;
+        let t779 = 1.7241379310344827 * t778;
+        let t792 = 0.26 * s_cross_leg4;
+        let t801 = t792 * (c_rod_leg4 * (t489 - rate_dot_rod_leg4))
+            + t792 * s_rod_leg4 * (t556 + t254) - t248 * t484;
+        let t804 = t321 + t474 / s_cross_leg4;
+        let t807 = 0.26 * rate_dot_arm_leg4 - t301;
+        let t810 = s_rod_leg4 * (s_cross_leg4 * t804 + c_cross_leg4 * t807);
+        let t815 = s_cross_leg4 * t807 - c_cross_leg4 * t804;
+        let t816 = 1.7241379310344827 * t815;
+        let t831 = t59 * t66 - t697 * minus_rate_dot_cross_leg1;
+        let t847 = t135 * t139 - t733 * minus_rate_dot_cross_leg2;
+        let t862 = t762 * rate_dot_cross_leg3 + t195 * t199;
+        let t876 = t792 * rate_dot_cross_leg4 + t248 * t260;
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vx_leg3 * rate_dot_arm_leg3), garm_vx_leg4 * rate_dot_arm_leg4,
-                -(garm_vx_leg1 * t292), minus_garm_vx_leg2 * t297, minus_garm_vx_leg3 * t302,
-                -(garm_vx_leg4 * t307), garm_vx_leg1 * t312, -(minus_garm_vx_leg2 * t317),
-                -(minus_garm_vx_leg3 * t322), garm_vx_leg4 * t327, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t286), minus_garm_vx_leg2 * t291, minus_garm_vx_leg3 * t296,
+                -(garm_vx_leg4 * t301), garm_vx_leg1 * t306, -(minus_garm_vx_leg2 * t311),
+                -(minus_garm_vx_leg3 * t316), garm_vx_leg4 * t321, garm_vx_leg1 * rate_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_arm_leg2), minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
-                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t384,
-                gcross_vx_leg2 * t422 + t426, gcross_vx_leg3 * t460,
-                -(minus_gcross_vx_leg4 * t498 + t502), -(minus_gcross_vx_leg1 * t522),
-                gcross_vx_leg2 * t540 - minus_grod_vx_leg2 * t544, gcross_vx_leg3 * t559,
-                grod_vx_leg4 * t573 - minus_gcross_vx_leg4 * t581, -(minus_gcross_vx_leg1 * t594),
-                gcross_vx_leg2 * t608 + minus_grod_vx_leg2 * t417, gcross_vx_leg3 * t622,
-                grod_vx_leg4 * t495 - minus_gcross_vx_leg4 * t637, -(minus_gcross_vx_leg1 * t519),
-                gcross_vx_leg2 * t537 - t426, gcross_vx_leg3 * t556,
-                t502 - minus_gcross_vx_leg4 * t579, -(minus_gcross_vx_leg1 * t669),
-                -(gcross_vx_leg2 * t678 - t680), -(gcross_vx_leg3 * t687),
-                t696 - minus_gcross_vx_leg4 * t697, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
-                garm_vx_leg1 * t716 + minus_gcross_vx_leg1 * t724,
-                t749 - (minus_garm_vx_leg2 * t758 + gcross_vx_leg2 * t763),
-                -(minus_garm_vx_leg3 * t781 + gcross_vx_leg3 * t789),
-                garm_vx_leg4 * t816 + minus_gcross_vx_leg4 * t824 - t830,
-                garm_vx_leg1 * t845 - minus_gcross_vx_leg1 * t732,
-                gcross_vx_leg2 * t748 - minus_garm_vx_leg2 * t861,
-                gcross_vx_leg3 * t794 - minus_garm_vx_leg3 * t876,
-                garm_vx_leg4 * t890 - minus_gcross_vx_leg4 * t829,
+                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t376,
+                gcross_vx_leg2 * t411 + t415, gcross_vx_leg3 * t449,
+                -(minus_gcross_vx_leg4 * t486 + t490), -(minus_gcross_vx_leg1 * t509),
+                gcross_vx_leg2 * t527 - minus_grod_vx_leg2 * t531, gcross_vx_leg3 * t544,
+                t559 - minus_gcross_vx_leg4 * t565, -(minus_gcross_vx_leg1 * t578),
+                gcross_vx_leg2 * t592 + minus_grod_vx_leg2 * t406, gcross_vx_leg3 * t606,
+                t615 - minus_gcross_vx_leg4 * t621, -(minus_gcross_vx_leg1 * t506),
+                gcross_vx_leg2 * t524 - t415, gcross_vx_leg3 * t448,
+                t490 - minus_gcross_vx_leg4 * t563, -(minus_gcross_vx_leg1 * t653),
+                -(gcross_vx_leg2 * t662 - t664), -(gcross_vx_leg3 * t671),
+                t680 - minus_gcross_vx_leg4 * t681, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, t695,
+                garm_vx_leg1 * t701 + minus_gcross_vx_leg1 * t708,
+                t732 - (minus_garm_vx_leg2 * t742 + gcross_vx_leg2 * t747),
+                -(minus_garm_vx_leg3 * t766 + gcross_vx_leg3 * t773),
+                garm_vx_leg4 * t801 + minus_gcross_vx_leg4 * t810 - t816,
+                garm_vx_leg1 * t831 - minus_gcross_vx_leg1 * t716,
+                gcross_vx_leg2 * t731 - minus_garm_vx_leg2 * t847,
+                gcross_vx_leg3 * t778 - minus_garm_vx_leg3 * t862,
+                garm_vx_leg4 * t876 - minus_gcross_vx_leg4 * t815,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
                 garm_vy_leg2 * rate_dot_arm_leg2, -(minus_garm_vy_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t292),
-                -(garm_vy_leg2 * t297), minus_garm_vy_leg3 * t302, minus_garm_vy_leg4 * t307,
-                garm_vy_leg1 * t312, garm_vy_leg2 * t317, -(minus_garm_vy_leg3 * t322),
-                -(minus_garm_vy_leg4 * t327), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t286),
+                -(garm_vy_leg2 * t291), minus_garm_vy_leg3 * t296, minus_garm_vy_leg4 * t301,
+                garm_vy_leg1 * t306, garm_vy_leg2 * t311, -(minus_garm_vy_leg3 * t316),
+                -(minus_garm_vy_leg4 * t321), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
@@ -6949,34 +6872,34 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
-                minus_gcross_vy_leg1 * t384 - t390, -(minus_gcross_vy_leg2 * t422),
-                gcross_vy_leg3 * t460 + t466, gcross_vy_leg4 * t498,
-                grod_vy_leg1 * t526 - minus_gcross_vy_leg1 * t522, -(minus_gcross_vy_leg2 * t540),
-                gcross_vy_leg3 * t559 - minus_grod_vy_leg3 * t564, gcross_vy_leg4 * t581,
-                -(minus_gcross_vy_leg1 * t594 + grod_vy_leg1 * t381),
-                -(minus_gcross_vy_leg2 * t608), gcross_vy_leg3 * t622 - minus_grod_vy_leg3 * t455,
-                gcross_vy_leg4 * t637, t390 - minus_gcross_vy_leg1 * t519,
-                -(minus_gcross_vy_leg2 * t537), gcross_vy_leg3 * t556 - t466, gcross_vy_leg4 * t579,
-                -(minus_gcross_vy_leg1 * t669 + t672), minus_gcross_vy_leg2 * t678,
-                -(gcross_vy_leg3 * t687 + t690), gcross_vy_leg4 * t697,
-                grod_vy_leg1 * rate_dot_rod_leg1, 0.0, minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                0.0, garm_vy_leg1 * t716 + minus_gcross_vy_leg1 * t724 - t733,
-                garm_vy_leg2 * t758 + minus_gcross_vy_leg2 * t763,
-                t795 - (minus_garm_vy_leg3 * t781 + gcross_vy_leg3 * t789),
-                -(minus_garm_vy_leg4 * t816 + gcross_vy_leg4 * t824),
-                garm_vy_leg1 * t845 - minus_gcross_vy_leg1 * t732,
-                garm_vy_leg2 * t861 - minus_gcross_vy_leg2 * t748,
-                gcross_vy_leg3 * t794 - minus_garm_vy_leg3 * t876,
-                gcross_vy_leg4 * t829 - minus_garm_vy_leg4 * t890,
+                minus_gcross_vy_leg1 * t376 - t383, -(minus_gcross_vy_leg2 * t411),
+                gcross_vy_leg3 * t449 + t455, gcross_vy_leg4 * t486,
+                t514 - minus_gcross_vy_leg1 * t509, -(minus_gcross_vy_leg2 * t527),
+                gcross_vy_leg3 * t544 - minus_grod_vy_leg3 * t549, gcross_vy_leg4 * t565,
+                -(minus_gcross_vy_leg1 * t578 + t581), -(minus_gcross_vy_leg2 * t592),
+                gcross_vy_leg3 * t606 - minus_grod_vy_leg3 * t540, gcross_vy_leg4 * t621,
+                t383 - minus_gcross_vy_leg1 * t506, -(minus_gcross_vy_leg2 * t524),
+                gcross_vy_leg3 * t448 - t455, gcross_vy_leg4 * t563,
+                -(minus_gcross_vy_leg1 * t653 + t656), minus_gcross_vy_leg2 * t662,
+                -(gcross_vy_leg3 * t671 + t674), gcross_vy_leg4 * t681, t689, 0.0,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
+                garm_vy_leg1 * t701 + minus_gcross_vy_leg1 * t708 - t717,
+                garm_vy_leg2 * t742 + minus_gcross_vy_leg2 * t747,
+                t779 - (minus_garm_vy_leg3 * t766 + gcross_vy_leg3 * t773),
+                -(minus_garm_vy_leg4 * t801 + gcross_vy_leg4 * t810),
+                garm_vy_leg1 * t831 - minus_gcross_vy_leg1 * t716,
+                garm_vy_leg2 * t847 - minus_gcross_vy_leg2 * t731,
+                gcross_vy_leg3 * t778 - minus_garm_vy_leg3 * t862,
+                gcross_vy_leg4 * t815 - minus_garm_vy_leg4 * t876,
             ],
             [
                 0.0, 0.0, 0.0, acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t292,
-                minus_garm_vz_leg2 * t297, minus_garm_vz_leg3 * t302, minus_garm_vz_leg4 * t307,
-                -(minus_garm_vz_leg1 * t312), -(minus_garm_vz_leg2 * t317),
-                -(minus_garm_vz_leg3 * t322), -(minus_garm_vz_leg4 * t327),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t286,
+                minus_garm_vz_leg2 * t291, minus_garm_vz_leg3 * t296, minus_garm_vz_leg4 * t301,
+                -(minus_garm_vz_leg1 * t306), -(minus_garm_vz_leg2 * t311),
+                -(minus_garm_vz_leg3 * t316), -(minus_garm_vz_leg4 * t321),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 minus_garm_vz_leg3 * minus_rate_arm_leg3, -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6984,59 +6907,58 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_minus_gcross_vz_leg1 * t384), gcross_vz_leg2 * t422, gcross_vz_leg3 * t460,
-                gcross_vz_leg4 * t498, minus_minus_gcross_vz_leg1 * t522, gcross_vz_leg2 * t540,
-                gcross_vz_leg3 * t559, gcross_vz_leg4 * t581, minus_minus_gcross_vz_leg1 * t594,
-                gcross_vz_leg2 * t608, gcross_vz_leg3 * t622, gcross_vz_leg4 * t637,
-                minus_minus_gcross_vz_leg1 * t519, gcross_vz_leg2 * t537, gcross_vz_leg3 * t556,
-                gcross_vz_leg4 * t579, minus_minus_gcross_vz_leg1 * t669, -(gcross_vz_leg2 * t678),
-                -(gcross_vz_leg3 * t687), gcross_vz_leg4 * t697, 0.0, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t724 + minus_garm_vz_leg1 * t716),
-                -(minus_garm_vz_leg2 * t758 + gcross_vz_leg2 * t763),
-                -(minus_garm_vz_leg3 * t781 + gcross_vz_leg3 * t789),
-                -(minus_garm_vz_leg4 * t816 + gcross_vz_leg4 * t824),
-                -(minus_garm_vz_leg1 * t845 - minus_minus_gcross_vz_leg1 * t732),
-                gcross_vz_leg2 * t748 - minus_garm_vz_leg2 * t861,
-                gcross_vz_leg3 * t794 - minus_garm_vz_leg3 * t876,
-                gcross_vz_leg4 * t829 - minus_garm_vz_leg4 * t890,
+                -(minus_minus_gcross_vz_leg1 * t376), gcross_vz_leg2 * t411, gcross_vz_leg3 * t449,
+                gcross_vz_leg4 * t486, minus_minus_gcross_vz_leg1 * t509, gcross_vz_leg2 * t527,
+                gcross_vz_leg3 * t544, gcross_vz_leg4 * t565, minus_minus_gcross_vz_leg1 * t578,
+                gcross_vz_leg2 * t592, gcross_vz_leg3 * t606, gcross_vz_leg4 * t621,
+                minus_minus_gcross_vz_leg1 * t506, gcross_vz_leg2 * t524, gcross_vz_leg3 * t448,
+                gcross_vz_leg4 * t563, minus_minus_gcross_vz_leg1 * t653, -(gcross_vz_leg2 * t662),
+                -(gcross_vz_leg3 * t671), gcross_vz_leg4 * t681, 0.0, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t708 + minus_garm_vz_leg1 * t701),
+                -(minus_garm_vz_leg2 * t742 + gcross_vz_leg2 * t747),
+                -(minus_garm_vz_leg3 * t766 + gcross_vz_leg3 * t773),
+                -(minus_garm_vz_leg4 * t801 + gcross_vz_leg4 * t810),
+                -(minus_garm_vz_leg1 * t831 - minus_minus_gcross_vz_leg1 * t716),
+                gcross_vz_leg2 * t731 - minus_garm_vz_leg2 * t847,
+                gcross_vz_leg3 * t778 - minus_garm_vz_leg3 * t862,
+                gcross_vz_leg4 * t815 - minus_garm_vz_leg4 * t876,
             ],
             [
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 garm_wz_leg1 * rate_dot_arm_leg1, garm_wz_leg2 * rate_dot_arm_leg2,
                 garm_wz_leg3 * rate_dot_arm_leg3, garm_wz_leg4 * rate_dot_arm_leg4,
-                -(garm_wz_leg1 * t292), -(garm_wz_leg2 * t297), -(garm_wz_leg3 * t302),
-                -(garm_wz_leg4 * t307), garm_wz_leg1 * t312, garm_wz_leg2 * t317,
-                garm_wz_leg3 * t322, garm_wz_leg4 * t327, garm_wz_leg1 * rate_arm_leg1,
+                -(garm_wz_leg1 * t286), -(garm_wz_leg2 * t291), -(garm_wz_leg3 * t296),
+                -(garm_wz_leg4 * t301), garm_wz_leg1 * t306, garm_wz_leg2 * t311,
+                garm_wz_leg3 * t316, garm_wz_leg4 * t321, garm_wz_leg1 * rate_arm_leg1,
                 garm_wz_leg2 * rate_arm_leg2, -(garm_wz_leg3 * minus_rate_arm_leg3),
                 garm_wz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
                 -::overact::math::signed(garm_wz_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
-                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t384 + t400),
-                -(minus_gcross_wz_leg2 * t422 + t438), gcross_wz_leg3 * t460 - t476,
-                -(minus_gcross_wz_leg4 * t498 + t514), gcross_wz_leg1 * t522 + grod_wz_leg1 * t526,
-                grod_wz_leg2 * t544 - minus_gcross_wz_leg2 * t540,
-                gcross_wz_leg3 * t559 + grod_wz_leg3 * t564,
-                grod_wz_leg4 * t573 - minus_gcross_wz_leg4 * t581,
-                gcross_wz_leg1 * t594 - grod_wz_leg1 * t381,
-                -(grod_wz_leg2 * t417 + minus_gcross_wz_leg2 * t608),
-                gcross_wz_leg3 * t622 + grod_wz_leg3 * t455,
-                grod_wz_leg4 * t495 - minus_gcross_wz_leg4 * t637, gcross_wz_leg1 * t519 + t400,
-                t438 - minus_gcross_wz_leg2 * t537, gcross_wz_leg3 * t556 + t476,
-                t514 - minus_gcross_wz_leg4 * t579, gcross_wz_leg1 * t669 - t36 * t672,
-                minus_gcross_wz_leg2 * t678 - t112 * t680, t36 * t690 - gcross_wz_leg3 * t687,
-                t112 * t696 - minus_gcross_wz_leg4 * t697, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t376 + t391),
+                -(minus_gcross_wz_leg2 * t411 + t427), gcross_wz_leg3 * t449 - t465,
+                -(minus_gcross_wz_leg4 * t486 + t501), gcross_wz_leg1 * t509 + t35 * t514,
+                grod_wz_leg2 * t531 - minus_gcross_wz_leg2 * t527,
+                gcross_wz_leg3 * t544 + grod_wz_leg3 * t549,
+                t109 * t559 - minus_gcross_wz_leg4 * t565, gcross_wz_leg1 * t578 - t35 * t581,
+                -(grod_wz_leg2 * t406 + minus_gcross_wz_leg2 * t592),
+                gcross_wz_leg3 * t606 + grod_wz_leg3 * t540,
+                t109 * t615 - minus_gcross_wz_leg4 * t621, gcross_wz_leg1 * t506 + t391,
+                t427 - minus_gcross_wz_leg2 * t524, gcross_wz_leg3 * t448 + t465,
+                t501 - minus_gcross_wz_leg4 * t563, gcross_wz_leg1 * t653 - t35 * t656,
+                minus_gcross_wz_leg2 * t662 - t109 * t664, t35 * t674 - gcross_wz_leg3 * t671,
+                t109 * t680 - minus_gcross_wz_leg4 * t681, t35 * t689,
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
-                garm_wz_leg1 * t716 - gcross_wz_leg1 * t724 - t36 * t733,
-                garm_wz_leg2 * t758 + minus_gcross_wz_leg2 * t763 - t112 * t749,
-                garm_wz_leg3 * t781 - gcross_wz_leg3 * t789 - t36 * t795,
-                garm_wz_leg4 * t816 + minus_gcross_wz_leg4 * t824 - t112 * t830,
-                garm_wz_leg1 * t845 + gcross_wz_leg1 * t732,
-                garm_wz_leg2 * t861 - minus_gcross_wz_leg2 * t748,
-                garm_wz_leg3 * t876 + gcross_wz_leg3 * t794,
-                garm_wz_leg4 * t890 - minus_gcross_wz_leg4 * t829,
+                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), t109 * t695,
+                garm_wz_leg1 * t701 - gcross_wz_leg1 * t708 - t35 * t717,
+                garm_wz_leg2 * t742 + minus_gcross_wz_leg2 * t747 - t109 * t732,
+                garm_wz_leg3 * t766 - gcross_wz_leg3 * t773 - t35 * t779,
+                garm_wz_leg4 * t801 + minus_gcross_wz_leg4 * t810 - t109 * t816,
+                garm_wz_leg1 * t831 + gcross_wz_leg1 * t716,
+                garm_wz_leg2 * t847 - minus_gcross_wz_leg2 * t731,
+                garm_wz_leg3 * t862 + gcross_wz_leg3 * t778,
+                garm_wz_leg4 * t876 - minus_gcross_wz_leg4 * t815,
             ],
         ])
     }
@@ -7051,7 +6973,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1144 operations (389 additions, 731 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 947 intermediates.
+    /// 1121 operations (387 additions, 692 multiplications, 42 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 924 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7080,591 +7002,569 @@ impl Schoenflies4 {
         let t20 = t10 - t18 * t18;
         ::overact::guard::reach(t20, "leg1")?;
         let t21 = ::overact::math::sqrt(t20);
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t16));
-        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let t22 = 2.972651605231867 * t16;
+        let c_rod_leg1 = ::overact::math::sqrt(-t22);
         let t25 = 0.3016 * c_rod_leg1;
         let s_cross_leg1 = t21 / t25;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
-        let t27 = 1.0 / s_cross_leg1;
-        let t28 = 3.8461538461538463 * t27;
-        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t30 = t14 * grod_vy_leg1;
-        let garm_vy_leg1 = t28 * t30;
-        let t33 = 1.0 / t10;
-        let t34 = 0.52 * t6;
-        let t36 = 0.52 * pose[2];
-        let c_arm_leg1 = t33 * (t34 * t18 - t36 * t21);
+        let t27 = 3.8461538461538463 / s_cross_leg1;
+        let grod_vy_leg1 = 0.52 / t25;
+        let t29 = t14 * grod_vy_leg1;
+        let garm_vy_leg1 = t27 * t29;
+        let t32 = 0.52 * t6;
+        let t34 = 0.52 * pose[2];
+        let c_arm_leg1 = (t32 * t18 - t34 * t21) / t10;
         let c_cross_leg1 = (t17 + -0.0676) / t25;
-        let minus_s_arm_leg1 = t33 * (t36 * t18 + t34 * t21);
+        let minus_s_arm_leg1 = (t34 * t18 + t32 * t21) / t10;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t28;
+        let garm_vx_leg1 = c_armcross_leg1 * t27;
         let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
-        let t53 = t12 - t11;
-        let t54 = t3 + t2;
-        let t56 = pose[1] + t54 - 0.24;
-        let t58 = t56 * t56 + t8;
-        let t59 = 0.2704 * t58;
-        let t60 = 1.0 / t59;
-        let t61 = 0.52 * t56;
-        let t62 = pose[0] + t53;
-        let t64 = 0.3364 - t62 * t62;
-        let t65 = t58 - t64;
-        let t66 = t65 + 0.0676;
-        let t69 = t59 - t66 * t66;
-        ::overact::guard::reach(t69, "leg2")?;
-        let t70 = ::overact::math::sqrt(t69);
-        let c_arm_leg2 = t60 * (t61 * t66 - t36 * t70);
-        let t75 = 2.972651605231867 * t64;
-        ::overact::guard::reach(t75, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t75);
-        ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t77 = 0.3016 * c_rod_leg2;
-        let c_cross_leg2 = (-0.0676 + t65) / t77;
-        let minus_s_arm_leg2 = t60 * (t36 * t66 + t61 * t70);
-        let s_cross_leg2 = t70 / t77;
+        let t50 = 0.26 * c_cross_leg1;
+        let t51 = actuator_velocities[0] * actuator_velocities[0];
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t58 = garm_vx_leg1 * actuator_velocities[0];
+        let t59 = t3 + t2;
+        let t61 = pose[1] + t59 - 0.24;
+        let t63 = t61 * t61 + t8;
+        let t64 = 0.2704 * t63;
+        let t65 = t12 - t11;
+        let t66 = pose[0] + t65;
+        let t68 = 0.3364 - t66 * t66;
+        let t69 = t63 - t68;
+        let t70 = t69 + 0.0676;
+        let t72 = t64 - t70 * t70;
+        ::overact::guard::reach(t72, "leg2")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let t74 = 2.972651605231867 * t68;
+        ::overact::guard::reach(t74, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t74);
+        let t76 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t73 / t76;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let t87 = 1.0 / s_cross_leg2;
-        let t88 = 3.8461538461538463 * t87;
-        let garm_vy_leg2 = c_armcross_leg2 * t88;
-        let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let t92 = t62 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t88 * t92;
-        let garm_wz_leg2 = t53 * garm_vy_leg2 - t54 * garm_vx_leg2;
-        let t99 = pose[0] - t4 + 0.24;
-        let t101 = t99 * t99 + t8;
-        let t102 = 0.2704 * t101;
-        let t103 = 1.0 / t102;
-        let t104 = 0.52 * t99;
-        let t105 = pose[1] - t13;
-        let t107 = 0.3364 - t105 * t105;
-        let t108 = t101 - t107;
-        let t109 = t108 + 0.0676;
-        let t112 = t102 - t109 * t109;
-        ::overact::guard::reach(t112, "leg3")?;
-        let t113 = ::overact::math::sqrt(t112);
-        let minus_c_arm_leg3 = t103 * (t104 * t109 + t36 * t113);
-        let t118 = 2.972651605231867 * t107;
-        ::overact::guard::reach(t118, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t118);
-        ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t120 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t108) / t120;
-        let s_arm_leg3 = t103 * (t104 * t113 - t36 * t109);
-        let s_cross_leg3 = t113 / t120;
+        let t78 = 3.8461538461538463 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 0.52 / t76;
+        let t80 = t66 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t78 * t80;
+        let t82 = garm_vx_leg2 * actuator_velocities[1];
+        let t85 = pose[0] - t4 + 0.24;
+        let t86 = 0.52 * t85;
+        let t88 = t85 * t85 + t8;
+        let t89 = pose[1] - t13;
+        let t91 = 0.3364 - t89 * t89;
+        let t92 = t88 - t91;
+        let t93 = t92 + 0.0676;
+        let t95 = 0.2704 * t88;
+        let t97 = t95 - t93 * t93;
+        ::overact::guard::reach(t97, "leg3")?;
+        let t98 = ::overact::math::sqrt(t97);
+        let minus_c_arm_leg3 = (t86 * t93 + t34 * t98) / t95;
+        let t103 = 2.972651605231867 * t91;
+        ::overact::guard::reach(t103, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t103);
+        let t105 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t92) / t105;
+        let s_arm_leg3 = (t86 * t98 - t34 * t93) / t95;
+        let s_cross_leg3 = t98 / t105;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t130 = 1.0 / s_cross_leg3;
-        let t131 = 3.8461538461538463 * t130;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t131;
-        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t135 = t105 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t131 * t135;
-        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let t142 = pose[1] - t54 + 0.24;
-        let t144 = t142 * t142 + t8;
-        let t145 = 0.2704 * t144;
-        let t146 = pose[0] - t53;
-        let t148 = 0.3364 - t146 * t146;
-        let t149 = t144 - t148;
-        let t150 = t149 + 0.0676;
-        let t152 = t145 - t150 * t150;
-        ::overact::guard::reach(t152, "leg4")?;
-        let t153 = ::overact::math::sqrt(t152);
-        let t154 = 2.972651605231867 * t148;
-        ::overact::guard::reach(t154, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t154);
-        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t156 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t153 / t156;
+        let t115 = 3.8461538461538463 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t115;
+        let t117 = garm_vx_leg3 * actuator_velocities[2];
+        let t120 = pose[1] - t59 + 0.24;
+        let t122 = t120 * t120 + t8;
+        let t123 = 0.2704 * t122;
+        let t124 = pose[0] - t65;
+        let t126 = 0.3364 - t124 * t124;
+        let t127 = t122 - t126;
+        let t128 = t127 + 0.0676;
+        let t130 = t123 - t128 * t128;
+        ::overact::guard::reach(t130, "leg4")?;
+        let t131 = ::overact::math::sqrt(t130);
+        let t132 = 2.972651605231867 * t126;
+        ::overact::guard::reach(t132, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t132);
+        let t134 = 0.3016 * c_rod_leg4;
+        let s_cross_leg4 = t131 / t134;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t158 = 1.0 / s_cross_leg4;
-        let t159 = 3.8461538461538463 * t158;
-        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t161 = t146 * grod_vx_leg4;
-        let garm_vx_leg4 = t159 * t161;
-        let t164 = 1.0 / t145;
-        let t165 = 0.52 * t142;
-        let minus_c_arm_leg4 = t164 * (t165 * t150 + t36 * t153);
-        let c_cross_leg4 = (-0.0676 + t149) / t156;
-        let s_arm_leg4 = t164 * (t165 * t153 - t36 * t150);
+        let t136 = 3.8461538461538463 / s_cross_leg4;
+        let grod_vx_leg4 = 0.52 / t134;
+        let t138 = t124 * grod_vx_leg4;
+        let garm_vx_leg4 = t136 * t138;
+        let t140 = garm_vx_leg4 * actuator_velocities[3];
+        let t141 = t58 + t82 + t117 + t140;
+        let t148 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t148, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t148, 19.507470815645043, "actuators")?;
+        let t151 = 0.52 * t61;
+        let c_arm_leg2 = (t151 * t70 - t34 * t73) / t64;
+        let c_cross_leg2 = (-0.0676 + t69) / t76;
+        let minus_s_arm_leg2 = (t34 * t70 + t151 * t73) / t64;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t78;
+        let minus_grod_vy_leg3 = 0.52 / t105;
+        let t169 = t89 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t115 * t169;
+        let t173 = 0.52 * t120;
+        let minus_c_arm_leg4 = (t173 * t128 + t34 * t131) / t123;
+        let c_cross_leg4 = (-0.0676 + t127) / t134;
+        let s_arm_leg4 = (t173 * t131 - t34 * t128) / t123;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t159;
-        let garm_wz_leg4 = t54 * garm_vx_leg4 - t53 * garm_vy_leg4;
-        let t190 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
-            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t197 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t197, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t197, 19.507470815645043, "actuators")?;
-        let t198 = 1.0 / t197;
-        let t199 = t190 * t198;
-        let t215 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t136;
+        let t189 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t217 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t215 * t199;
-        let t225 = t215 * t198;
-        let t227 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t215 * t225;
-        ::overact::guard::platform(t227, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t227, 16.505615550045768, "actuators")?;
-        let t228 = 1.0 / t227;
-        let t229 = t217 * t228;
-        let t231 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t190 * t199
-            - t217 * t229;
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t28;
+        let t190 = t189 / t148;
+        let t191 = garm_vy_leg1 * actuator_velocities[0];
+        let t192 = garm_vy_leg2 * actuator_velocities[1];
+        let t194 = garm_vy_leg3 * actuator_velocities[2];
+        let t196 = garm_vy_leg4 * actuator_velocities[3];
+        let t199 = t191 + t192 + t194 + t196 - t141 * t190;
+        let t208 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t189 * t190;
+        ::overact::guard::platform(t208, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t208, 16.505615550045768, "actuators")?;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t27;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t88;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t78;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t131;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t115;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t159;
-        let t254 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t136;
+        let t229 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t264 = t254 * t198;
-        let t273 = t215 * t264
+        let t230 = t229 / t148;
+        let t239 = t189 * t230
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t275 = t254 * t199
-            - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
-                + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t273 * t229;
-        let t285 = t273 * t228;
-        let t287 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t240 = t239 / t208;
+        let t242 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t243 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t245 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t247 = minus_garm_vz_leg4 * actuator_velocities[3];
+        let t251 = t141 * t230 - (t242 + t243 + t245 + t247) - t240 * t199;
+        let t262 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t254 * t264 - t273 * t285;
-        ::overact::guard::platform(t287, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t287, 31.11733818900117, "actuators")?;
-        let t288 = 1.0 / t287;
-        let t289 = t275 * t288;
-        let t291 = t231 - t275 * t289;
-        ::overact::guard::platform(t291, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t291, 0.35106548211906174, "actuators")?;
-        let t292 = 1.0 / t291;
-        let t293 = 0.26 * c_cross_leg1;
-        let t294 = actuator_velocities[0] * actuator_velocities[0];
-        let t296 = 0.58 * c_rod_leg1;
-        let t298 = garm_vx_leg1 * actuator_velocities[0];
-        let t299 = garm_vx_leg2 * actuator_velocities[1];
-        let t301 = garm_vx_leg3 * actuator_velocities[2];
-        let t303 = garm_vx_leg4 * actuator_velocities[3];
-        let t304 = t298 + t299 + t301 + t303;
-        let t306 = garm_vy_leg1 * actuator_velocities[0];
-        let t307 = garm_vy_leg2 * actuator_velocities[1];
-        let t309 = garm_vy_leg3 * actuator_velocities[2];
-        let t311 = garm_vy_leg4 * actuator_velocities[3];
-        let t314 = t306 + t307 + t309 + t311 - t304 * t225;
-        let t317 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t318 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t320 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t322 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t326 = t304 * t264 - (t317 + t318 + t320 + t322) - t285 * t314;
-        let t328 = garm_wz_leg1 * actuator_velocities[0];
-        let t329 = garm_wz_leg2 * actuator_velocities[1];
-        let t331 = garm_wz_leg3 * actuator_velocities[2];
-        let t333 = garm_wz_leg4 * actuator_velocities[3];
-        let t341 = t292
-            * (t328 + t329 + t331 + t333 - t304 * t199 - t229 * t314 - t289 * t326);
-        let t343 = t288 * t326 - t289 * t341;
-        let t347 = t228 * t314 - t285 * t343 - t229 * t341;
-        let t353 = t304 * t198 - t225 * t347 + t264 * t343 - t199 * t341;
-        let t354 = t13 * t341;
-        let t359 = actuator_velocities[0] * t293 + s_armcross_leg1 * (t353 - t354)
-            + c_armcross_leg1 * t343;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t359;
-        let t361 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t362 = t4 * t341;
-        let rate_rod_leg1 = grod_vy_leg1 * (t347 + t362);
-        let t365 = rate_rod_leg1 * rate_rod_leg1;
-        let t369 = t341 * t362;
-        let t372 = t341 * t354;
-        let t373 = t14 * t365;
-        let rate_dot_arm_leg1 = t28
-            * (t293 * t294 + t296 * (t361 + t365) - c_armcross_leg1 * t369
-                - t30 * (t372 - t373));
-        let t378 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t380 = 0.26 * c_cross_leg2;
-        let t381 = actuator_velocities[1] * actuator_velocities[1];
-        let t384 = t54 * t341;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * (t353 - t384);
-        let t387 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t388 = t53 * t341;
-        let t394 = s_armcross_leg2 * (t347 + t388) + c_armcross_leg2 * t343
-            + actuator_velocities[1] * t380;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t394;
-        let t396 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t400 = t341 * t384;
-        let t403 = t341 * t388;
-        let t404 = t62 * t387;
-        let t407 = t380 * t381 + 0.58 * c_rod_leg2 * (t387 + t396)
-            - c_armcross_leg2 * t400 - t92 * (t403 - t404);
-        let rate_dot_arm_leg2 = t88 * t407;
-        let t409 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t413 = 0.26 * c_cross_leg3;
-        let t414 = actuator_velocities[2] * actuator_velocities[2];
-        let t416 = 0.58 * c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * (t347 - t362);
-        let t419 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t425 = s_armcross_leg3 * (t353 + t354) + minus_c_armcross_leg3 * t343
-            - actuator_velocities[2] * t413;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t425;
-        let t427 = rate_cross_leg3 * rate_cross_leg3;
-        let t432 = t105 * t419;
-        let rate_dot_arm_leg3 = t131
-            * (minus_c_armcross_leg3 * t369 + t413 * t414 + t416 * (t419 + t427)
-                + t135 * (t372 + t432));
-        let t437 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t441 = 0.26 * c_cross_leg4;
-        let t442 = actuator_velocities[3] * actuator_velocities[3];
-        let rate_rod_leg4 = grod_vx_leg4 * (t353 + t384);
-        let t447 = rate_rod_leg4 * rate_rod_leg4;
-        let t453 = s_armcross_leg4 * (t347 - t388) + minus_c_armcross_leg4 * t343
-            - actuator_velocities[3] * t441;
-        let rate_cross_leg4 = grod_vx_leg4 * t453;
-        let t455 = rate_cross_leg4 * rate_cross_leg4;
-        let t460 = t146 * t447;
-        let t463 = minus_c_armcross_leg4 * t400 + t441 * t442
-            + 0.58 * c_rod_leg4 * (t447 + t455) + t161 * (t403 + t460);
-        let rate_dot_arm_leg4 = t159 * t463;
-        let t465 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t474 = garm_vx_leg1 * t378 + garm_vx_leg2 * t409 + garm_vx_leg3 * t437
-            + garm_vx_leg4 * t465;
-        let t485 = garm_vy_leg1 * t378 + garm_vy_leg2 * t409 + garm_vy_leg3 * t437
-            + garm_vy_leg4 * t465 - t225 * t474;
-        let t487 = garm_wz_leg1 * t378 + garm_wz_leg2 * t409 + garm_wz_leg3 * t437
-            + garm_wz_leg4 * t465 - t199 * t474 - t229 * t485;
-        let t498 = t264 * t474
-            - (minus_garm_vz_leg1 * t378 + minus_garm_vz_leg2 * t409
-                + minus_garm_vz_leg3 * t437 + minus_garm_vz_leg4 * t465) - t285 * t485;
-        let t501 = t292 * (t487 - t289 * t498);
-        let t502 = t341 * t341;
-        let t505 = c_phi * t502 + s_phi * t501;
-        let t508 = s_phi * t502 - c_phi * t501;
-        let t512 = t288 * t498 - t289 * t501;
-        let t516 = t228 * t485 - t285 * t512 - t229 * t501;
-        let t524 = t198 * t474 - t225 * t516 + t264 * t512 - t199 * t501;
-        let t547 = 9.81 * c_arm_leg1;
-        let t552 = 9.81 * c_arm_leg2;
-        let t557 = 9.81 * minus_c_arm_leg3;
-        let t562 = 9.81 * minus_c_arm_leg4;
-        let t567 = 9.81 * minus_s_arm_leg1;
-        let t572 = 9.81 * minus_s_arm_leg2;
-        let t577 = 9.81 * s_arm_leg3;
-        let t582 = 9.81 * s_arm_leg4;
-        let t603 = t27 * grod_vy_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t603;
-        let t606 = rate_rod_leg1 * (1.7241379310344827 * t359);
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t229 * t230 - t239 * t240;
+        ::overact::guard::platform(t262, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t262, 31.11733818900117, "actuators")?;
+        let garm_wz_leg2 = t65 * garm_vy_leg2 - t59 * garm_vx_leg2;
+        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t59 * garm_vx_leg4 - t65 * garm_vy_leg4;
+        let t279 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t280 = t279 / t148;
+        let t298 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t189 * t280;
+        let t299 = t298 / t208;
+        let t301 = t229 * t280
+            - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
+                + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
+            - t239 * t299;
+        let t302 = t301 / t262;
+        let t303 = garm_wz_leg1 * actuator_velocities[0];
+        let t304 = garm_wz_leg2 * actuator_velocities[1];
+        let t306 = garm_wz_leg3 * actuator_velocities[2];
+        let t308 = garm_wz_leg4 * actuator_velocities[3];
+        let t326 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t279 * t280
+            - t298 * t299;
+        let t328 = t326 - t301 * t302;
+        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
+        let t329 = (t303 + t304 + t306 + t308 - t141 * t280 - t299 * t199 - t302 * t251)
+            / t328;
+        let t331 = t251 / t262 - t302 * t329;
+        let t335 = t199 / t208 - t240 * t331 - t299 * t329;
+        let t341 = t141 / t148 - t190 * t335 + t230 * t331 - t280 * t329;
+        let t342 = t13 * t329;
+        let t347 = actuator_velocities[0] * t50 + s_armcross_leg1 * (t341 - t342)
+            + c_armcross_leg1 * t331;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t347;
+        let t349 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t350 = t4 * t329;
+        let rate_rod_leg1 = grod_vy_leg1 * (t335 + t350);
+        let t353 = rate_rod_leg1 * rate_rod_leg1;
+        let t357 = t329 * t350;
+        let t360 = t329 * t342;
+        let t361 = t14 * t353;
+        let t364 = t50 * t51 - grod_vy_leg1 * t16 * (t349 + t353)
+            - c_armcross_leg1 * t357 - t29 * (t360 - t361);
+        let rate_dot_arm_leg1 = t27 * t364;
+        let t366 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t368 = 0.26 * c_cross_leg2;
+        let t369 = actuator_velocities[1] * actuator_velocities[1];
+        let t372 = t59 * t329;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * (t341 - t372);
+        let t375 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t376 = t65 * t329;
+        let t382 = s_armcross_leg2 * (t335 + t376) + c_armcross_leg2 * t331
+            + actuator_velocities[1] * t368;
+        let t383 = 1.7241379310344827 * t382;
+        let t384 = t383 * t383;
+        let t385 = t80 * t384;
+        let t386 = t80 * t385;
+        let t387 = t386 + t384;
+        let t391 = t329 * t372;
+        let t394 = t329 * t376;
+        let t395 = t66 * t375;
+        let t398 = t368 * t369 + minus_grod_vx_leg2 * t68 * (t375 + t387)
+            - c_armcross_leg2 * t391 - t80 * (t394 - t395);
+        let rate_dot_arm_leg2 = t78 * t398;
+        let t400 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t404 = 0.26 * c_cross_leg3;
+        let t405 = actuator_velocities[2] * actuator_velocities[2];
+        let t408 = t335 - t350;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t408;
+        let t410 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3
+            * (s_armcross_leg3 * (t341 + t342) + minus_c_armcross_leg3 * t331
+                - actuator_velocities[2] * t404);
+        let t418 = rate_cross_leg3 * rate_cross_leg3;
+        let t423 = t89 * t410;
+        let t426 = minus_c_armcross_leg3 * t357 + t404 * t405
+            + minus_grod_vy_leg3 * t91 * (t410 + t418) + t169 * (t360 + t423);
+        let rate_dot_arm_leg3 = t115 * t426;
+        let t428 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t432 = 0.26 * c_cross_leg4;
+        let t433 = actuator_velocities[3] * actuator_velocities[3];
+        let t436 = t341 + t372;
+        let rate_rod_leg4 = grod_vx_leg4 * t436;
+        let t438 = rate_rod_leg4 * rate_rod_leg4;
+        let rate_cross_leg4 = grod_vx_leg4
+            * (s_armcross_leg4 * (t335 - t376) + minus_c_armcross_leg4 * t331
+                - actuator_velocities[3] * t432);
+        let t446 = rate_cross_leg4 * rate_cross_leg4;
+        let t451 = t124 * t438;
+        let t454 = minus_c_armcross_leg4 * t391 + t432 * t433
+            + grod_vx_leg4 * t126 * (t438 + t446) + t138 * (t394 + t451);
+        let rate_dot_arm_leg4 = t136 * t454;
+        let t456 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t465 = garm_vx_leg1 * t366 + garm_vx_leg2 * t400 + garm_vx_leg3 * t428
+            + garm_vx_leg4 * t456;
+        let t476 = garm_vy_leg1 * t366 + garm_vy_leg2 * t400 + garm_vy_leg3 * t428
+            + garm_vy_leg4 * t456 - t190 * t465;
+        let t478 = garm_wz_leg1 * t366 + garm_wz_leg2 * t400 + garm_wz_leg3 * t428
+            + garm_wz_leg4 * t456 - t280 * t465 - t299 * t476;
+        let t489 = t230 * t465
+            - (minus_garm_vz_leg1 * t366 + minus_garm_vz_leg2 * t400
+                + minus_garm_vz_leg3 * t428 + minus_garm_vz_leg4 * t456) - t240 * t476;
+        let t492 = (t478 - t302 * t489) / t328;
+        let t493 = t329 * t329;
+        let t496 = c_phi * t493 + s_phi * t492;
+        let t499 = s_phi * t493 - c_phi * t492;
+        let t503 = t489 / t262 - t302 * t492;
+        let t507 = t476 / t208 - t240 * t503 - t299 * t492;
+        let t515 = t465 / t148 - t190 * t507 + t230 * t503 - t280 * t492;
+        let t538 = 9.81 * c_arm_leg1;
+        let t543 = 9.81 * c_arm_leg2;
+        let t548 = 9.81 * minus_c_arm_leg3;
+        let t553 = 9.81 * minus_c_arm_leg4;
+        let t558 = 9.81 * minus_s_arm_leg1;
+        let t563 = 9.81 * minus_s_arm_leg2;
+        let t568 = 9.81 * s_arm_leg3;
+        let t573 = 9.81 * s_arm_leg4;
+        let t594 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t594;
         let s_rod_leg1 = 1.7241379310344827 * t14;
-        let t608 = 0.26 * actuator_accelerations[0];
-        let t610 = t13 * t501;
-        let t616 = 0.26 * t294;
-        let t618 = t14 * minus_rate_cross_leg1;
-        let t619 = rate_rod_leg1 * t618;
-        let t623 = c_cross_leg1 * t608 + s_armcross_leg1 * (t524 - t610 - t369)
-            + c_armcross_leg1 * t512 + s_cross_leg1 * t616 + t619 + t619;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t623;
-        let t625 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t627 = t606 + t625 + t606;
-        let t628 = c_rod_leg1 * t627;
-        let t629 = t30 * t628;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t293 * garm_vy_leg1);
-        let t635 = 2.972651605231867 * (minus_rate_cross_leg1 * t618);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t603;
+        let t597 = t347 * rate_rod_leg1;
+        let t598 = 1.7241379310344827 * t597;
+        let t599 = 0.26 * actuator_accelerations[0];
+        let t601 = t13 * t492;
+        let t607 = s_cross_leg1 * 0.26;
+        let t609 = t29 * t597;
+        let t613 = c_cross_leg1 * t599 + s_armcross_leg1 * (t515 - t601 - t357)
+            + c_armcross_leg1 * t503 + t51 * t607 + t609 + t609;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t613;
+        let t615 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t617 = t598 + t615 + t598;
+        let t618 = s_rod_leg1 * t617;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t50 * garm_vy_leg1);
+        let t623 = t22 * t349;
+        let t624 = t29 * t623;
+        let t625 = grod_vy_leg1 * t624;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t594;
         let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
         let grod_wz_leg1 = t4 * grod_vy_leg1;
-        let t644 = t296 * t635;
-        let t645 = grod_wz_leg1 * t644;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t380 * garm_vx_leg2);
-        let t650 = minus_rate_rod_leg2 * (1.7241379310344827 * t394);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t62;
-        let t652 = t53 * t501;
-        let t658 = 0.26 * t381;
-        let t660 = t62 * minus_rate_cross_leg2;
-        let t661 = minus_rate_rod_leg2 * t660;
-        let t665 = 0.26 * actuator_accelerations[1];
-        let t667 = s_armcross_leg2 * (t516 + t652 - t400) + c_armcross_leg2 * t512
-            + s_cross_leg2 * t658 + t661 + t661 + c_cross_leg2 * t665;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t667;
-        let t669 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t671 = t650 + t669 + t650;
-        let t672 = c_rod_leg2 * t671;
-        let t673 = t92 * t672;
-        let t676 = 2.972651605231867 * (t660 * t660);
-        let t677 = t396 - t676;
-        let t678 = t92 * t677;
-        let t679 = minus_grod_vx_leg2 * t678;
-        let t681 = t87 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t681;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t681;
-        let grod_wz_leg2 = t54 * minus_grod_vx_leg2;
-        let t687 = grod_wz_leg2 * t678;
-        let gcross_wz_leg2 = t54 * minus_gcross_vx_leg2 - t53 * minus_gcross_vy_leg2;
-        let t693 = t130 * minus_grod_vy_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t693;
-        let t696 = minus_rate_rod_leg3 * (1.7241379310344827 * t425);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t105;
-        let t703 = 0.26 * t414;
-        let t705 = t105 * rate_cross_leg3;
-        let t706 = minus_rate_rod_leg3 * t705;
-        let t710 = 0.26 * actuator_accelerations[2];
-        let t712 = s_armcross_leg3 * (t524 + t610 + t369) + minus_c_armcross_leg3 * t512
-            - (s_cross_leg3 * t703 - t706 - t706) - c_cross_leg3 * t710;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t712;
-        let t714 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t716 = t696 + t714 + t696;
-        let t717 = c_rod_leg3 * t716;
-        let t718 = t135 * t717;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t413 * garm_vy_leg3);
-        let t724 = 2.972651605231867 * (rate_cross_leg3 * t705);
-        let gcross_vz_leg3 = s_arm_leg3 * t693;
+        let t634 = grod_wz_leg1 * t624;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t368 * garm_vx_leg2);
+        let t638 = minus_rate_rod_leg2 * t383;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t66;
+        let t640 = t65 * t492;
+        let t646 = 0.26 * t369;
+        let t649 = minus_rate_rod_leg2 * (t80 * t382);
+        let t653 = 0.26 * actuator_accelerations[1];
+        let t655 = s_armcross_leg2 * (t507 + t640 - t391) + c_armcross_leg2 * t503
+            + s_cross_leg2 * t646 + t649 + t649 + c_cross_leg2 * t653;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t655;
+        let t657 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t659 = t638 + t657 + t638;
+        let t660 = c_rod_leg2 * t659;
+        let t661 = t80 * t660;
+        let t663 = minus_grod_vx_leg2 * t385;
+        let t665 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t665;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t665;
+        let t670 = t59 * t663;
+        let gcross_wz_leg2 = t59 * minus_gcross_vx_leg2 - t65 * minus_gcross_vy_leg2;
+        let t676 = minus_grod_vy_leg3 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t676;
+        let t678 = t408 * rate_cross_leg3;
+        let t679 = 1.7241379310344827 * t678;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t89;
+        let t686 = s_cross_leg3 * 0.26;
+        let t688 = t169 * t678;
+        let t693 = s_armcross_leg3 * (t515 + t601 + t357) + minus_c_armcross_leg3 * t503
+            - (t405 * t686 - t688 - t688) - actuator_accelerations[2] * t404;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t693;
+        let t695 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t697 = t679 + t695 + t679;
+        let t698 = c_rod_leg3 * t697;
+        let t699 = t169 * t698;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t404 * garm_vy_leg3);
+        let t704 = t103 * t418;
+        let t705 = t169 * t704;
+        let t706 = minus_grod_vy_leg3 * t705;
+        let gcross_vz_leg3 = s_arm_leg3 * t676;
         let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
-        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
-        let t733 = t416 * t724;
-        let t734 = grod_wz_leg3 * t733;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t441 * garm_vx_leg4);
-        let t739 = rate_rod_leg4 * (1.7241379310344827 * t453);
-        let s_rod_leg4 = 1.7241379310344827 * t146;
-        let t746 = 0.26 * t442;
-        let t748 = t146 * rate_cross_leg4;
-        let t749 = rate_rod_leg4 * t748;
-        let t753 = 0.26 * actuator_accelerations[3];
-        let t755 = s_armcross_leg4 * (t516 - t652 + t400) + minus_c_armcross_leg4 * t512
-            - (s_cross_leg4 * t746 - t749 - t749) - c_cross_leg4 * t753;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * t755;
-        let t757 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t759 = t739 + t757 + t739;
-        let t760 = c_rod_leg4 * t759;
-        let t761 = t161 * t760;
-        let t764 = 2.972651605231867 * (t748 * t748);
-        let t765 = t455 - t764;
-        let t766 = t161 * t765;
-        let t767 = grod_vx_leg4 * t766;
-        let t769 = t158 * grod_vx_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t769;
-        let gcross_vz_leg4 = s_arm_leg4 * t769;
-        let minus_gcross_wz_leg4 = t54 * minus_gcross_vx_leg4
-            - t53 * minus_gcross_vy_leg4;
-        let grod_wz_leg4 = t54 * grod_vx_leg4;
-        let t779 = grod_wz_leg4 * t766;
-        let t781 = t629 - minus_rate_dot_cross_leg1;
-        let t783 = t30 * t781 - t628;
-        let t785 = t14 * t635;
-        let t787 = t785 - (t361 - t785);
-        let t795 = t673 - minus_rate_dot_cross_leg2;
-        let t797 = t672 - t92 * t795;
-        let t799 = t676 - t677;
-        let t807 = rate_dot_cross_leg3 - t718;
-        let t809 = t135 * t807 + t717;
-        let t812 = t105 * t724;
-        let t814 = t812 - (t427 - t812);
-        let t821 = t764 - t765;
-        let t823 = rate_dot_cross_leg4 - t761;
-        let t825 = t760 + t161 * t823;
-        let t833 = t4 * t501;
-        let t835 = t516 + t833 - t372;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t835 + t373);
-        let t842 = s_rod_leg1 * (t644 + rate_dot_rod_leg1) + c_rod_leg1 * (t365 - t785);
-        let t851 = t54 * t501;
-        let t853 = t524 - t851 - t403;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t853 + t404);
-        let t860 = minus_s_rod_leg2 * (t678 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t387 - t676);
-        let t870 = t516 - t833 + t372;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t870 + t432);
-        let t877 = minus_s_rod_leg3 * (t733 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t419 - t812);
-        let t888 = t524 + t851 + t403;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * (t888 + t460);
-        let t895 = s_rod_leg4 * (t766 + rate_dot_rod_leg4) + c_rod_leg4 * (t447 - t764);
-        let t927 = 1.7241379310344827 * t835;
-        let t930 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t936 = 1.7241379310344827 * t853;
-        let t938 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t945 = 1.7241379310344827 * t870;
-        let t948 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t954 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t955 = 1.7241379310344827 * t888;
-        let t971 = 0.8620689655172413 * t21;
-        let t979 = t971 * (t644 - rate_dot_rod_leg1) + t30 * t971 * (t785 + t365)
-            + t293 * t627;
-        let t981 = t608 - t547;
-        let t983 = t567 - t616;
-        let t986 = s_rod_leg1 * (c_cross_leg1 * t981 - s_cross_leg1 * t983);
-        let t994 = c_cross_leg1 * t983 + s_cross_leg1 * t981;
-        let t995 = 1.7241379310344827 * t994;
-        let t1005 = 0.8620689655172413 * t70;
-        let t1013 = t1005 * (minus_rate_dot_rod_leg2 - t678)
-            - t92 * t1005 * (t676 + t387) - t380 * t671;
-        let t1015 = t665 - t552;
-        let t1017 = t572 - t658;
-        let t1020 = minus_s_rod_leg2 * (c_cross_leg2 * t1015 - s_cross_leg2 * t1017);
-        let t1025 = c_cross_leg2 * t1017 + s_cross_leg2 * t1015;
-        let t1026 = 1.7241379310344827 * t1025;
-        let t1039 = 0.8620689655172413 * t113;
-        let t1047 = t1039 * (minus_rate_dot_rod_leg3 - t733)
-            - t135 * t1039 * (t812 + t419) + t413 * t716;
-        let t1049 = t577 + t703;
-        let t1051 = t557 + t710;
-        let t1054 = minus_s_rod_leg3 * (s_cross_leg3 * t1049 + c_cross_leg3 * t1051);
-        let t1062 = s_cross_leg3 * t1051 - c_cross_leg3 * t1049;
-        let t1063 = 1.7241379310344827 * t1062;
-        let t1073 = 0.8620689655172413 * t153;
-        let t1081 = t1073 * (t766 - rate_dot_rod_leg4) + t161 * t1073 * (t764 + t447)
-            - t441 * t759;
-        let t1083 = t582 + t746;
-        let t1085 = t562 + t753;
-        let t1088 = s_rod_leg4 * (s_cross_leg4 * t1083 + c_cross_leg4 * t1085);
-        let t1093 = s_cross_leg4 * t1085 - c_cross_leg4 * t1083;
-        let t1094 = 1.7241379310344827 * t1093;
-        let t1110 = t293 * t361 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.26);
-        let t1126 = t380 * t396 - minus_rate_dot_cross_leg2 * (s_cross_leg2 * 0.26);
-        let t1142 = rate_dot_cross_leg3 * (s_cross_leg3 * 0.26) + t413 * t427;
-        let t1158 = rate_dot_cross_leg4 * (s_cross_leg4 * 0.26) + t441 * t455;
+        let t714 = t4 * t706;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t432 * garm_vx_leg4);
+        let s_rod_leg4 = 1.7241379310344827 * t124;
+        let t719 = t436 * rate_cross_leg4;
+        let t720 = 1.7241379310344827 * t719;
+        let t726 = s_cross_leg4 * 0.26;
+        let t728 = t138 * t719;
+        let t732 = 0.26 * actuator_accelerations[3];
+        let t734 = s_armcross_leg4 * (t507 - t640 + t391) + minus_c_armcross_leg4 * t503
+            - (t433 * t726 - t728 - t728) - c_cross_leg4 * t732;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t734;
+        let t736 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t738 = t720 + t736 + t720;
+        let t739 = s_rod_leg4 * t738;
+        let t741 = t132 * t446;
+        let t742 = t138 * t741;
+        let t743 = grod_vx_leg4 * t742;
+        let t745 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t745;
+        let gcross_vz_leg4 = s_arm_leg4 * t745;
+        let minus_gcross_wz_leg4 = t59 * minus_gcross_vx_leg4
+            - t65 * minus_gcross_vy_leg4;
+        let t754 = t59 * t743;
+        let t756 = t618 - minus_rate_dot_cross_leg1;
+        let t759 = t29 * t756 - c_rod_leg1 * t617;
+        let t761 = t14 * t625;
+        let t762 = t623 - t761;
+        let t770 = t661 - minus_rate_dot_cross_leg2;
+        let t772 = t660 - t80 * t770;
+        let t775 = minus_grod_vx_leg2 * (t386 - t384);
+        let t782 = rate_dot_cross_leg3 - t699;
+        let t784 = t169 * t782 + t698;
+        let t787 = t418 - t704;
+        let t789 = minus_grod_vy_leg3 * (t787 - t704);
+        let t795 = t138 * t742;
+        let t797 = grod_vx_leg4 * (t795 - t741);
+        let t799 = rate_dot_cross_leg4 - t739;
+        let t801 = c_rod_leg4 * t738 + t138 * t799;
+        let t809 = t4 * t492;
+        let t811 = t507 + t809 - t360;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t811 + t361);
+        let t818 = s_rod_leg1 * (rate_dot_rod_leg1 - t624) + c_rod_leg1 * (t353 + t761);
+        let t827 = t59 * t492;
+        let t829 = t515 - t827 - t394;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t829 + t395);
+        let t836 = minus_s_rod_leg2 * (t385 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t375 - t386);
+        let t843 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t844 = t59 * t843;
+        let t848 = t507 - t809 + t360;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t848 + t423);
+        let t855 = minus_s_rod_leg3 * (t705 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t410 - t787);
+        let t862 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t863 = t4 * t862;
+        let t866 = grod_vx_leg4 * t736;
+        let t868 = t515 + t827 + t394;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * (t868 + t451);
+        let t875 = s_rod_leg4 * (t742 + rate_dot_rod_leg4) + c_rod_leg4 * (t438 - t795);
+        let t907 = 1.7241379310344827 * t811;
+        let t910 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t916 = 1.7241379310344827 * t829;
+        let t923 = 1.7241379310344827 * t848;
+        let t930 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t931 = 1.7241379310344827 * t868;
+        let t941 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t943 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
+        let t945 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t955 = s_rod_leg1 * t607 * (t353 - t761)
+            - c_rod_leg1 * t607 * (t624 + rate_dot_rod_leg1) + t50 * t617;
+        let t957 = t599 - t538;
+        let t960 = t558 - 0.26 * t51;
+        let t963 = s_rod_leg1 * (c_cross_leg1 * t957 - s_cross_leg1 * t960);
+        let t971 = c_cross_leg1 * t960 + s_cross_leg1 * t957;
+        let t972 = 1.7241379310344827 * t971;
+        let t982 = s_cross_leg2 * 0.26;
+        let t983 = c_rod_leg2 * t982;
+        let t991 = t983 * (minus_rate_dot_rod_leg2 - t385) - t80 * t983 * (t386 + t375)
+            - t368 * t659;
+        let t993 = t653 - t543;
+        let t995 = t563 - t646;
+        let t998 = minus_s_rod_leg2 * (c_cross_leg2 * t993 - s_cross_leg2 * t995);
+        let t1003 = c_cross_leg2 * t995 + s_cross_leg2 * t993;
+        let t1004 = 1.7241379310344827 * t1003;
+        let t1017 = c_rod_leg3 * t686;
+        let t1025 = t1017 * (minus_rate_dot_rod_leg3 - t705)
+            - t169 * t1017 * (t787 + t410) + t404 * t697;
+        let t1028 = t568 + 0.26 * t405;
+        let t1031 = t548 + 0.26 * actuator_accelerations[2];
+        let t1034 = minus_s_rod_leg3 * (s_cross_leg3 * t1028 + c_cross_leg3 * t1031);
+        let t1042 = s_cross_leg3 * t1031 - c_cross_leg3 * t1028;
+        let t1043 = 1.7241379310344827 * t1042;
+        let t1053 = c_rod_leg4 * t726;
+        let t1061 = t1053 * (t742 - rate_dot_rod_leg4) + t138 * t1053 * (t795 + t438)
+            - t432 * t738;
+        let t1064 = t573 + 0.26 * t433;
+        let t1066 = t553 + t732;
+        let t1069 = s_rod_leg4 * (s_cross_leg4 * t1064 + c_cross_leg4 * t1066);
+        let t1074 = s_cross_leg4 * t1066 - c_cross_leg4 * t1064;
+        let t1075 = 1.7241379310344827 * t1074;
+        let t1090 = t50 * t349 - minus_rate_dot_cross_leg1 * t607;
+        let t1105 = t368 * t387 - minus_rate_dot_cross_leg2 * t982;
+        let t1120 = rate_dot_cross_leg3 * t686 + t404 * t418;
+        let t1135 = rate_dot_cross_leg4 * t726 + t432 * t446;
         Ok([
             [
-                0.0, -t505, t508, t524, garm_vx_leg1 * actuator_accelerations[0],
+                0.0, -t496, t499, t515, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                garm_vx_leg4 * actuator_accelerations[3], -(garm_vx_leg1 * t547),
-                -(garm_vx_leg2 * t552), garm_vx_leg3 * t557, garm_vx_leg4 * t562,
-                -(garm_vx_leg1 * t567), -(garm_vx_leg2 * t572), garm_vx_leg3 * t577,
-                garm_vx_leg4 * t582, t298, t299, t301, t303,
+                garm_vx_leg4 * actuator_accelerations[3], -(garm_vx_leg1 * t538),
+                -(garm_vx_leg2 * t543), garm_vx_leg3 * t548, garm_vx_leg4 * t553,
+                -(garm_vx_leg1 * t558), -(garm_vx_leg2 * t563), garm_vx_leg3 * t568,
+                garm_vx_leg4 * t573, t58, t82, t117, t140,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t629,
-                minus_gcross_vx_leg2 * t673 - t679, -(minus_gcross_vx_leg3 * t718),
-                -(minus_gcross_vx_leg4 * t761 + t767), -(minus_gcross_vx_leg1 * t783),
-                -(minus_gcross_vx_leg2 * t797 + minus_grod_vx_leg2 * t799),
-                minus_gcross_vx_leg3 * t809, grod_vx_leg4 * t821 - minus_gcross_vx_leg4 * t825,
-                -(minus_gcross_vx_leg1 * t842),
-                -(minus_gcross_vx_leg2 * t860 + minus_grod_vx_leg2 * t669),
-                -(minus_gcross_vx_leg3 * t877), grod_vx_leg4 * t757 - minus_gcross_vx_leg4 * t895,
-                -(minus_gcross_vx_leg1 * t781), t679 - minus_gcross_vx_leg2 * t795,
-                -(minus_gcross_vx_leg3 * t807), t767 - minus_gcross_vx_leg4 * t823,
-                -(minus_gcross_vx_leg1 * t927), minus_gcross_vx_leg2 * t936 + t938,
-                minus_gcross_vx_leg3 * t945, t954 - minus_gcross_vx_leg4 * t955, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
-                garm_vx_leg1 * t979 + minus_gcross_vx_leg1 * t986,
-                garm_vx_leg2 * t1013 - minus_gcross_vx_leg2 * t1020 + t1026,
-                garm_vx_leg3 * t1047 - minus_gcross_vx_leg3 * t1054,
-                garm_vx_leg4 * t1081 + minus_gcross_vx_leg4 * t1088 - t1094,
-                garm_vx_leg1 * t1110 - minus_gcross_vx_leg1 * t994,
-                garm_vx_leg2 * t1126 - minus_gcross_vx_leg2 * t1025,
-                garm_vx_leg3 * t1142 - minus_gcross_vx_leg3 * t1062,
-                garm_vx_leg4 * t1158 - minus_gcross_vx_leg4 * t1093,
+                garm_vx_leg2, garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t618,
+                minus_gcross_vx_leg2 * t661 - t663, -(minus_gcross_vx_leg3 * t699),
+                -(minus_gcross_vx_leg4 * t739 + t743), -(minus_gcross_vx_leg1 * t759),
+                -(minus_gcross_vx_leg2 * t772 + t775), minus_gcross_vx_leg3 * t784,
+                t797 - minus_gcross_vx_leg4 * t801, -(minus_gcross_vx_leg1 * t818),
+                -(minus_gcross_vx_leg2 * t836 + minus_grod_vx_leg2 * t657),
+                -(minus_gcross_vx_leg3 * t855), t866 - minus_gcross_vx_leg4 * t875,
+                -(minus_gcross_vx_leg1 * t756), t663 - minus_gcross_vx_leg2 * t770,
+                -(minus_gcross_vx_leg3 * t782), t743 - minus_gcross_vx_leg4 * t799,
+                -(minus_gcross_vx_leg1 * t907), minus_gcross_vx_leg2 * t916 + t843,
+                minus_gcross_vx_leg3 * t923, t930 - minus_gcross_vx_leg4 * t931, 0.0, t941, 0.0,
+                t945, garm_vx_leg1 * t955 + minus_gcross_vx_leg1 * t963,
+                garm_vx_leg2 * t991 - minus_gcross_vx_leg2 * t998 + t1004,
+                garm_vx_leg3 * t1025 - minus_gcross_vx_leg3 * t1034,
+                garm_vx_leg4 * t1061 + minus_gcross_vx_leg4 * t1069 - t1075,
+                garm_vx_leg1 * t1090 - minus_gcross_vx_leg1 * t971,
+                garm_vx_leg2 * t1105 - minus_gcross_vx_leg2 * t1003,
+                garm_vx_leg3 * t1120 - minus_gcross_vx_leg3 * t1042,
+                garm_vx_leg4 * t1135 - minus_gcross_vx_leg4 * t1074,
             ],
             [
-                0.0, -t508, -t505, t516, garm_vy_leg1 * actuator_accelerations[0],
+                0.0, -t499, -t496, t507, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                garm_vy_leg4 * actuator_accelerations[3], -(garm_vy_leg1 * t547),
-                -(garm_vy_leg2 * t552), garm_vy_leg3 * t557, garm_vy_leg4 * t562,
-                -(garm_vy_leg1 * t567), -(garm_vy_leg2 * t572), garm_vy_leg3 * t577,
-                garm_vy_leg4 * t582, t306, t307, t309, t311,
+                garm_vy_leg4 * actuator_accelerations[3], -(garm_vy_leg1 * t538),
+                -(garm_vy_leg2 * t543), garm_vy_leg3 * t548, garm_vy_leg4 * t553,
+                -(garm_vy_leg1 * t558), -(garm_vy_leg2 * t563), garm_vy_leg3 * t568,
+                garm_vy_leg4 * t573, t191, t192, t194, t196,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t629 - t635,
-                minus_gcross_vy_leg2 * t673, -(minus_gcross_vy_leg3 * t718 + t724),
-                -(minus_gcross_vy_leg4 * t761), grod_vy_leg1 * t787 - minus_gcross_vy_leg1 * t783,
-                -(minus_gcross_vy_leg2 * t797),
-                -(minus_grod_vy_leg3 * t814 - minus_gcross_vy_leg3 * t809),
-                -(minus_gcross_vy_leg4 * t825),
-                -(minus_gcross_vy_leg1 * t842 + grod_vy_leg1 * t625),
-                -(minus_gcross_vy_leg2 * t860),
-                minus_grod_vy_leg3 * t714 - minus_gcross_vy_leg3 * t877,
-                -(minus_gcross_vy_leg4 * t895), t635 - minus_gcross_vy_leg1 * t781,
-                -(minus_gcross_vy_leg2 * t795), t724 - minus_gcross_vy_leg3 * t807,
-                -(minus_gcross_vy_leg4 * t823), -(minus_gcross_vy_leg1 * t927 + t930),
-                minus_gcross_vy_leg2 * t936, minus_gcross_vy_leg3 * t945 - t948,
-                -(minus_gcross_vy_leg4 * t955), grod_vy_leg1 * rate_dot_rod_leg1, 0.0,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
-                garm_vy_leg1 * t979 + minus_gcross_vy_leg1 * t986 - t995,
-                garm_vy_leg2 * t1013 - minus_gcross_vy_leg2 * t1020,
-                garm_vy_leg3 * t1047 - minus_gcross_vy_leg3 * t1054 + t1063,
-                garm_vy_leg4 * t1081 + minus_gcross_vy_leg4 * t1088,
-                garm_vy_leg1 * t1110 - minus_gcross_vy_leg1 * t994,
-                garm_vy_leg2 * t1126 - minus_gcross_vy_leg2 * t1025,
-                garm_vy_leg3 * t1142 - minus_gcross_vy_leg3 * t1062,
-                garm_vy_leg4 * t1158 - minus_gcross_vy_leg4 * t1093,
+                garm_vy_leg2, garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t618 + t625,
+                minus_gcross_vy_leg2 * t661, -(minus_gcross_vy_leg3 * t699 + t706),
+                -(minus_gcross_vy_leg4 * t739), grod_vy_leg1 * t762 - minus_gcross_vy_leg1 * t759,
+                -(minus_gcross_vy_leg2 * t772), -(t789 - minus_gcross_vy_leg3 * t784),
+                -(minus_gcross_vy_leg4 * t801),
+                -(minus_gcross_vy_leg1 * t818 + grod_vy_leg1 * t615),
+                -(minus_gcross_vy_leg2 * t836),
+                minus_grod_vy_leg3 * t695 - minus_gcross_vy_leg3 * t855,
+                -(minus_gcross_vy_leg4 * t875), -(t625 + minus_gcross_vy_leg1 * t756),
+                -(minus_gcross_vy_leg2 * t770), t706 - minus_gcross_vy_leg3 * t782,
+                -(minus_gcross_vy_leg4 * t799), -(minus_gcross_vy_leg1 * t907 + t910),
+                minus_gcross_vy_leg2 * t916, minus_gcross_vy_leg3 * t923 - t862,
+                -(minus_gcross_vy_leg4 * t931), grod_vy_leg1 * rate_dot_rod_leg1, 0.0, t943, 0.0,
+                garm_vy_leg1 * t955 + minus_gcross_vy_leg1 * t963 - t972,
+                garm_vy_leg2 * t991 - minus_gcross_vy_leg2 * t998,
+                garm_vy_leg3 * t1025 - minus_gcross_vy_leg3 * t1034 + t1043,
+                garm_vy_leg4 * t1061 + minus_gcross_vy_leg4 * t1069,
+                garm_vy_leg1 * t1090 - minus_gcross_vy_leg1 * t971,
+                garm_vy_leg2 * t1105 - minus_gcross_vy_leg2 * t1003,
+                garm_vy_leg3 * t1120 - minus_gcross_vy_leg3 * t1042,
+                garm_vy_leg4 * t1135 - minus_gcross_vy_leg4 * t1074,
             ],
             [
-                0.0, 0.0, 0.0, t512 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                0.0, 0.0, 0.0, t503 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
                 -(minus_garm_vz_leg2 * actuator_accelerations[1]),
                 -(minus_garm_vz_leg3 * actuator_accelerations[2]),
-                -(minus_garm_vz_leg4 * actuator_accelerations[3]), minus_garm_vz_leg1 * t547,
-                minus_garm_vz_leg2 * t552, -(minus_garm_vz_leg3 * t557),
-                -(minus_garm_vz_leg4 * t562), minus_garm_vz_leg1 * t567, minus_garm_vz_leg2 * t572,
-                -(minus_garm_vz_leg3 * t577), -(minus_garm_vz_leg4 * t582), -t317, -t318, -t320,
-                -t322, -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
+                -(minus_garm_vz_leg4 * actuator_accelerations[3]), minus_garm_vz_leg1 * t538,
+                minus_garm_vz_leg2 * t543, -(minus_garm_vz_leg3 * t548),
+                -(minus_garm_vz_leg4 * t553), minus_garm_vz_leg1 * t558, minus_garm_vz_leg2 * t563,
+                -(minus_garm_vz_leg3 * t568), -(minus_garm_vz_leg4 * t573), -t242, -t243, -t245,
+                -t247, -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]),
                 -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t629, minus_gcross_vz_leg2 * t673, gcross_vz_leg3 * t718,
-                gcross_vz_leg4 * t761, -(minus_gcross_vz_leg1 * t783),
-                -(minus_gcross_vz_leg2 * t797), -(gcross_vz_leg3 * t809), gcross_vz_leg4 * t825,
-                -(minus_gcross_vz_leg1 * t842), -(minus_gcross_vz_leg2 * t860),
-                gcross_vz_leg3 * t877, gcross_vz_leg4 * t895, -(minus_gcross_vz_leg1 * t781),
-                -(minus_gcross_vz_leg2 * t795), gcross_vz_leg3 * t807, gcross_vz_leg4 * t823,
-                -(minus_gcross_vz_leg1 * t927), minus_gcross_vz_leg2 * t936,
-                -(gcross_vz_leg3 * t945), gcross_vz_leg4 * t955, 0.0, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t986 - minus_garm_vz_leg1 * t979,
-                -(minus_gcross_vz_leg2 * t1020 + minus_garm_vz_leg2 * t1013),
-                gcross_vz_leg3 * t1054 - minus_garm_vz_leg3 * t1047,
-                -(minus_garm_vz_leg4 * t1081 + gcross_vz_leg4 * t1088),
-                -(minus_garm_vz_leg1 * t1110 + minus_gcross_vz_leg1 * t994),
-                -(minus_gcross_vz_leg2 * t1025 + minus_garm_vz_leg2 * t1126),
-                gcross_vz_leg3 * t1062 - minus_garm_vz_leg3 * t1142,
-                gcross_vz_leg4 * t1093 - minus_garm_vz_leg4 * t1158,
+                minus_gcross_vz_leg1 * t618, minus_gcross_vz_leg2 * t661, gcross_vz_leg3 * t699,
+                gcross_vz_leg4 * t739, -(minus_gcross_vz_leg1 * t759),
+                -(minus_gcross_vz_leg2 * t772), -(gcross_vz_leg3 * t784), gcross_vz_leg4 * t801,
+                -(minus_gcross_vz_leg1 * t818), -(minus_gcross_vz_leg2 * t836),
+                gcross_vz_leg3 * t855, gcross_vz_leg4 * t875, -(minus_gcross_vz_leg1 * t756),
+                -(minus_gcross_vz_leg2 * t770), gcross_vz_leg3 * t782, gcross_vz_leg4 * t799,
+                -(minus_gcross_vz_leg1 * t907), minus_gcross_vz_leg2 * t916,
+                -(gcross_vz_leg3 * t923), gcross_vz_leg4 * t931, 0.0, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t963 - minus_garm_vz_leg1 * t955,
+                -(minus_gcross_vz_leg2 * t998 + minus_garm_vz_leg2 * t991),
+                gcross_vz_leg3 * t1034 - minus_garm_vz_leg3 * t1025,
+                -(minus_garm_vz_leg4 * t1061 + gcross_vz_leg4 * t1069),
+                -(minus_garm_vz_leg1 * t1090 + minus_gcross_vz_leg1 * t971),
+                -(minus_gcross_vz_leg2 * t1003 + minus_garm_vz_leg2 * t1105),
+                gcross_vz_leg3 * t1042 - minus_garm_vz_leg3 * t1120,
+                gcross_vz_leg4 * t1074 - minus_garm_vz_leg4 * t1135,
             ],
             [
-                t501, c_phi * t516 - s_phi * t524, -(s_phi * t516 + c_phi * t524), 0.0,
+                t492, c_phi * t507 - s_phi * t515, -(s_phi * t507 + c_phi * t515), 0.0,
                 garm_wz_leg1 * actuator_accelerations[0], garm_wz_leg2 * actuator_accelerations[1],
                 garm_wz_leg3 * actuator_accelerations[2], garm_wz_leg4 * actuator_accelerations[3],
-                -(garm_wz_leg1 * t547), -(garm_wz_leg2 * t552), garm_wz_leg3 * t557,
-                garm_wz_leg4 * t562, -(garm_wz_leg1 * t567), -(garm_wz_leg2 * t572),
-                garm_wz_leg3 * t577, garm_wz_leg4 * t582, t328, t329, t331, t333,
+                -(garm_wz_leg1 * t538), -(garm_wz_leg2 * t543), garm_wz_leg3 * t548,
+                garm_wz_leg4 * t553, -(garm_wz_leg1 * t558), -(garm_wz_leg2 * t563),
+                garm_wz_leg3 * t568, garm_wz_leg4 * t573, t303, t304, t306, t308,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]), garm_wz_leg1,
-                garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t629 + t645),
-                t687 - gcross_wz_leg2 * t673, gcross_wz_leg3 * t718 + t734,
-                -(minus_gcross_wz_leg4 * t761 + t779), gcross_wz_leg1 * t783 + grod_wz_leg1 * t787,
-                gcross_wz_leg2 * t797 + grod_wz_leg2 * t799,
-                grod_wz_leg3 * t814 - gcross_wz_leg3 * t809,
-                grod_wz_leg4 * t821 - minus_gcross_wz_leg4 * t825,
-                gcross_wz_leg1 * t842 - grod_wz_leg1 * t625,
-                gcross_wz_leg2 * t860 + grod_wz_leg2 * t669,
-                gcross_wz_leg3 * t877 - grod_wz_leg3 * t714,
-                grod_wz_leg4 * t757 - minus_gcross_wz_leg4 * t895, gcross_wz_leg1 * t781 + t645,
-                gcross_wz_leg2 * t795 - t687, gcross_wz_leg3 * t807 - t734,
-                t779 - minus_gcross_wz_leg4 * t823, gcross_wz_leg1 * t927 - t4 * t930,
-                -(gcross_wz_leg2 * t936 + t54 * t938), t4 * t948 - gcross_wz_leg3 * t945,
-                t54 * t954 - minus_gcross_wz_leg4 * t955, grod_wz_leg1 * rate_dot_rod_leg1,
-                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
-                garm_wz_leg1 * t979 - gcross_wz_leg1 * t986 - t4 * t995,
-                garm_wz_leg2 * t1013 + gcross_wz_leg2 * t1020 - t54 * t1026,
-                garm_wz_leg3 * t1047 + gcross_wz_leg3 * t1054 - t4 * t1063,
-                garm_wz_leg4 * t1081 + minus_gcross_wz_leg4 * t1088 - t54 * t1094,
-                garm_wz_leg1 * t1110 + gcross_wz_leg1 * t994,
-                garm_wz_leg2 * t1126 + gcross_wz_leg2 * t1025,
-                garm_wz_leg3 * t1142 + gcross_wz_leg3 * t1062,
-                garm_wz_leg4 * t1158 - minus_gcross_wz_leg4 * t1093,
+                garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t618 - t634),
+                t670 - gcross_wz_leg2 * t661, gcross_wz_leg3 * t699 + t714,
+                -(minus_gcross_wz_leg4 * t739 + t754), gcross_wz_leg1 * t759 + grod_wz_leg1 * t762,
+                gcross_wz_leg2 * t772 + t59 * t775, t4 * t789 - gcross_wz_leg3 * t784,
+                t59 * t797 - minus_gcross_wz_leg4 * t801,
+                gcross_wz_leg1 * t818 - grod_wz_leg1 * t615, gcross_wz_leg2 * t836 + t80 * t844,
+                gcross_wz_leg3 * t855 - t169 * t863, t59 * t866 - minus_gcross_wz_leg4 * t875,
+                gcross_wz_leg1 * t756 - t634, gcross_wz_leg2 * t770 - t670,
+                gcross_wz_leg3 * t782 - t714, t754 - minus_gcross_wz_leg4 * t799,
+                gcross_wz_leg1 * t907 - t4 * t910, -(gcross_wz_leg2 * t916 + t844),
+                t863 - gcross_wz_leg3 * t923, t59 * t930 - minus_gcross_wz_leg4 * t931,
+                grod_wz_leg1 * rate_dot_rod_leg1, -(t59 * t941), -(t4 * t943), t59 * t945,
+                garm_wz_leg1 * t955 - gcross_wz_leg1 * t963 - t4 * t972,
+                garm_wz_leg2 * t991 + gcross_wz_leg2 * t998 - t59 * t1004,
+                garm_wz_leg3 * t1025 + gcross_wz_leg3 * t1034 - t4 * t1043,
+                garm_wz_leg4 * t1061 + minus_gcross_wz_leg4 * t1069 - t59 * t1075,
+                garm_wz_leg1 * t1090 + gcross_wz_leg1 * t971,
+                garm_wz_leg2 * t1105 + gcross_wz_leg2 * t1003,
+                garm_wz_leg3 * t1120 + gcross_wz_leg3 * t1042,
+                garm_wz_leg4 * t1135 - minus_gcross_wz_leg4 * t1074,
             ],
         ])
     }

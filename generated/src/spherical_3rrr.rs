@@ -1065,7 +1065,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 444 operations (163 additions, 278 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 328 intermediates.
+    /// 441 operations (164 additions, 269 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 325 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1086,23 +1086,23 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t12 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t5 * t12;
-        let t15 = 2.0 * pose[2];
-        let t16 = pose[3] * t15;
-        let t17 = pose[0] * t0;
-        let t18 = t16 + t17;
-        let s_proximal_leg1 = t18 * t12;
-        let t21 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
+        let c_proximal_leg1 = t5 / c_distal_leg1;
+        let t14 = 2.0 * pose[2];
+        let t15 = pose[3] * t14;
+        let t16 = pose[0] * t0;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t17 / c_distal_leg1;
+        let t20 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let minus_rate_distal_leg1 = s_proximal_leg1 * twist[1]
             - c_proximal_leg1 * twist[2];
-        let t27 = minus_s_distal_leg1 * t12;
-        let t31 = t27 * t21;
+        let t26 = 1.0 / c_distal_leg1;
+        let t27 = minus_s_distal_leg1 * t26;
+        let t31 = t27 * t20;
         let rate_proximal_leg1 = twist[0] - t31;
         let t34 = minus_rate_distal_leg1 * rate_proximal_leg1;
         let t36 = c_proximal_leg1 * acceleration[1] + s_proximal_leg1 * acceleration[2]
             + minus_rate_distal_leg1 * t31 - t34;
-        let rate_dot_proximal_leg1 = acceleration[0] - t21 * minus_rate_distal_leg1
+        let rate_dot_proximal_leg1 = acceleration[0] - t20 * minus_rate_distal_leg1
             - t27 * t36;
         let minus_gproximal_wy_leg1 = c_proximal_leg1 * t27;
         let t40 = minus_gproximal_wy_leg1 * rate_dot_proximal_leg1;
@@ -1122,180 +1122,180 @@ impl Spherical3Rrr {
         let t61 = t60 * t53;
         let t63 = minus_gproximal_wy_leg1 * t58 + s_proximal_leg1 * t61;
         let t66 = minus_gproximal_wz_leg1 * t58 - c_proximal_leg1 * t61;
-        let t69 = 2.0 * (t34 - minus_s_distal_leg1 * t57);
+        let t68 = t34 - minus_s_distal_leg1 * t57;
+        let t69 = t68 + t68;
         let t71 = t60 * t60;
         let t72 = t53 * t53;
         let t73 = t71 - t72;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
-            - c_proximal_leg1 * acceleration[2] + t21 * rate_proximal_leg1;
+            - c_proximal_leg1 * acceleration[2] + t20 * rate_proximal_leg1;
         let t86 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
         let t89 = c_distal_leg1 * (t61 - minus_rate_dot_distal_leg1)
             + minus_s_distal_leg1 * (t86 - t71);
         let t103 = minus_s_distal_leg1 * (t61 + minus_rate_dot_distal_leg1)
             - c_distal_leg1 * (t72 - t86);
         let t104 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t113 = minus_s_distal_leg1 * t43;
-        let t119 = 9.81 * t5;
-        let t122 = pose[3] * t0;
-        let t123 = pose[0] * t15;
-        let t124 = t122 + t123;
-        let minus_s_distal_leg2 = t16 - t17;
-        let t127 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t127, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t127);
+        let t113 = 9.81 * minus_s_distal_leg1;
+        let t114 = c_proximal_leg1 * t113;
+        let t120 = 9.81 * t5;
+        let t123 = pose[3] * t0;
+        let t124 = pose[0] * t14;
+        let t125 = t123 + t124;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t128 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t128, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t128);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t129 = 1.0 / c_distal_leg2;
-        let s_proximal_leg2 = t124 * t129;
-        let t131 = minus_s_distal_leg2 * t129;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t131;
-        let t134 = pose[2] * t15;
-        let t135 = t2 - t134;
-        let t137 = t124 * twist[0] + t135 * twist[2];
-        let t138 = t129 * t137;
-        let c_proximal_leg2 = t135 * t129;
+        let t130 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t125 * t130;
+        let t132 = minus_s_distal_leg2 * t130;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t132;
+        let t135 = pose[2] * t14;
+        let t136 = t2 - t135;
+        let t138 = t125 * twist[0] + t136 * twist[2];
+        let t139 = t130 * t138;
+        let c_proximal_leg2 = t136 * t130;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
-        let t147 = t124 * acceleration[0] + t135 * acceleration[2];
-        let t149 = t131 * t138;
-        let rate_proximal_leg2 = twist[1] - t149;
-        let t152 = minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t138 * minus_rate_distal_leg2
-            - t131 * (t129 * t147 + minus_rate_distal_leg2 * t149 - t152);
-        let t157 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t131;
-        let t159 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t160 = 9.81 * s_proximal_leg2;
-        let t161 = minus_gproximal_wx_leg2 * t160;
-        let t162 = minus_gproximal_wz_leg2 * t160;
-        let t163 = 9.81 * c_proximal_leg2;
-        let t164 = minus_gproximal_wz_leg2 * t163;
-        let t170 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t171 = minus_rate_distal_leg2 * t170;
-        let t172 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t174 = t171 + t171 - t172;
-        let t175 = c_distal_leg2 * t174;
-        let t177 = c_distal_leg2 * rate_proximal_leg2;
-        let t178 = t177 * t170;
-        let t180 = minus_gproximal_wx_leg2 * t175 - c_proximal_leg2 * t178;
-        let t183 = minus_gproximal_wz_leg2 * t175 + s_proximal_leg2 * t178;
-        let t184 = t177 * t177;
-        let t185 = t170 * t170;
-        let t186 = t184 - t185;
-        let t190 = 2.0 * (t152 - minus_s_distal_leg2 * t174);
+        let t148 = t125 * acceleration[0] + t136 * acceleration[2];
+        let t150 = t132 * t139;
+        let rate_proximal_leg2 = twist[1] - t150;
+        let t153 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t139 * minus_rate_distal_leg2
+            - t132 * (t148 / c_distal_leg2 + minus_rate_distal_leg2 * t150 - t153);
+        let t158 = minus_gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t132;
+        let t160 = minus_gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t161 = 9.81 * s_proximal_leg2;
+        let t162 = minus_gproximal_wx_leg2 * t161;
+        let t163 = minus_gproximal_wz_leg2 * t161;
+        let t164 = 9.81 * c_proximal_leg2;
+        let t165 = minus_gproximal_wz_leg2 * t164;
+        let t171 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t172 = minus_rate_distal_leg2 * t171;
+        let t173 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t175 = t172 + t172 - t173;
+        let t176 = c_distal_leg2 * t175;
+        let t178 = c_distal_leg2 * rate_proximal_leg2;
+        let t179 = t178 * t171;
+        let t181 = minus_gproximal_wx_leg2 * t176 - c_proximal_leg2 * t179;
+        let t184 = minus_gproximal_wz_leg2 * t176 + s_proximal_leg2 * t179;
+        let t185 = t178 * t178;
+        let t186 = t171 * t171;
+        let t187 = t185 - t186;
+        let t191 = 2.0 * (t153 - minus_s_distal_leg2 * t175);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
-            - c_proximal_leg2 * acceleration[0] + t138 * rate_proximal_leg2;
-        let t203 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t206 = c_distal_leg2 * (t178 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t203 - t184);
-        let t220 = minus_s_distal_leg2 * (t178 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t185 - t203);
-        let t222 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t230 = minus_s_distal_leg2 * t160;
-        let t238 = 9.81 * t124;
-        let t240 = 1.0 - t134 - t4;
-        let minus_s_distal_leg3 = t122 - t123;
+            - c_proximal_leg2 * acceleration[0] + t139 * rate_proximal_leg2;
+        let t204 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t207 = c_distal_leg2 * (t179 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t204 - t185);
+        let t221 = minus_s_distal_leg2 * (t179 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t186 - t204);
+        let t230 = 9.81 * t125;
+        let t231 = t132 * t230;
+        let t240 = 1.0 - t135 - t4;
+        let minus_s_distal_leg3 = t123 - t124;
         let t243 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
         ::overact::guard::reach(t243, "leg3")?;
         let c_distal_leg3 = ::overact::math::sqrt(t243);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t245 = 1.0 / c_distal_leg3;
-        let c_proximal_leg3 = t240 * t245;
-        let t247 = minus_s_distal_leg3 * t245;
+        let c_proximal_leg3 = t240 / c_distal_leg3;
+        let t246 = 1.0 / c_distal_leg3;
+        let t247 = minus_s_distal_leg3 * t246;
         let minus_gproximal_wx_leg3 = c_proximal_leg3 * t247;
         let t250 = t6 + t7;
         let t252 = t240 * twist[0] + t250 * twist[1];
-        let t253 = t245 * t252;
-        let s_proximal_leg3 = t245 * t250;
+        let t253 = t246 * t252;
+        let s_proximal_leg3 = t250 / c_distal_leg3;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
         let t262 = t240 * acceleration[0] + t250 * acceleration[1];
         let t264 = t247 * t253;
         let rate_proximal_leg3 = twist[2] - t264;
         let t266 = rate_distal_leg3 * rate_proximal_leg3;
         let rate_dot_proximal_leg3 = acceleration[2] + t253 * rate_distal_leg3
-            - t247 * (t245 * t262 + t266 - rate_distal_leg3 * t264);
+            - t247 * (t246 * t262 + t266 - rate_distal_leg3 * t264);
         let t272 = minus_gproximal_wx_leg3 * rate_dot_proximal_leg3;
         let minus_gproximal_wy_leg3 = s_proximal_leg3 * t247;
         let t274 = minus_gproximal_wy_leg3 * rate_dot_proximal_leg3;
         let t280 = c_distal_leg3 * rate_proximal_leg3;
-        let t281 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t282 = t280 * t281;
-        let t284 = rate_distal_leg3 * t281;
+        let t281 = t280 * t280;
+        let t282 = t247 * t281;
+        let t284 = minus_s_distal_leg3 * t266;
         let t285 = c_distal_leg3 * rate_dot_proximal_leg3;
         let t287 = t284 + t285 + t284;
         let t288 = c_distal_leg3 * t287;
         let t290 = s_proximal_leg3 * t282 - minus_gproximal_wx_leg3 * t288;
         let t293 = minus_gproximal_wy_leg3 * t288 + c_proximal_leg3 * t282;
         let t296 = 2.0 * (t266 - minus_s_distal_leg3 * t287);
-        let t298 = t280 * t280;
-        let t299 = t281 * t281;
-        let t300 = t298 - t299;
+        let t298 = t247 * t282;
+        let t299 = t281 - t298;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
             - s_proximal_leg3 * acceleration[0] - t253 * rate_proximal_leg3;
-        let t313 = rate_distal_leg3 * rate_distal_leg3;
-        let t316 = c_distal_leg3 * (t282 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t313 - t298);
-        let t326 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t332 = minus_s_distal_leg3 * (t282 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t299 - t313);
-        let t340 = 9.81 * t250;
-        let t342 = 9.81 * t240;
-        let t345 = t262 + minus_s_distal_leg3 * acceleration[2];
-        let t348 = t252 + minus_s_distal_leg3 * twist[2];
-        let t350 = minus_s_distal_leg2 * twist[1] + t137;
-        let t351 = t348 * t350;
-        let t352 = minus_s_distal_leg1 * t351;
-        let rate_wrist_leg1 = t12 * t21;
-        let t355 = t53 + rate_wrist_leg1;
-        let t356 = t355 * t348;
-        let t357 = t124 * t356;
-        let t360 = t5 * t351;
-        let t362 = minus_s_distal_leg2 * t356;
-        let t365 = t18 * t351;
-        let t367 = t135 * t356;
-        let rate_dot_wrist_leg1 = t12 * t36;
-        let t372 = t104 + minus_rate_distal_leg1 * t60 + rate_dot_wrist_leg1;
-        let t373 = t372 - t351;
-        let t375 = t355 * t350;
-        let t376 = t345 + t375;
-        let t379 = t348 * t348;
-        let t380 = t355 * t355;
-        let t381 = t379 - t380;
-        let t395 = minus_s_distal_leg2 * acceleration[1] + t147;
-        let t396 = t395 + t356;
-        let t398 = t350 * t350;
-        let t399 = t398 - t379;
-        let t402 = t345 - t375;
-        let t416 = t240 * t375;
-        let t420 = t250 * t375;
-        let t424 = minus_s_distal_leg3 * t375;
-        let t427 = t380 - t398;
-        let t429 = t395 - t356;
-        let t432 = t372 + t351;
+        let t312 = rate_distal_leg3 * rate_distal_leg3;
+        let t315 = c_distal_leg3 * (t282 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t312 - t281);
+        let t317 = s_proximal_leg3 * t285;
+        let t330 = minus_s_distal_leg3 * (t282 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t298 - t312);
+        let t338 = 9.81 * t250;
+        let t340 = 9.81 * t240;
+        let t343 = t262 + minus_s_distal_leg3 * acceleration[2];
+        let t346 = t252 + minus_s_distal_leg3 * twist[2];
+        let t348 = minus_s_distal_leg2 * twist[1] + t138;
+        let t349 = t346 * t348;
+        let t350 = minus_s_distal_leg1 * t349;
+        let rate_wrist_leg1 = t26 * t20;
+        let t353 = t53 + rate_wrist_leg1;
+        let t354 = t353 * t346;
+        let t355 = t125 * t354;
+        let t358 = t5 * t349;
+        let t360 = minus_s_distal_leg2 * t354;
+        let t363 = t17 * t349;
+        let t365 = t136 * t354;
+        let rate_dot_wrist_leg1 = t26 * t36;
+        let t370 = t104 + minus_rate_distal_leg1 * t60 + rate_dot_wrist_leg1;
+        let t371 = t370 - t349;
+        let t373 = t353 * t348;
+        let t374 = t343 + t373;
+        let t377 = t346 * t346;
+        let t378 = t353 * t353;
+        let t379 = t377 - t378;
+        let t393 = minus_s_distal_leg2 * acceleration[1] + t148;
+        let t394 = t393 + t354;
+        let t396 = t348 * t348;
+        let t397 = t396 - t377;
+        let t400 = t343 - t373;
+        let t414 = t240 * t373;
+        let t418 = t250 * t373;
+        let t422 = minus_s_distal_leg3 * t373;
+        let t425 = t378 - t396;
+        let t427 = t393 - t354;
+        let t430 = t370 + t349;
         Ok([
             [
                 rate_dot_proximal_leg1, -t43, t46, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, -t58, t69, -t89,
-                rate_dot_proximal_leg1 + t58, t103, 0.0, t113, -t119, -t46, -t157, -t161, -t162,
-                -t157, -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
+                rate_dot_proximal_leg1 + t58, t103, 0.0, t114, -t120, -t46, -t158, -t162, -t163,
+                -t158, -(minus_gproximal_wx_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
-                -minus_gproximal_wx_leg2, t180,
-                c_proximal_leg2 * t186 - minus_gproximal_wx_leg2 * t190,
-                minus_gproximal_wx_leg2 * t206 - c_proximal_leg2 * t172, -(t157 + t180),
-                -(minus_gproximal_wx_leg2 * t220 + c_proximal_leg2 * t222),
+                -minus_gproximal_wx_leg2, t181,
+                c_proximal_leg2 * t187 - minus_gproximal_wx_leg2 * t191,
+                minus_gproximal_wx_leg2 * t207 - c_proximal_leg2 * t173, -(t158 + t181),
+                -(minus_gproximal_wx_leg2 * t221 + minus_gproximal_wz_leg2 * t173),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t230 - t135 * t163, -(c_distal_leg2 * (t161 + t164)),
-                t162, -t272, -t272, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
+                minus_gproximal_wx_leg2 * t231 - t136 * t164, -(c_distal_leg2 * (t162 + t165)),
+                t163, -t272, -t272, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3),
                 -minus_gproximal_wx_leg3, t290,
-                -(s_proximal_leg3 * t300 - minus_gproximal_wx_leg3 * t296),
-                minus_gproximal_wx_leg3 * t316 + s_proximal_leg3 * t285, -(t272 + t290),
-                s_proximal_leg3 * t326 - minus_gproximal_wx_leg3 * t332,
-                -(s_proximal_leg3 * rate_dot_distal_leg3), t247 * t340, -t340,
-                t240 * t345 + t352 - t357, t240 * t373 + minus_s_distal_leg1 * t376 + t124 * t381,
-                t240 * t396 + minus_s_distal_leg1 * t399 + t124 * t402,
-                minus_s_distal_leg1 * t372 - t416 + t357,
-                t240 * t427 + minus_s_distal_leg1 * t429 + t124 * t432, t416 - t352 + t124 * t395,
-                t340, t119, 9.81 * minus_s_distal_leg2,
+                -(s_proximal_leg3 * t299 - minus_gproximal_wx_leg3 * t296),
+                minus_gproximal_wx_leg3 * t315 + t317, -(t272 + t290),
+                t247 * t317 - minus_gproximal_wx_leg3 * t330,
+                -(s_proximal_leg3 * rate_dot_distal_leg3), t247 * t338, -t338,
+                t240 * t343 + t350 - t355, t240 * t371 + minus_s_distal_leg1 * t374 + t125 * t379,
+                t240 * t394 + minus_s_distal_leg1 * t397 + t125 * t400,
+                minus_s_distal_leg1 * t370 - t414 + t355,
+                t240 * t425 + minus_s_distal_leg1 * t427 + t125 * t430, t414 - t350 + t125 * t393,
+                t338, t120, 9.81 * minus_s_distal_leg2,
             ],
             [
                 -t40, t44, -t45, -t40, -(minus_gproximal_wy_leg1 * rate_proximal_leg1),
@@ -1305,22 +1305,21 @@ impl Spherical3Rrr {
                 minus_gproximal_wy_leg1 * t89 + s_proximal_leg1 * t55, -(t40 + t63),
                 s_proximal_leg1 * t104 - minus_gproximal_wy_leg1 * t103,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1,
-                t18 * t46 - minus_gproximal_wy_leg1 * t113, c_distal_leg1 * (t44 + t47), t45,
-                rate_dot_proximal_leg2, t160, t163, rate_dot_proximal_leg2, rate_proximal_leg2,
-                ::overact::math::sign(rate_proximal_leg2), 1.0, -t175, t190, -t206,
-                rate_dot_proximal_leg2 + t175, t220, 0.0, -t230, t238, -t163, -t274, -t274,
+                t17 * t46 - minus_gproximal_wy_leg1 * t114, c_distal_leg1 * (t44 + t47), t45,
+                rate_dot_proximal_leg2, t161, t164, rate_dot_proximal_leg2, rate_proximal_leg2,
+                ::overact::math::sign(rate_proximal_leg2), 1.0, -t176, t191, -t207,
+                rate_dot_proximal_leg2 + t176, t221, 0.0, -t231, t230, -t164, -t274, -t274,
                 -(minus_gproximal_wy_leg3 * rate_proximal_leg3),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -minus_gproximal_wy_leg3, -t293,
-                c_proximal_leg3 * t300 + minus_gproximal_wy_leg3 * t296,
-                minus_gproximal_wy_leg3 * t316 - c_proximal_leg3 * t285, t293 - t274,
-                -(minus_gproximal_wy_leg3 * t332 + c_proximal_leg3 * t326),
-                c_proximal_leg3 * rate_dot_distal_leg3, -(t247 * t342), t342,
-                t250 * t345 + t360 - t362, t250 * t373 + t5 * t376 + minus_s_distal_leg2 * t381,
-                t250 * t396 + t5 * t399 + minus_s_distal_leg2 * t402, t5 * t372 - t420 + t362,
-                t250 * t427 + t5 * t429 + minus_s_distal_leg2 * t432,
-                t420 - t360 + minus_s_distal_leg2 * t395, -t342, -(9.81 * minus_s_distal_leg1),
-                -t238,
+                c_proximal_leg3 * t299 + minus_gproximal_wy_leg3 * t296,
+                minus_gproximal_wy_leg3 * t315 - c_proximal_leg3 * t285, t293 - t274,
+                -(minus_gproximal_wy_leg3 * t330 + c_distal_leg3 * t272),
+                c_proximal_leg3 * rate_dot_distal_leg3, -(t247 * t340), t340,
+                t250 * t343 + t358 - t360, t250 * t371 + t5 * t374 + minus_s_distal_leg2 * t379,
+                t250 * t394 + t5 * t397 + minus_s_distal_leg2 * t400, t5 * t370 - t418 + t360,
+                t250 * t425 + t5 * t427 + minus_s_distal_leg2 * t430,
+                t418 - t358 + minus_s_distal_leg2 * t393, -t340, -t113, -t230,
             ],
             [
                 -t42, t45, -t47, -t42, -(minus_gproximal_wz_leg1 * rate_proximal_leg1),
@@ -1329,22 +1328,22 @@ impl Spherical3Rrr {
                 c_proximal_leg1 * t73 - minus_gproximal_wz_leg1 * t69,
                 minus_gproximal_wz_leg1 * t89 - c_proximal_leg1 * t55, -(t42 + t66),
                 -(minus_gproximal_wz_leg1 * t103 + c_proximal_leg1 * t104),
-                -(c_proximal_leg1 * minus_rate_dot_distal_leg1), -(t46 * (c_proximal_leg1 * t12)),
-                0.0, t47, -t159, -t162, -t164, -t159,
+                -(c_proximal_leg1 * minus_rate_dot_distal_leg1), -(t46 * (c_proximal_leg1 * t26)),
+                0.0, t47, -t160, -t163, -t165, -t160,
                 -(minus_gproximal_wz_leg2 * rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wz_leg2, rate_proximal_leg2),
-                -minus_gproximal_wz_leg2, t183,
-                -(minus_gproximal_wz_leg2 * t190 + s_proximal_leg2 * t186),
-                minus_gproximal_wz_leg2 * t206 + s_proximal_leg2 * t172, -(t159 + t183),
-                s_proximal_leg2 * t222 - minus_gproximal_wz_leg2 * t220,
-                s_proximal_leg2 * minus_rate_dot_distal_leg2, t163 * (s_proximal_leg2 * t129), 0.0,
-                t164, rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, t288, -t296, -t316,
-                rate_dot_proximal_leg3 - t288, t332, 0.0, 0.0, 0.0,
-                minus_s_distal_leg3 * t345 + t365 - t367,
-                minus_s_distal_leg3 * t373 + t18 * t376 + t135 * t381,
-                minus_s_distal_leg3 * t396 + t18 * t399 + t135 * t402, t18 * t372 - t424 + t367,
-                minus_s_distal_leg3 * t427 + t18 * t429 + t135 * t432, t424 - t365 + t135 * t395,
+                -minus_gproximal_wz_leg2, t184,
+                -(minus_gproximal_wz_leg2 * t191 + s_proximal_leg2 * t187),
+                minus_gproximal_wz_leg2 * t207 + s_proximal_leg2 * t173, -(t160 + t184),
+                minus_gproximal_wx_leg2 * t173 - minus_gproximal_wz_leg2 * t221,
+                s_proximal_leg2 * minus_rate_dot_distal_leg2, t164 * (s_proximal_leg2 * t130), 0.0,
+                t165, rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, t288, -t296, -t315,
+                rate_dot_proximal_leg3 - t288, t330, 0.0, 0.0, 0.0,
+                minus_s_distal_leg3 * t343 + t363 - t365,
+                minus_s_distal_leg3 * t371 + t17 * t374 + t136 * t379,
+                minus_s_distal_leg3 * t394 + t17 * t397 + t136 * t400, t17 * t370 - t422 + t365,
+                minus_s_distal_leg3 * t425 + t17 * t427 + t136 * t430, t422 - t363 + t136 * t393,
                 0.0, 0.0, 0.0,
             ],
         ])
@@ -1360,7 +1359,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 447 operations (163 additions, 279 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 336 intermediates.
+    /// 442 operations (164 additions, 273 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 331 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1421,251 +1420,250 @@ impl Spherical3Rrr {
             + c_distal_leg1 * (t71 - t56);
         let t88 = minus_s_distal_leg1 * (t57 - t71)
             + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t46);
-        let t90 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t98 = c_distal_leg1 * t28;
-        let t111 = c_distal_leg2 / minus_s_distal_leg2;
-        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t111;
-        let t115 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
+        let t97 = c_distal_leg1 * t28;
+        let t110 = c_distal_leg2 / minus_s_distal_leg2;
+        let gproximal_wx_leg2 = minus_s_proximal_leg2 * t110;
+        let t114 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
         let minus_rate_distal_leg2 = minus_s_proximal_leg2 * twist[2]
             - minus_c_proximal_leg2 * twist[0];
-        let t121 = t111 * t115;
-        let rate_proximal_leg2 = t121 + twist[1];
-        let t123 = minus_rate_distal_leg2 * rate_proximal_leg2;
-        let rate_dot_proximal_leg2 = acceleration[1] - t115 * minus_rate_distal_leg2
-            - t111
-                * (t123 + minus_rate_distal_leg2 * t121
+        let t120 = t110 * t114;
+        let rate_proximal_leg2 = t120 + twist[1];
+        let t122 = minus_rate_distal_leg2 * rate_proximal_leg2;
+        let rate_dot_proximal_leg2 = acceleration[1] - t114 * minus_rate_distal_leg2
+            - t110
+                * (t122 + minus_rate_distal_leg2 * t120
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
-        let t132 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t111;
-        let t134 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
-        let t135 = 9.81 * minus_s_proximal_leg2;
-        let t137 = gproximal_wz_leg2 * t135;
-        let t138 = 9.81 * minus_c_proximal_leg2;
-        let t139 = gproximal_wz_leg2 * t138;
-        let t145 = c_distal_leg2 * rate_proximal_leg2;
-        let t146 = minus_rate_distal_leg2 * t145;
-        let t147 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t149 = t146 + t147 + t146;
-        let t150 = minus_s_distal_leg2 * t149;
-        let t152 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t153 = t152 * t145;
-        let t155 = gproximal_wx_leg2 * t150 + minus_c_proximal_leg2 * t153;
-        let t158 = gproximal_wz_leg2 * t150 - minus_s_proximal_leg2 * t153;
-        let t161 = 2.0 * (t123 - c_distal_leg2 * t149);
-        let t163 = t152 * t152;
-        let t164 = t145 * t145;
-        let t165 = t163 - t164;
+        let t131 = gproximal_wx_leg2 * rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = minus_c_proximal_leg2 * t110;
+        let t133 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
+        let t134 = 9.81 * minus_s_proximal_leg2;
+        let t136 = gproximal_wz_leg2 * t134;
+        let t137 = 9.81 * minus_c_proximal_leg2;
+        let t138 = gproximal_wz_leg2 * t137;
+        let t144 = c_distal_leg2 * rate_proximal_leg2;
+        let t145 = minus_rate_distal_leg2 * t144;
+        let t146 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t148 = t145 + t146 + t145;
+        let t149 = minus_s_distal_leg2 * t148;
+        let t151 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t152 = t151 * t144;
+        let t154 = gproximal_wx_leg2 * t149 + minus_c_proximal_leg2 * t152;
+        let t157 = gproximal_wz_leg2 * t149 - minus_s_proximal_leg2 * t152;
+        let t160 = 2.0 * (t122 - c_distal_leg2 * t148);
+        let t162 = t151 * t151;
+        let t163 = t144 * t144;
+        let t164 = t162 - t163;
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
-            - minus_c_proximal_leg2 * acceleration[0] + t115 * rate_proximal_leg2;
-        let t178 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t181 = minus_s_distal_leg2 * (t153 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t178 - t163);
-        let t191 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t197 = minus_s_distal_leg2 * (t164 - t178)
-            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t153);
-        let t205 = c_distal_leg2 * t135;
-        let t218 = c_distal_leg3 / minus_s_distal_leg3;
-        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t218;
+            - minus_c_proximal_leg2 * acceleration[0] + t114 * rate_proximal_leg2;
+        let t177 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t180 = minus_s_distal_leg2 * (t152 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t177 - t162);
+        let t185 = minus_s_proximal_leg2 * t146;
+        let t195 = minus_s_distal_leg2 * (t163 - t177)
+            + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t152);
+        let t203 = c_distal_leg2 * t134;
+        let t216 = c_distal_leg3 / minus_s_distal_leg3;
+        let gproximal_wx_leg3 = minus_c_proximal_leg3 * t216;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
             - minus_s_proximal_leg3 * twist[0];
-        let t228 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
-        let t229 = t218 * t228;
-        let rate_proximal_leg3 = t229 + twist[2];
-        let t231 = rate_distal_leg3 * rate_proximal_leg3;
-        let rate_dot_proximal_leg3 = t218
+        let t226 = minus_c_proximal_leg3 * twist[0] + minus_s_proximal_leg3 * twist[1];
+        let t227 = t216 * t226;
+        let rate_proximal_leg3 = t227 + twist[2];
+        let t229 = rate_distal_leg3 * rate_proximal_leg3;
+        let rate_dot_proximal_leg3 = t216
             * (minus_c_proximal_leg3 * acceleration[0]
-                + minus_s_proximal_leg3 * acceleration[1] + t231
-                + rate_distal_leg3 * t229) + acceleration[2] + t228 * rate_distal_leg3;
-        let t239 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
-        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t218;
-        let t241 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
-        let t247 = c_distal_leg3 * rate_proximal_leg3;
-        let t248 = rate_distal_leg3 * t247;
-        let t249 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t251 = t248 + t248 - t249;
-        let t252 = minus_s_distal_leg3 * t251;
-        let t254 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t255 = t254 * t247;
-        let t257 = gproximal_wx_leg3 * t252 + minus_s_proximal_leg3 * t255;
-        let t260 = minus_c_proximal_leg3 * t255 - gproximal_wy_leg3 * t252;
-        let t263 = 2.0 * (t231 - c_distal_leg3 * t251);
-        let t265 = t254 * t254;
-        let t266 = t247 * t247;
-        let t267 = t265 - t266;
-        let t273 = rate_distal_leg3 * rate_distal_leg3;
+                + minus_s_proximal_leg3 * acceleration[1] + t229
+                + rate_distal_leg3 * t227) + acceleration[2] + t226 * rate_distal_leg3;
+        let t237 = gproximal_wx_leg3 * rate_dot_proximal_leg3;
+        let gproximal_wy_leg3 = minus_s_proximal_leg3 * t216;
+        let t239 = gproximal_wy_leg3 * rate_dot_proximal_leg3;
+        let t245 = c_distal_leg3 * t229;
+        let t246 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t248 = t245 + t245 - t246;
+        let t249 = minus_s_distal_leg3 * t248;
+        let t251 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t252 = t251 * t251;
+        let t253 = t216 * t252;
+        let t255 = gproximal_wx_leg3 * t249 + minus_s_proximal_leg3 * t253;
+        let t258 = minus_c_proximal_leg3 * t253 - gproximal_wy_leg3 * t249;
+        let t260 = t229 - c_distal_leg3 * t248;
+        let t261 = t260 + t260;
+        let t263 = t216 * t253;
+        let t264 = t252 - t263;
+        let t270 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
-            - minus_s_proximal_leg3 * acceleration[0] - t228 * rate_proximal_leg3;
-        let t283 = c_distal_leg3 * (t273 - t265)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t255);
-        let t297 = c_distal_leg3 * (t255 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t266 - t273);
-        let t299 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t307 = 9.81 * c_distal_leg3;
-        let t310 = 9.81 * minus_s_distal_leg3;
-        let t313 = 2.0 * pose[2];
-        let t314 = pose[2] * t313;
-        let t316 = 2.0 * pose[3];
-        let t317 = pose[3] * t316;
-        let t318 = 1.0 - t314 - t317;
-        let t320 = 2.0 * pose[1];
-        let t321 = pose[2] * t320;
-        let t322 = pose[0] * t316;
-        let t323 = t321 + t322;
-        let t326 = pose[3] * t320;
-        let t327 = pose[0] * t313;
-        let t328 = t326 - t327;
-        let t330 = t318 * acceleration[0] + t323 * acceleration[1]
-            + t328 * acceleration[2];
-        let t332 = t321 - t322;
-        let t337 = t318 * twist[0] + t323 * twist[1] + t328 * twist[2];
-        let t338 = t326 + t327;
-        let t340 = pose[3] * t313;
-        let t341 = pose[0] * t320;
-        let t342 = t340 - t341;
-        let t346 = 1.0 - pose[1] * t320;
-        let t347 = t346 - t314;
-        let t349 = t338 * twist[0] + t342 * twist[1] + t347 * twist[2];
-        let t350 = t337 * t349;
-        let t351 = t332 * t350;
-        let t354 = t346 - t317;
-        let t357 = t340 + t341;
-        let t359 = t332 * twist[0] + t354 * twist[1] + t357 * twist[2];
-        let t360 = t337 * t359;
-        let t361 = t338 * t360;
-        let t364 = t354 * t350;
-        let t366 = t342 * t360;
-        let t369 = t357 * t350;
-        let t371 = t347 * t360;
-        let t377 = t332 * acceleration[0] + t354 * acceleration[1]
-            + t357 * acceleration[2];
-        let t378 = t377 - t350;
-        let t380 = t359 * t349;
-        let t381 = t330 + t380;
-        let t384 = t337 * t337;
-        let t385 = t359 * t359;
-        let t386 = t384 - t385;
-        let t403 = t338 * acceleration[0] + t342 * acceleration[1]
-            + t347 * acceleration[2];
-        let t404 = t403 + t360;
-        let t406 = t349 * t349;
-        let t407 = t406 - t384;
-        let t410 = t330 - t380;
-        let t424 = t318 * t380;
-        let t428 = t323 * t380;
-        let t432 = t328 * t380;
-        let t435 = t385 - t406;
-        let t437 = t403 - t360;
-        let t440 = t377 + t350;
+            - minus_s_proximal_leg3 * acceleration[0] - t226 * rate_proximal_leg3;
+        let t280 = c_distal_leg3 * (t270 - t252)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t253);
+        let t285 = minus_c_proximal_leg3 * t246;
+        let t294 = c_distal_leg3 * (t253 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t263 - t270);
+        let t303 = 9.81 * minus_s_distal_leg3;
+        let t305 = minus_c_proximal_leg3 * t303;
+        let t308 = 2.0 * pose[2];
+        let t309 = pose[2] * t308;
+        let t311 = 2.0 * pose[3];
+        let t312 = pose[3] * t311;
+        let t313 = 1.0 - t309 - t312;
+        let t315 = 2.0 * pose[1];
+        let t316 = pose[2] * t315;
+        let t317 = pose[0] * t311;
+        let t318 = t316 + t317;
+        let t321 = pose[3] * t315;
+        let t322 = pose[0] * t308;
+        let t323 = t321 - t322;
+        let t325 = t313 * acceleration[0] + t318 * acceleration[1]
+            + t323 * acceleration[2];
+        let t327 = t316 - t317;
+        let t332 = t313 * twist[0] + t318 * twist[1] + t323 * twist[2];
+        let t333 = t321 + t322;
+        let t335 = pose[3] * t308;
+        let t336 = pose[0] * t315;
+        let t337 = t335 - t336;
+        let t341 = 1.0 - pose[1] * t315;
+        let t342 = t341 - t309;
+        let t344 = t333 * twist[0] + t337 * twist[1] + t342 * twist[2];
+        let t345 = t332 * t344;
+        let t346 = t327 * t345;
+        let t349 = t341 - t312;
+        let t352 = t335 + t336;
+        let t354 = t327 * twist[0] + t349 * twist[1] + t352 * twist[2];
+        let t355 = t332 * t354;
+        let t356 = t333 * t355;
+        let t359 = t349 * t345;
+        let t361 = t337 * t355;
+        let t364 = t352 * t345;
+        let t366 = t342 * t355;
+        let t372 = t327 * acceleration[0] + t349 * acceleration[1]
+            + t352 * acceleration[2];
+        let t373 = t372 - t345;
+        let t375 = t354 * t344;
+        let t376 = t325 + t375;
+        let t379 = t332 * t332;
+        let t380 = t354 * t354;
+        let t381 = t379 - t380;
+        let t398 = t333 * acceleration[0] + t337 * acceleration[1]
+            + t342 * acceleration[2];
+        let t399 = t398 + t355;
+        let t401 = t344 * t344;
+        let t402 = t401 - t379;
+        let t405 = t325 - t375;
+        let t419 = t313 * t375;
+        let t423 = t318 * t375;
+        let t427 = t323 * t375;
+        let t430 = t380 - t401;
+        let t432 = t398 - t355;
+        let t435 = t372 + t345;
         Ok([
             [
                 rate_dot_proximal_leg1, -t28, t31, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, t43, t54, t74,
-                rate_dot_proximal_leg1 - t43, -t88, 0.0, -t98, -(minus_s_distal_leg1 * t28), -t31,
-                t132, gproximal_wx_leg2 * t135, t137, t132, gproximal_wx_leg2 * rate_proximal_leg2,
+                rate_dot_proximal_leg1 - t43, -t88, 0.0, -t97, -(minus_s_distal_leg1 * t28), -t31,
+                t131, gproximal_wx_leg2 * t134, t136, t131, gproximal_wx_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2), gproximal_wx_leg2,
-                t155, gproximal_wx_leg2 * t161 + minus_c_proximal_leg2 * t165,
-                gproximal_wx_leg2 * t181 - minus_c_proximal_leg2 * t147, t132 - t155,
-                minus_c_proximal_leg2 * t191 - gproximal_wx_leg2 * t197,
+                t154, gproximal_wx_leg2 * t160 + minus_c_proximal_leg2 * t164,
+                gproximal_wx_leg2 * t180 - minus_c_proximal_leg2 * t146, t131 - t154,
+                minus_s_distal_leg2 * t133 - gproximal_wx_leg2 * t195,
                 -(minus_c_proximal_leg2 * minus_rate_dot_distal_leg2),
-                gproximal_wx_leg2 * t205
-                    - minus_c_proximal_leg2 * (minus_s_distal_leg2 * t138),
+                gproximal_wx_leg2 * t203
+                    - minus_c_proximal_leg2 * (minus_s_distal_leg2 * t137),
                 9.81 * c_distal_leg2,
-                -t137,
-                t239,
-                t239,
+                -t136,
+                t237,
+                t237,
                 gproximal_wx_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3),
                 gproximal_wx_leg3,
-                -t257,
-                -(gproximal_wx_leg3 * t263 + minus_s_proximal_leg3 * t267),
-                gproximal_wx_leg3 * t283 + minus_s_proximal_leg3 * t249,
-                t239 + t257,
-                gproximal_wx_leg3 * t297 - minus_s_proximal_leg3 * t299,
+                -t255,
+                -(gproximal_wx_leg3 * t261 + minus_s_proximal_leg3 * t264),
+                gproximal_wx_leg3 * t280 + minus_s_proximal_leg3 * t246,
+                t237 + t255,
+                gproximal_wx_leg3 * t294 - t246 * gproximal_wy_leg3,
                 -(minus_s_proximal_leg3 * rate_dot_distal_leg3),
-                -(minus_s_proximal_leg3 * t307),
-                -(minus_s_proximal_leg3 * t310),
-                t318 * t330 + t351 - t361,
-                t318 * t378 + t332 * t381 + t338 * t386,
-                t318 * t404 + t332 * t407 + t338 * t410,
-                t332 * t377 - t424 + t361,
-                t318 * t435 + t332 * t437 + t338 * t440,
-                t424 - t351 + t338 * t403,
-                9.81 * t323,
-                9.81 * t354,
-                9.81 * t342,
+                -(t303 * gproximal_wy_leg3),
+                -(minus_s_proximal_leg3 * t303),
+                t313 * t325 + t346 - t356,
+                t313 * t373 + t327 * t376 + t333 * t381,
+                t313 * t399 + t327 * t402 + t333 * t405,
+                t327 * t372 - t419 + t356,
+                t313 * t430 + t327 * t432 + t333 * t435,
+                t419 - t346 + t333 * t398,
+                9.81 * t318,
+                9.81 * t349,
+                9.81 * t337,
             ],
             [
                 t25, -(gproximal_wy_leg1 * t28), t30, t25, gproximal_wy_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1), gproximal_wy_leg1,
                 t48, gproximal_wy_leg1 * t54 - minus_s_proximal_leg1 * t58,
                 gproximal_wy_leg1 * t74 + minus_s_proximal_leg1 * t40, t25 - t48,
-                -(gproximal_wy_leg1 * t88 + minus_s_proximal_leg1 * t90),
+                -(gproximal_wy_leg1 * t88 + minus_s_distal_leg1 * t27),
                 minus_s_proximal_leg1 * minus_rate_dot_distal_leg1,
                 minus_s_proximal_leg1 * (minus_s_distal_leg1 * t31)
-                    - gproximal_wy_leg1 * t98,
+                    - gproximal_wy_leg1 * t97,
                 -(9.81 * c_distal_leg1),
                 -t30,
                 rate_dot_proximal_leg2,
-                t135,
-                t138,
+                t134,
+                t137,
                 rate_dot_proximal_leg2,
                 rate_proximal_leg2,
                 ::overact::math::sign(rate_proximal_leg2),
                 1.0,
-                t150,
-                t161,
-                t181,
-                rate_dot_proximal_leg2 - t150,
-                -t197,
+                t149,
+                t160,
+                t180,
+                rate_dot_proximal_leg2 - t149,
+                -t195,
                 0.0,
-                t205,
-                minus_s_distal_leg2 * t135,
-                -t138,
-                t241,
-                t241,
+                t203,
+                minus_s_distal_leg2 * t134,
+                -t137,
+                t239,
+                t239,
                 gproximal_wy_leg3 * rate_proximal_leg3,
                 ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3),
                 gproximal_wy_leg3,
-                t260,
-                minus_c_proximal_leg3 * t267 - gproximal_wy_leg3 * t263,
-                gproximal_wy_leg3 * t283 - minus_c_proximal_leg3 * t249,
-                t241 - t260,
-                gproximal_wy_leg3 * t297 + minus_c_proximal_leg3 * t299,
+                t258,
+                minus_c_proximal_leg3 * t264 - gproximal_wy_leg3 * t261,
+                gproximal_wy_leg3 * t280 - t285,
+                t239 - t258,
+                gproximal_wy_leg3 * t294 + t216 * t285,
                 minus_c_proximal_leg3 * rate_dot_distal_leg3,
-                minus_c_proximal_leg3 * t307,
-                minus_c_proximal_leg3 * t310,
-                t323 * t330 + t364 - t366,
-                t323 * t378 + t354 * t381 + t342 * t386,
-                t323 * t404 + t354 * t407 + t342 * t410,
-                t354 * t377 - t428 + t366,
-                t323 * t435 + t354 * t437 + t342 * t440,
-                t428 - t364 + t342 * t403,
-                -(9.81 * t318),
-                -(9.81 * t332),
-                -(9.81 * t338),
+                t216 * t305,
+                t305,
+                t318 * t325 + t359 - t361,
+                t318 * t373 + t349 * t376 + t337 * t381,
+                t318 * t399 + t349 * t402 + t337 * t405,
+                t349 * t372 - t423 + t361,
+                t318 * t430 + t349 * t432 + t337 * t435,
+                t423 - t359 + t337 * t398,
+                -(9.81 * t313),
+                -(9.81 * t327),
+                -(9.81 * t333),
             ],
             [
                 t27, -t30, t32, t27, gproximal_wz_leg1 * rate_proximal_leg1,
                 ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1), gproximal_wz_leg1,
                 t51, gproximal_wz_leg1 * t54 + minus_c_proximal_leg1 * t58,
                 gproximal_wz_leg1 * t74 - minus_c_proximal_leg1 * t40, t27 - t51,
-                minus_c_proximal_leg1 * t90 - gproximal_wz_leg1 * t88,
+                t40 * gproximal_wy_leg1 - gproximal_wz_leg1 * t88,
                 -(minus_c_proximal_leg1 * minus_rate_dot_distal_leg1),
-                -(minus_c_proximal_leg1 * t31 / minus_s_distal_leg1), 0.0, -t32, t134, t137, t139,
-                t134, gproximal_wz_leg2 * rate_proximal_leg2,
+                -(minus_c_proximal_leg1 * t31 / minus_s_distal_leg1), 0.0, -t32, t133, t136, t138,
+                t133, gproximal_wz_leg2 * rate_proximal_leg2,
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2), gproximal_wz_leg2,
-                t158, gproximal_wz_leg2 * t161 - minus_s_proximal_leg2 * t165,
-                gproximal_wz_leg2 * t181 + minus_s_proximal_leg2 * t147, t134 - t158,
-                -(gproximal_wz_leg2 * t197 + minus_s_proximal_leg2 * t191),
+                t157, gproximal_wz_leg2 * t160 - minus_s_proximal_leg2 * t164,
+                gproximal_wz_leg2 * t180 + t185, t133 - t157,
+                -(gproximal_wz_leg2 * t195 + t110 * t185),
                 minus_s_proximal_leg2 * minus_rate_dot_distal_leg2,
-                minus_s_proximal_leg2 * t138 / minus_s_distal_leg2, 0.0, -t139,
+                minus_s_proximal_leg2 * t137 / minus_s_distal_leg2, 0.0, -t138,
                 rate_dot_proximal_leg3, rate_dot_proximal_leg3, rate_proximal_leg3,
-                ::overact::math::sign(rate_proximal_leg3), 1.0, -t252, -t263, t283,
-                rate_dot_proximal_leg3 + t252, t297, 0.0, 0.0, 0.0, t328 * t330 + t369 - t371,
-                t328 * t378 + t357 * t381 + t347 * t386, t328 * t404 + t357 * t407 + t347 * t410,
-                t357 * t377 - t432 + t371, t328 * t435 + t357 * t437 + t347 * t440,
-                t432 - t369 + t347 * t403, 0.0, 0.0, 0.0,
+                ::overact::math::sign(rate_proximal_leg3), 1.0, -t249, -t261, t280,
+                rate_dot_proximal_leg3 + t249, t294, 0.0, 0.0, 0.0, t323 * t325 + t364 - t366,
+                t323 * t373 + t352 * t376 + t342 * t381, t323 * t399 + t352 * t402 + t342 * t405,
+                t352 * t372 - t427 + t366, t323 * t430 + t352 * t432 + t342 * t435,
+                t427 - t364 + t342 * t398, 0.0, 0.0, 0.0,
             ],
         ])
     }
@@ -1680,7 +1678,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 511 operations (196 additions, 309 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 401 intermediates.
+    /// 499 operations (199 additions, 285 multiplications, 15 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 389 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1691,9 +1689,9 @@ impl Spherical3Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 2.0 * pose[1];
+        let t0 = pose[1] + pose[1];
         let t2 = 1.0 - pose[1] * t0;
-        let t3 = 2.0 * pose[3];
+        let t3 = pose[3] + pose[3];
         let t4 = pose[3] * t3;
         let t5 = t2 - t4;
         let t6 = pose[2] * t0;
@@ -1708,7 +1706,7 @@ impl Spherical3Rrr {
         let t14 = minus_s_distal_leg1 * t12;
         let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
         let t16 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
-        let t17 = 2.0 * pose[2];
+        let t17 = pose[2] + pose[2];
         let t18 = pose[3] * t17;
         let t19 = pose[0] * t0;
         let t20 = t18 + t19;
@@ -1722,258 +1720,251 @@ impl Spherical3Rrr {
         let t28 = minus_gproximal_wz_leg1 * t27;
         let t29 = minus_gproximal_wy_leg1 * actuator_velocities[0];
         let t30 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t36 = t6 + t7;
-        let t37 = pose[3] * t0;
-        let t38 = pose[0] * t17;
-        let minus_s_distal_leg3 = t37 - t38;
-        let t41 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t41, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t41);
+        let t35 = t6 + t7;
+        let t36 = pose[3] * t0;
+        let t37 = pose[0] * t17;
+        let minus_s_distal_leg3 = t36 - t37;
+        let t40 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t40, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t40);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t43 = 1.0 / c_distal_leg3;
-        let s_proximal_leg3 = t36 * t43;
-        let t45 = minus_s_distal_leg3 * t43;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t45;
-        let t49 = pose[2] * t17;
-        let t51 = 1.0 - t49 - t4;
-        let c_proximal_leg3 = t51 * t43;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t45;
-        let t55 = t37 + t38;
+        let s_proximal_leg3 = t35 / c_distal_leg3;
+        let t43 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t43;
+        let t45 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t47 = t36 + t37;
         let minus_s_distal_leg2 = t18 - t19;
-        let t58 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t58, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t58);
+        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t50, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t60 = 1.0 / c_distal_leg2;
-        let s_proximal_leg2 = t55 * t60;
-        let t62 = minus_s_distal_leg2 * t60;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t62;
-        let t65 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t52 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t47 * t52;
+        let t54 = minus_s_distal_leg2 * t52;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t54;
+        let t56 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t58 = pose[2] * t17;
+        let t60 = 1.0 - t58 - t4;
+        let c_proximal_leg3 = t60 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t43;
+        let t63 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t64 = actuator_velocities[0] - t56 - t63;
+        let t67 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t69 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t71 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t69, 1.0, "actuators")?;
-        ::overact::guard::platform(t69, 1.0, "actuators")?;
-        let t70 = 1.0 / t69;
-        let t71 = t65 * t70;
-        let t73 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t65 * t71;
-        ::overact::guard::platform(t73, 1.0, "actuators")?;
-        ::overact::guard::platform(t73, 1.0, "actuators")?;
-        let t74 = 1.0 / t73;
-        let t76 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t78 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t80 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t81 = actuator_velocities[0] - t78 - t80;
-        let t83 = actuator_velocities[1] - t29 - t76 - t81 * t71;
-        let t86 = t2 - t49;
-        let c_proximal_leg2 = t86 * t60;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t62;
-        let t93 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        ::overact::guard::platform(t71, 1.0, "actuators")?;
+        let t72 = t67 / t71;
+        let t74 = actuator_velocities[1] - t29 - t45 - t64 * t72;
+        let t80 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t67 * t72;
+        ::overact::guard::platform(t80, 1.0, "actuators")?;
+        ::overact::guard::platform(t80, 1.0, "actuators")?;
+        let t83 = t2 - t58;
+        let c_proximal_leg2 = t83 / c_distal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t54;
+        let t90 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t94 = t93 * t70;
-        let t96 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t65 * t94;
-        let t97 = t96 * t74;
-        let t105 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t93 * t94
-            - t96 * t97;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        ::overact::guard::platform(t105, 1.0, "actuators")?;
-        let t106 = 1.0 / t105;
-        let t107 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t114 = t106
-            * (actuator_velocities[2] - (t30 + t107) - t81 * t94 - t97 * t83);
-        let t116 = t74 * t83 - t97 * t114;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t116 - c_proximal_leg1 * t114;
-        let t120 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t121 = minus_rate_distal_leg1 * t120;
-        let t122 = c_distal_leg1 * actuator_accelerations[0];
-        let t124 = t121 + t121 - t122;
-        let t125 = c_distal_leg1 * t124;
-        let t127 = c_distal_leg1 * actuator_velocities[0];
-        let t128 = t127 * t120;
-        let t130 = minus_gproximal_wy_leg1 * t125 + s_proximal_leg1 * t128;
-        let t133 = minus_gproximal_wz_leg1 * t125 - c_proximal_leg1 * t128;
-        let t135 = actuator_velocities[0] * minus_rate_distal_leg1;
-        let t137 = 2.0 * (minus_s_distal_leg1 * t124 - t135);
-        let t139 = t127 * t127;
-        let t140 = t120 * t120;
-        let t141 = t139 - t140;
-        let t149 = c_proximal_leg1 * t116 + s_proximal_leg1 * t114;
-        let t150 = t14 * t149;
-        let t151 = actuator_velocities[0] + t150;
-        let t154 = t55 * t151 + t86 * t114;
-        let t155 = t60 * t154;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t114 - c_proximal_leg2 * t151;
-        let t159 = t155 * minus_rate_distal_leg2;
-        let t161 = actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t62 * (t62 * t159 - t161) + t159;
-        let t165 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t167 = minus_rate_distal_leg1 * t150 - t135;
-        let minus_rate_dot_proximal_leg1 = t14 * t167 + t149 * minus_rate_distal_leg1;
-        let t171 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let rate_distal_leg3 = c_proximal_leg3 * t116 - s_proximal_leg3 * t151;
-        let t177 = actuator_velocities[2] * rate_distal_leg3;
-        let t180 = t51 * t151 + t36 * t116;
-        let t181 = t43 * t180;
-        let t182 = t181 * rate_distal_leg3;
-        let minus_rate_dot_proximal_leg3 = t45 * (t177 - t45 * t182) - t182;
-        let t187 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t193 = t171 - minus_gproximal_wx_leg2 * t165
-            - minus_gproximal_wx_leg3 * t187;
-        let t195 = t165 - minus_gproximal_wy_leg1 * t171 - minus_gproximal_wy_leg3 * t187
-            - t71 * t193;
-        let t205 = t106
-            * (t187 - (minus_gproximal_wz_leg1 * t171 + minus_gproximal_wz_leg2 * t165)
-                - t94 * t193 - t97 * t195);
-        let t207 = t74 * t195 - t97 * t205;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t149;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t207
-            - c_proximal_leg1 * t205 + minus_rate_dot_distal_leg1;
-        let t215 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t218 = c_distal_leg1 * (t128 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t215 - t139);
-        let t232 = minus_s_distal_leg1 * (t128 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t140 - t215);
-        let t233 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t242 = minus_s_distal_leg1 * t24;
-        let t248 = 9.81 * t5;
-        let t251 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
-        let t252 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
-        let t253 = 9.81 * s_proximal_leg2;
-        let t254 = minus_gproximal_wx_leg2 * t253;
-        let t255 = minus_gproximal_wz_leg2 * t253;
-        let t256 = 9.81 * c_proximal_leg2;
-        let t257 = minus_gproximal_wz_leg2 * t256;
-        let t261 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t262 = minus_rate_distal_leg2 * t261;
-        let t263 = c_distal_leg2 * actuator_accelerations[1];
-        let t265 = t262 + t262 - t263;
-        let t266 = c_distal_leg2 * t265;
-        let t268 = c_distal_leg2 * actuator_velocities[1];
-        let t269 = t268 * t261;
-        let t271 = minus_gproximal_wx_leg2 * t266 - c_proximal_leg2 * t269;
-        let t274 = minus_gproximal_wz_leg2 * t266 + s_proximal_leg2 * t269;
-        let t275 = t268 * t268;
-        let t276 = t261 * t261;
-        let t277 = t275 - t276;
-        let t281 = 2.0 * (t161 - minus_s_distal_leg2 * t265);
-        let t290 = c_proximal_leg1 * t207 + s_proximal_leg1 * t205;
-        let t292 = t171 + t14 * t290;
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t155;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t205
-            - c_proximal_leg2 * t292 + minus_rate_dot_distal_leg2;
-        let t299 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t302 = c_distal_leg2 * (t269 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t299 - t275);
-        let t316 = minus_s_distal_leg2 * (t269 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t276 - t299);
-        let t318 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t326 = minus_s_distal_leg2 * t253;
-        let t334 = 9.81 * t55;
-        let t335 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
-        let t336 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
-        let t340 = c_distal_leg3 * actuator_velocities[2];
-        let t341 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t342 = t340 * t341;
-        let t344 = rate_distal_leg3 * t341;
-        let t345 = c_distal_leg3 * actuator_accelerations[2];
-        let t347 = t344 + t345 + t344;
-        let t348 = c_distal_leg3 * t347;
-        let t350 = s_proximal_leg3 * t342 - minus_gproximal_wx_leg3 * t348;
-        let t353 = minus_gproximal_wy_leg3 * t348 + c_proximal_leg3 * t342;
-        let t356 = 2.0 * (t177 - minus_s_distal_leg3 * t347);
-        let t358 = t340 * t340;
-        let t359 = t341 * t341;
-        let t360 = t358 - t359;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t181;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t207 - s_proximal_leg3 * t292
+        let t91 = t90 / t71;
+        let t93 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t67 * t91;
+        let t94 = t93 / t80;
+        let t95 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t90 * t91
+            - t93 * t94;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        ::overact::guard::platform(t109, 1.0, "actuators")?;
+        let t110 = (actuator_velocities[2] - (t30 + t95) - t64 * t91 - t94 * t74) / t109;
+        let t112 = t74 / t80 - t94 * t110;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t112 - c_proximal_leg1 * t110;
+        let t116 = c_distal_leg1 * actuator_velocities[0];
+        let t117 = minus_rate_distal_leg1 * t116;
+        let t118 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t119 = t118 + t117;
+        let t121 = c_distal_leg1 * (t117 + t119);
+        let t122 = t14 * t121;
+        let t123 = t122 - actuator_accelerations[0];
+        let t125 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t126 = t116 * t125;
+        let t128 = minus_gproximal_wy_leg1 * t122 + s_proximal_leg1 * t126;
+        let t132 = c_proximal_leg1 * t126 - minus_gproximal_wz_leg1 * t122;
+        let t135 = t121 - t14 * t123;
+        let t137 = t116 * t116;
+        let t138 = t125 * t125;
+        let t139 = t137 - t138;
+        let t147 = c_proximal_leg1 * t112 + s_proximal_leg1 * t110;
+        let t148 = t14 * t147;
+        let t149 = actuator_velocities[0] + t148;
+        let t152 = t47 * t149 + t83 * t110;
+        let t153 = t52 * t152;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t110 - c_proximal_leg2 * t149;
+        let t157 = t153 * minus_rate_distal_leg2;
+        let t159 = actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t54 * (t54 * t157 - t159) + t157;
+        let t163 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let t165 = minus_rate_distal_leg1 * (actuator_velocities[0] - t148);
+        let minus_rate_dot_proximal_leg1 = t147 * minus_rate_distal_leg1 - t14 * t165;
+        let t169 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let rate_distal_leg3 = c_proximal_leg3 * t112 - s_proximal_leg3 * t149;
+        let t178 = t60 * t149 + t35 * t112;
+        let t179 = t178 / c_distal_leg3;
+        let t180 = t179 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t43
+            * (actuator_velocities[2] * rate_distal_leg3 - t43 * t180) - t180;
+        let t185 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t191 = t169 - minus_gproximal_wx_leg2 * t163
+            - minus_gproximal_wx_leg3 * t185;
+        let t193 = t163 - minus_gproximal_wy_leg1 * t169 - minus_gproximal_wy_leg3 * t185
+            - t72 * t191;
+        let t203 = (t185
+            - (minus_gproximal_wz_leg1 * t169 + minus_gproximal_wz_leg2 * t163)
+            - t91 * t191 - t94 * t193) / t109;
+        let t205 = t193 / t80 - t94 * t203;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t147;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t205
+            - c_proximal_leg1 * t203 + minus_rate_dot_distal_leg1;
+        let t213 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t216 = c_distal_leg1 * (t126 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t213 - t137);
+        let t227 = minus_s_distal_leg1 * (t126 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t138 - t213);
+        let t236 = 9.81 * t5;
+        let t237 = t14 * t236;
+        let t245 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t246 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
+        let t247 = 9.81 * s_proximal_leg2;
+        let t248 = minus_gproximal_wx_leg2 * t247;
+        let t249 = minus_gproximal_wz_leg2 * t247;
+        let t250 = 9.81 * c_proximal_leg2;
+        let t251 = minus_gproximal_wz_leg2 * t250;
+        let t255 = c_distal_leg2 * actuator_velocities[1];
+        let t256 = t255 * t255;
+        let t257 = t54 * t256;
+        let t259 = c_distal_leg2 * actuator_accelerations[1];
+        let t260 = t159 + t159;
+        let t262 = minus_s_distal_leg2 * t260 - t259;
+        let t263 = c_distal_leg2 * t262;
+        let t264 = actuator_accelerations[1] + t263;
+        let t266 = c_proximal_leg2 * t257 - minus_gproximal_wx_leg2 * t264;
+        let t270 = minus_gproximal_wz_leg2 * t264 + s_proximal_leg2 * t257;
+        let t272 = t54 * t257;
+        let t273 = t256 - t272;
+        let t275 = minus_s_distal_leg2 * t262;
+        let t277 = t260 - t275 - t275;
+        let t286 = c_proximal_leg1 * t205 + s_proximal_leg1 * t203;
+        let t288 = t169 + t14 * t286;
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t153;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t203
+            - c_proximal_leg2 * t288 + minus_rate_dot_distal_leg2;
+        let t295 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t298 = c_distal_leg2 * (t257 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t295 - t256);
+        let t309 = minus_s_distal_leg2 * (t257 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t272 - t295);
+        let t318 = minus_s_distal_leg2 * t247;
+        let t326 = 9.81 * t47;
+        let t327 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
+        let t328 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
+        let t332 = c_distal_leg3 * actuator_velocities[2];
+        let t333 = rate_distal_leg3 * t332;
+        let t334 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t337 = c_distal_leg3 * (t333 + t333 - t334);
+        let t338 = t43 * t337;
+        let t340 = t332 * t332;
+        let t341 = t43 * t340;
+        let t343 = minus_gproximal_wx_leg3 * t338 - s_proximal_leg3 * t341;
+        let t347 = minus_gproximal_wy_leg3 * t338 + c_proximal_leg3 * t341;
+        let t349 = actuator_accelerations[2] + t338;
+        let t351 = t43 * t349 - t337;
+        let t353 = t43 * t341;
+        let t354 = t340 - t353;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t179;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t205 - s_proximal_leg3 * t288
             - minus_rate_dot_distal_leg3;
-        let t373 = rate_distal_leg3 * rate_distal_leg3;
-        let t376 = c_distal_leg3 * (t342 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t373 - t358);
-        let t386 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t392 = minus_s_distal_leg3 * (t342 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t359 - t373);
-        let t400 = 9.81 * t36;
-        let t402 = 9.81 * t51;
-        let t408 = t51 * t292 + t36 * t207 + minus_s_distal_leg3 * t205;
-        let t411 = t180 + minus_s_distal_leg3 * t114;
-        let t413 = minus_s_distal_leg2 * t116 + t154;
-        let t414 = t411 * t413;
-        let t415 = minus_s_distal_leg1 * t414;
-        let rate_wrist_leg1 = t12 * t149;
-        let t418 = t120 + rate_wrist_leg1;
-        let t419 = t418 * t411;
-        let t420 = t55 * t419;
-        let t423 = t5 * t414;
-        let t425 = minus_s_distal_leg2 * t419;
-        let t428 = t20 * t414;
-        let t430 = t86 * t419;
-        let rate_dot_wrist_leg1 = t12 * (t290 + t167);
-        let t436 = t233 + minus_rate_distal_leg1 * t127 + rate_dot_wrist_leg1;
-        let t437 = t436 - t414;
-        let t439 = t418 * t413;
-        let t440 = t408 + t439;
-        let t443 = t411 * t411;
-        let t444 = t418 * t418;
-        let t445 = t443 - t444;
-        let t462 = t55 * t292 + minus_s_distal_leg2 * t207 + t86 * t205;
-        let t463 = t462 + t419;
-        let t465 = t413 * t413;
-        let t466 = t465 - t443;
-        let t469 = t408 - t439;
-        let t483 = t51 * t439;
-        let t487 = t36 * t439;
-        let t491 = minus_s_distal_leg3 * t439;
-        let t494 = t444 - t465;
-        let t496 = t462 - t419;
-        let t499 = t436 + t414;
+        let t367 = rate_distal_leg3 * rate_distal_leg3;
+        let t370 = c_distal_leg3 * (t341 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t367 - t340);
+        let t382 = minus_s_distal_leg3 * (t341 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t353 - t367);
+        let t390 = 9.81 * t35;
+        let t392 = 9.81 * t60;
+        let t398 = t60 * t288 + t35 * t205 + minus_s_distal_leg3 * t203;
+        let t401 = t178 + minus_s_distal_leg3 * t110;
+        let t403 = minus_s_distal_leg2 * t112 + t152;
+        let t404 = t401 * t403;
+        let t405 = minus_s_distal_leg1 * t404;
+        let rate_wrist_leg1 = t12 * t147;
+        let t408 = t125 + rate_wrist_leg1;
+        let t409 = t408 * t401;
+        let t410 = t47 * t409;
+        let t413 = t5 * t404;
+        let t415 = minus_s_distal_leg2 * t409;
+        let t418 = t20 * t404;
+        let t420 = t83 * t409;
+        let rate_dot_wrist_leg1 = t12 * (t286 - t165);
+        let t424 = t119 + rate_dot_wrist_leg1;
+        let t425 = t424 - t404;
+        let t427 = t408 * t403;
+        let t428 = t398 + t427;
+        let t431 = t401 * t401;
+        let t432 = t408 * t408;
+        let t433 = t431 - t432;
+        let t450 = t47 * t288 + minus_s_distal_leg2 * t205 + t83 * t203;
+        let t451 = t450 + t409;
+        let t453 = t403 * t403;
+        let t454 = t453 - t431;
+        let t457 = t398 - t427;
+        let t471 = t60 * t427;
+        let t475 = t35 * t427;
+        let t479 = minus_s_distal_leg3 * t427;
+        let t482 = t432 - t453;
+        let t484 = t450 - t409;
+        let t487 = t424 + t404;
         Ok([
             [
                 actuator_accelerations[0], -t24, t27, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t125,
-                -t137, -t218, actuator_accelerations[0] + t125, t232, 0.0, t242, -t248, -t27, -t251,
-                -t254, -t255, -t251, -t78,
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t123,
+                t135, -t216, t122, t227, 0.0, t237, -t236, -t27, -t245, -t248, -t249, -t245, -t56,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wx_leg2,
-                t271,
-                c_proximal_leg2 * t277 - minus_gproximal_wx_leg2 * t281,
-                minus_gproximal_wx_leg2 * t302 - c_proximal_leg2 * t263,
-                -(t251 + t271),
-                -(minus_gproximal_wx_leg2 * t316 + c_proximal_leg2 * t318),
+                -(t245 + t266),
+                c_proximal_leg2 * t273 - minus_gproximal_wx_leg2 * t277,
+                minus_gproximal_wx_leg2 * t298 - c_proximal_leg2 * t259,
+                t266,
+                -(minus_gproximal_wx_leg2 * t309 + minus_gproximal_wz_leg2 * t259),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2_2),
-                minus_gproximal_wx_leg2 * t326 - t86 * t256,
-                -(c_distal_leg2 * (t254 + t257)),
-                t255,
-                -t335,
-                -t335,
-                -t80,
+                minus_gproximal_wx_leg2 * t318 - t83 * t250,
+                -(c_distal_leg2 * (t248 + t251)),
+                t249,
+                -t327,
+                -t327,
+                -t63,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wx_leg3,
-                t350,
-                -(s_proximal_leg3 * t360 - minus_gproximal_wx_leg3 * t356),
-                minus_gproximal_wx_leg3 * t376 + s_proximal_leg3 * t345,
-                -(t335 + t350),
-                s_proximal_leg3 * t386 - minus_gproximal_wx_leg3 * t392,
+                -(t327 + t343),
+                -(minus_gproximal_wx_leg3 * t351 + s_proximal_leg3 * t354),
+                minus_gproximal_wx_leg3 * t370 + t35 * actuator_accelerations[2],
+                t343,
+                s_proximal_leg3 * t334 - minus_gproximal_wx_leg3 * t382,
                 -(s_proximal_leg3 * rate_dot_distal_leg3),
-                t45 * t400,
-                -t400,
-                t51 * t408 + t415 - t420,
-                t51 * t437 + minus_s_distal_leg1 * t440 + t55 * t445,
-                t51 * t463 + minus_s_distal_leg1 * t466 + t55 * t469,
-                minus_s_distal_leg1 * t436 - t483 + t420,
-                t51 * t494 + minus_s_distal_leg1 * t496 + t55 * t499,
-                t483 - t415 + t55 * t462,
-                t400,
-                t248,
+                t43 * t390,
+                -t390,
+                t60 * t398 + t405 - t410,
+                t60 * t425 + minus_s_distal_leg1 * t428 + t47 * t433,
+                t60 * t451 + minus_s_distal_leg1 * t454 + t47 * t457,
+                minus_s_distal_leg1 * t424 - t471 + t410,
+                t60 * t482 + minus_s_distal_leg1 * t484 + t47 * t487,
+                t471 - t405 + t47 * t450,
+                t390,
+                t236,
                 9.81 * minus_s_distal_leg2,
             ],
             [
@@ -1983,56 +1974,56 @@ impl Spherical3Rrr {
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wy_leg1,
-                t130,
-                -(s_proximal_leg1 * t141 - minus_gproximal_wy_leg1 * t137),
-                minus_gproximal_wy_leg1 * t218 + s_proximal_leg1 * t122,
-                -(t16 + t130),
-                s_proximal_leg1 * t233 - minus_gproximal_wy_leg1 * t232,
+                t128 - t16,
+                -(minus_gproximal_wy_leg1 * t135 + s_proximal_leg1 * t139),
+                minus_gproximal_wy_leg1 * t216 + actuator_accelerations[0] * t20,
+                -t128,
+                s_proximal_leg1 * t118 - minus_gproximal_wy_leg1 * t227,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1_2,
-                t20 * t27 - minus_gproximal_wy_leg1 * t242,
+                t20 * t27 - minus_gproximal_wy_leg1 * t237,
                 c_distal_leg1 * (t25 + t28),
                 t26,
                 actuator_accelerations[1],
-                t253,
-                t256,
+                t247,
+                t250,
                 actuator_accelerations[1],
                 actuator_velocities[1],
                 ::overact::math::sign(actuator_velocities[1]),
                 1.0,
-                -t266,
-                t281,
-                -t302,
-                actuator_accelerations[1] + t266,
-                t316,
+                -t263,
+                t277,
+                -t298,
+                t264,
+                t309,
                 0.0,
-                -t326,
-                t334,
-                -t256,
-                -t336,
-                -t336,
-                -t76,
+                -t318,
+                t326,
+                -t250,
+                -t328,
+                -t328,
+                -t45,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wy_leg3,
-                -t353,
-                c_proximal_leg3 * t360 + minus_gproximal_wy_leg3 * t356,
-                minus_gproximal_wy_leg3 * t376 - c_proximal_leg3 * t345,
-                t353 - t336,
-                -(minus_gproximal_wy_leg3 * t392 + c_proximal_leg3 * t386),
+                -(t328 + t347),
+                c_proximal_leg3 * t354 - minus_gproximal_wy_leg3 * t351,
+                minus_gproximal_wy_leg3 * t370 - t60 * actuator_accelerations[2],
+                t347,
+                -(minus_gproximal_wy_leg3 * t382 + c_proximal_leg3 * t334),
                 c_proximal_leg3 * rate_dot_distal_leg3,
-                -(t45 * t402),
-                t402,
-                t36 * t408 + t423 - t425,
-                t36 * t437 + t5 * t440 + minus_s_distal_leg2 * t445,
-                t36 * t463 + t5 * t466 + minus_s_distal_leg2 * t469,
-                t5 * t436 - t487 + t425,
-                t36 * t494 + t5 * t496 + minus_s_distal_leg2 * t499,
-                t487 - t423 + minus_s_distal_leg2 * t462,
-                -t402,
+                -(t43 * t392),
+                t392,
+                t35 * t398 + t413 - t415,
+                t35 * t425 + t5 * t428 + minus_s_distal_leg2 * t433,
+                t35 * t451 + t5 * t454 + minus_s_distal_leg2 * t457,
+                t5 * t424 - t475 + t415,
+                t35 * t482 + t5 * t484 + minus_s_distal_leg2 * t487,
+                t475 - t413 + minus_s_distal_leg2 * t450,
+                -t392,
                 -(9.81 * minus_s_distal_leg1),
-                -t334,
+                -t326,
             ],
             [
                 -t23, t26, -t28, -t23, -t30,
@@ -2041,53 +2032,53 @@ impl Spherical3Rrr {
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wz_leg1,
-                t133,
-                c_proximal_leg1 * t141 + minus_gproximal_wz_leg1 * t137,
-                minus_gproximal_wz_leg1 * t218 - c_proximal_leg1 * t122,
-                -(t23 + t133),
-                -(minus_gproximal_wz_leg1 * t232 + c_proximal_leg1 * t233),
+                -(t23 + t132),
+                c_proximal_leg1 * t139 - minus_gproximal_wz_leg1 * t135,
+                minus_gproximal_wz_leg1 * t216 - actuator_accelerations[0] * t5,
+                t132,
+                -(minus_gproximal_wz_leg1 * t227 + c_proximal_leg1 * t118),
                 -(c_proximal_leg1 * minus_rate_dot_distal_leg1_2),
-                -(t12 * (c_proximal_leg1 * t27)),
+                -(t24 * s_proximal_leg1 / c_distal_leg1),
                 0.0,
                 t28,
-                -t252,
-                -t255,
-                -t257,
-                -t252,
-                -t107,
+                -t246,
+                -t249,
+                -t251,
+                -t246,
+                -t95,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wz_leg2,
-                t274,
-                -(minus_gproximal_wz_leg2 * t281 + s_proximal_leg2 * t277),
-                minus_gproximal_wz_leg2 * t302 + s_proximal_leg2 * t263,
-                -(t252 + t274),
-                s_proximal_leg2 * t318 - minus_gproximal_wz_leg2 * t316,
+                t270 - t246,
+                -(minus_gproximal_wz_leg2 * t277 + s_proximal_leg2 * t273),
+                minus_gproximal_wz_leg2 * t298 + s_proximal_leg2 * t259,
+                -t270,
+                minus_gproximal_wx_leg2 * t259 - minus_gproximal_wz_leg2 * t309,
                 s_proximal_leg2 * minus_rate_dot_distal_leg2_2,
-                t256 * (s_proximal_leg2 * t60),
+                t250 * (s_proximal_leg2 * t52),
                 0.0,
-                t257,
+                t251,
                 actuator_accelerations[2],
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
-                t348,
-                -t356,
-                -t376,
-                actuator_accelerations[2] - t348,
-                t392,
+                t349,
+                t351,
+                -t370,
+                -t338,
+                t382,
                 0.0,
                 0.0,
                 0.0,
-                minus_s_distal_leg3 * t408 + t428 - t430,
-                minus_s_distal_leg3 * t437 + t20 * t440 + t86 * t445,
-                minus_s_distal_leg3 * t463 + t20 * t466 + t86 * t469,
-                t20 * t436 - t491 + t430,
-                minus_s_distal_leg3 * t494 + t20 * t496 + t86 * t499,
-                t491 - t428 + t86 * t462,
+                minus_s_distal_leg3 * t398 + t418 - t420,
+                minus_s_distal_leg3 * t425 + t20 * t428 + t83 * t433,
+                minus_s_distal_leg3 * t451 + t20 * t454 + t83 * t457,
+                t20 * t424 - t479 + t420,
+                minus_s_distal_leg3 * t482 + t20 * t484 + t83 * t487,
+                t479 - t418 + t83 * t450,
                 0.0,
                 0.0,
                 0.0,
@@ -3257,7 +3248,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 425 operations (152 additions, 270 multiplications, 3 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 326 intermediates.
+    /// 421 operations (153 additions, 259 multiplications, 9 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 322 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3307,9 +3298,9 @@ impl Spherical3Rrr {
         let t51 = 1.0 / c_distal_leg1;
         let t52 = minus_s_distal_leg1 * t51;
         let t53 = t40 - t4;
-        let c_proximal_leg1 = t51 * t53;
+        let c_proximal_leg1 = t53 / c_distal_leg1;
         let t56 = t33 + t34;
-        let s_proximal_leg1 = t51 * t56;
+        let s_proximal_leg1 = t56 / c_distal_leg1;
         let t59 = c_proximal_leg1 * twist[1] + s_proximal_leg1 * twist[2];
         let t60 = t52 * t59;
         let rate_proximal_leg1 = twist[0] - t60;
@@ -3363,8 +3354,8 @@ impl Spherical3Rrr {
         let s_proximal_leg2 = t37 * t195;
         let t197 = minus_s_distal_leg2 * t195;
         let minus_gproximal_wx_leg2 = s_proximal_leg2 * t197;
-        let t199 = t195 * t43;
-        let c_proximal_leg2 = t41 * t195;
+        let t199 = t43 / c_distal_leg2;
+        let c_proximal_leg2 = t41 / c_distal_leg2;
         let minus_rate_distal_leg2 = s_proximal_leg2 * twist[2]
             - c_proximal_leg2 * twist[0];
         let t207 = t197 * t199;
@@ -3393,17 +3384,17 @@ impl Spherical3Rrr {
         let t264 = t261 + t261 - t262;
         let t265 = c_distal_leg1 * t264;
         let t267 = t93 * t62;
-        let t273 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t274 = minus_rate_distal_leg2 * t273;
-        let t275 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t277 = t274 + t274 - t275;
-        let t278 = c_distal_leg2 * t277;
-        let t280 = c_distal_leg2 * rate_proximal_leg2;
-        let t281 = t280 * t273;
+        let t273 = minus_s_distal_leg2 * t210;
+        let t274 = c_distal_leg2 * rate_dot_proximal_leg2;
+        let t276 = t273 + t273 - t274;
+        let t277 = c_distal_leg2 * t276;
+        let t279 = c_distal_leg2 * rate_proximal_leg2;
+        let t280 = t279 * t279;
+        let t281 = t197 * t280;
         let t287 = c_distal_leg3 * rate_proximal_leg3;
-        let t288 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t289 = t287 * t288;
-        let t291 = rate_distal_leg3 * t288;
+        let t288 = t287 * t287;
+        let t289 = t218 * t288;
+        let t291 = minus_s_distal_leg3 * t227;
         let t292 = c_distal_leg3 * rate_dot_proximal_leg3;
         let t294 = t291 + t292 + t291;
         let t295 = c_distal_leg3 * t294;
@@ -3411,39 +3402,38 @@ impl Spherical3Rrr {
         let t305 = t93 * t93;
         let t306 = t62 * t62;
         let t307 = t305 - t306;
-        let t313 = t280 * t280;
-        let t314 = t273 * t273;
-        let t315 = t313 - t314;
-        let t319 = 2.0 * (t210 - minus_s_distal_leg2 * t277);
-        let t327 = 2.0 * (t227 - minus_s_distal_leg3 * t294);
-        let t329 = t287 * t287;
-        let t330 = t288 * t288;
-        let t331 = t329 - t330;
+        let t313 = t197 * t281;
+        let t314 = t280 - t313;
+        let t318 = 2.0 * (t210 - minus_s_distal_leg2 * t276);
+        let t325 = t227 - minus_s_distal_leg3 * t294;
+        let t326 = t325 + t325;
+        let t328 = t218 * t289;
+        let t329 = t288 - t328;
         let minus_rate_dot_distal_leg1 = s_proximal_leg1 * acceleration[1]
             - c_proximal_leg1 * acceleration[2] + t59 * rate_proximal_leg1;
-        let t344 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t347 = c_distal_leg1 * (t267 - minus_rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t344 - t305);
+        let t342 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t345 = c_distal_leg1 * (t267 - minus_rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t342 - t305);
         let minus_rate_dot_distal_leg2 = s_proximal_leg2 * acceleration[2]
             - c_proximal_leg2 * acceleration[0] + t199 * rate_proximal_leg2;
-        let t361 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t364 = c_distal_leg2 * (t281 - minus_rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t361 - t313);
+        let t359 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t362 = c_distal_leg2 * (t281 - minus_rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t359 - t280);
+        let t364 = c_proximal_leg2 * t274;
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
             - s_proximal_leg3 * acceleration[0] - t29 * rate_proximal_leg3;
-        let t378 = rate_distal_leg3 * rate_distal_leg3;
-        let t381 = c_distal_leg3 * (t289 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t378 - t329);
-        let t392 = minus_s_distal_leg1 * (t267 + minus_rate_dot_distal_leg1)
-            - c_distal_leg1 * (t306 - t344);
-        let t403 = minus_s_distal_leg2 * (t281 + minus_rate_dot_distal_leg2)
-            - c_distal_leg2 * (t314 - t361);
-        let t405 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t411 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t417 = minus_s_distal_leg3 * (t289 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t330 - t378);
-        let t423 = minus_s_distal_leg1 * t236;
-        let t429 = minus_s_distal_leg2 * t239;
+        let t376 = rate_distal_leg3 * rate_distal_leg3;
+        let t379 = c_distal_leg3 * (t289 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t376 - t288);
+        let t384 = c_proximal_leg3 * t292;
+        let t390 = minus_s_distal_leg1 * (t267 + minus_rate_dot_distal_leg1)
+            - c_distal_leg1 * (t306 - t342);
+        let t401 = minus_s_distal_leg2 * (t281 + minus_rate_dot_distal_leg2)
+            - c_distal_leg2 * (t313 - t359);
+        let t413 = minus_s_distal_leg3 * (t289 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t328 - t376);
+        let t419 = minus_s_distal_leg1 * t236;
+        let t425 = minus_s_distal_leg2 * t239;
         Ok([
             [
                 t5 * t24 + t46 - t66, t5 * t98 + minus_s_distal_leg1 * t101 + t37 * t106,
@@ -3460,15 +3450,15 @@ impl Spherical3Rrr {
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wx_leg3, rate_proximal_leg3), 1.0,
                 -minus_gproximal_wx_leg2, -minus_gproximal_wx_leg3, -t265,
-                minus_gproximal_wx_leg2 * t278 - c_proximal_leg2 * t281,
+                minus_gproximal_wx_leg2 * t277 - c_proximal_leg2 * t281,
                 s_proximal_leg3 * t289 - minus_gproximal_wx_leg3 * t295, t303,
-                c_proximal_leg2 * t315 - minus_gproximal_wx_leg2 * t319,
-                -(s_proximal_leg3 * t331 - minus_gproximal_wx_leg3 * t327), -t347,
-                minus_gproximal_wx_leg2 * t364 - c_proximal_leg2 * t275,
-                minus_gproximal_wx_leg3 * t381 + s_proximal_leg3 * t292, t392,
-                -(minus_gproximal_wx_leg2 * t403 + c_proximal_leg2 * t405),
-                s_proximal_leg3 * t411 - minus_gproximal_wx_leg3 * t417, t423,
-                minus_gproximal_wx_leg2 * t429 - t41 * t244, t182 * t218,
+                c_proximal_leg2 * t314 - minus_gproximal_wx_leg2 * t318,
+                -(s_proximal_leg3 * t329 - minus_gproximal_wx_leg3 * t326), -t345,
+                minus_gproximal_wx_leg2 * t362 - t364,
+                minus_gproximal_wx_leg3 * t379 + s_proximal_leg3 * t292, t390,
+                -(minus_gproximal_wx_leg2 * t401 + t197 * t364),
+                t292 * minus_gproximal_wy_leg3 - minus_gproximal_wx_leg3 * t413, t419,
+                minus_gproximal_wx_leg2 * t425 - t41 * t244, t182 * t218,
             ],
             [
                 t18 * t24 + t69 - t71, t18 * t98 + t53 * t101 + minus_s_distal_leg2 * t106,
@@ -3484,15 +3474,15 @@ impl Spherical3Rrr {
                 ::overact::math::sign(rate_proximal_leg2),
                 -::overact::math::signed(minus_gproximal_wy_leg3, rate_proximal_leg3),
                 -minus_gproximal_wy_leg1, 1.0, -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t265 + s_proximal_leg1 * t267, -t278,
+                minus_gproximal_wy_leg1 * t265 + s_proximal_leg1 * t267, -t277,
                 -(minus_gproximal_wy_leg3 * t295 + c_proximal_leg3 * t289),
-                -(minus_gproximal_wy_leg1 * t303 + s_proximal_leg1 * t307), t319,
-                c_proximal_leg3 * t331 + minus_gproximal_wy_leg3 * t327,
-                minus_gproximal_wy_leg1 * t347 + s_proximal_leg1 * t262, -t364,
-                minus_gproximal_wy_leg3 * t381 - c_proximal_leg3 * t292,
-                s_proximal_leg1 * t92 - minus_gproximal_wy_leg1 * t392, t403,
-                -(minus_gproximal_wy_leg3 * t417 + c_proximal_leg3 * t411),
-                t56 * t242 - minus_gproximal_wy_leg1 * t423, -t429, -(t218 * t183),
+                -(minus_gproximal_wy_leg1 * t303 + s_proximal_leg1 * t307), t318,
+                c_proximal_leg3 * t329 + minus_gproximal_wy_leg3 * t326,
+                minus_gproximal_wy_leg1 * t345 + s_proximal_leg1 * t262, -t362,
+                minus_gproximal_wy_leg3 * t379 - t384,
+                s_proximal_leg1 * t92 - minus_gproximal_wy_leg1 * t390, t401,
+                -(minus_gproximal_wy_leg3 * t413 + t218 * t384),
+                t56 * t242 - minus_gproximal_wy_leg1 * t419, -t425, -(t218 * t183),
             ],
             [
                 minus_s_distal_leg3 * t24 + t74 - t76,
@@ -3509,14 +3499,15 @@ impl Spherical3Rrr {
                 ::overact::math::sign(rate_proximal_leg3), -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2, 1.0,
                 minus_gproximal_wz_leg1 * t265 - c_proximal_leg1 * t267,
-                minus_gproximal_wz_leg2 * t278 + s_proximal_leg2 * t281, t295,
+                minus_gproximal_wz_leg2 * t277 + s_proximal_leg2 * t281, t295,
                 c_proximal_leg1 * t307 - minus_gproximal_wz_leg1 * t303,
-                -(minus_gproximal_wz_leg2 * t319 + s_proximal_leg2 * t315), -t327,
-                minus_gproximal_wz_leg1 * t347 - c_proximal_leg1 * t262,
-                minus_gproximal_wz_leg2 * t364 + s_proximal_leg2 * t275, -t381,
-                -(minus_gproximal_wz_leg1 * t392 + c_proximal_leg1 * t92),
-                s_proximal_leg2 * t405 - minus_gproximal_wz_leg2 * t403, t417,
-                -(t242 * (t51 * c_proximal_leg1)), t244 * (s_proximal_leg2 * t195), 0.0,
+                -(minus_gproximal_wz_leg2 * t318 + s_proximal_leg2 * t314), -t326,
+                minus_gproximal_wz_leg1 * t345 - c_proximal_leg1 * t262,
+                minus_gproximal_wz_leg2 * t362 + s_proximal_leg2 * t274, -t379,
+                -(minus_gproximal_wz_leg1 * t390 + c_proximal_leg1 * t92),
+                minus_gproximal_wx_leg2 * t274 - minus_gproximal_wz_leg2 * t401, t413,
+                -(t242 * (c_proximal_leg1 / c_distal_leg1)),
+                t244 * (s_proximal_leg2 / c_distal_leg2), 0.0,
             ],
         ])
     }
@@ -3531,7 +3522,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 425 operations (154 additions, 266 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 335 intermediates.
+    /// 419 operations (160 additions, 254 multiplications, 5 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 329 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3552,12 +3543,12 @@ impl Spherical3Rrr {
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        let t0 = 2.0 * pose[2];
+        let t0 = pose[2] + pose[2];
         let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
+        let t3 = pose[3] + pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let t7 = 2.0 * pose[1];
+        let t7 = pose[1] + pose[1];
         let t8 = pose[2] * t7;
         let t9 = pose[0] * t3;
         let t10 = t8 + t9;
@@ -3617,6 +3608,7 @@ impl Spherical3Rrr {
                         + minus_s_proximal_leg1 * acceleration[2]));
         let gproximal_wy_leg1 = minus_c_proximal_leg1 * t167;
         let gproximal_wz_leg1 = minus_s_proximal_leg1 * t167;
+        let t182 = gproximal_wz_leg1 * rate_dot_proximal_leg1;
         let t187 = c_distal_leg2 / minus_s_distal_leg2;
         let gproximal_wx_leg2 = minus_s_proximal_leg2 * t187;
         let t191 = minus_s_proximal_leg2 * twist[0] + minus_c_proximal_leg2 * twist[2];
@@ -3631,6 +3623,7 @@ impl Spherical3Rrr {
                     - (minus_s_proximal_leg2 * acceleration[0]
                         + minus_c_proximal_leg2 * acceleration[2]));
         let gproximal_wz_leg2 = minus_c_proximal_leg2 * t187;
+        let t210 = gproximal_wz_leg2 * rate_dot_proximal_leg2;
         let t215 = c_distal_leg3 / minus_s_distal_leg3;
         let gproximal_wx_leg3 = minus_c_proximal_leg3 * t215;
         let rate_distal_leg3 = minus_c_proximal_leg3 * twist[1]
@@ -3650,66 +3643,65 @@ impl Spherical3Rrr {
         let t244 = gproximal_wz_leg2 * t242;
         let t245 = 9.81 * minus_s_proximal_leg1;
         let t247 = 9.81 * minus_c_proximal_leg2;
-        let t264 = c_distal_leg1 * rate_proximal_leg1;
-        let t265 = minus_rate_distal_leg1 * t264;
-        let t266 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
-        let t268 = t265 + t266 + t265;
-        let t269 = minus_s_distal_leg1 * t268;
-        let t271 = minus_s_distal_leg1 * rate_proximal_leg1;
-        let t272 = t271 * t264;
-        let t278 = c_distal_leg2 * rate_proximal_leg2;
-        let t279 = minus_rate_distal_leg2 * t278;
-        let t280 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
-        let t282 = t279 + t280 + t279;
-        let t283 = minus_s_distal_leg2 * t282;
-        let t285 = minus_s_distal_leg2 * rate_proximal_leg2;
-        let t286 = t285 * t278;
-        let t292 = c_distal_leg3 * rate_proximal_leg3;
-        let t293 = rate_distal_leg3 * t292;
-        let t294 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
-        let t296 = t293 + t293 - t294;
-        let t297 = minus_s_distal_leg3 * t296;
-        let t299 = minus_s_distal_leg3 * rate_proximal_leg3;
-        let t300 = t299 * t292;
-        let t308 = 2.0 * (t170 - c_distal_leg1 * t268);
-        let t310 = t271 * t271;
-        let t311 = t264 * t264;
-        let t312 = t310 - t311;
-        let t320 = 2.0 * (t199 - c_distal_leg2 * t282);
-        let t322 = t285 * t285;
-        let t323 = t278 * t278;
-        let t324 = t322 - t323;
-        let t332 = 2.0 * (t228 - c_distal_leg3 * t296);
-        let t334 = t299 * t299;
-        let t335 = t292 * t292;
-        let t336 = t334 - t335;
+        let t264 = c_distal_leg1 * t170;
+        let t265 = minus_s_distal_leg1 * rate_dot_proximal_leg1;
+        let t267 = t264 + t265 + t264;
+        let t268 = minus_s_distal_leg1 * t267;
+        let t270 = minus_s_distal_leg1 * rate_proximal_leg1;
+        let t271 = t270 * t270;
+        let t272 = t167 * t271;
+        let t278 = c_distal_leg2 * t199;
+        let t279 = minus_s_distal_leg2 * rate_dot_proximal_leg2;
+        let t281 = t278 + t279 + t278;
+        let t282 = minus_s_distal_leg2 * t281;
+        let t284 = minus_s_distal_leg2 * rate_proximal_leg2;
+        let t285 = t284 * t284;
+        let t286 = t187 * t285;
+        let t292 = c_distal_leg3 * t228;
+        let t293 = minus_s_distal_leg3 * rate_dot_proximal_leg3;
+        let t295 = t292 + t292 - t293;
+        let t296 = minus_s_distal_leg3 * t295;
+        let t298 = minus_s_distal_leg3 * rate_proximal_leg3;
+        let t299 = t298 * t298;
+        let t300 = t215 * t299;
+        let t307 = t170 - c_distal_leg1 * t267;
+        let t308 = t307 + t307;
+        let t310 = t167 * t272;
+        let t311 = t271 - t310;
+        let t318 = t199 - c_distal_leg2 * t281;
+        let t319 = t318 + t318;
+        let t321 = t187 * t286;
+        let t322 = t285 - t321;
+        let t329 = t228 - c_distal_leg3 * t295;
+        let t330 = t329 + t329;
+        let t332 = t215 * t300;
+        let t333 = t299 - t332;
         let minus_rate_dot_distal_leg1 = minus_s_proximal_leg1 * acceleration[1]
             - minus_c_proximal_leg1 * acceleration[2] + t159 * rate_proximal_leg1;
-        let t349 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t352 = minus_s_distal_leg1 * (t272 + minus_rate_dot_distal_leg1)
-            + c_distal_leg1 * (t349 - t310);
+        let t346 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t349 = minus_s_distal_leg1 * (t272 + minus_rate_dot_distal_leg1)
+            + c_distal_leg1 * (t346 - t271);
         let minus_rate_dot_distal_leg2 = minus_s_proximal_leg2 * acceleration[2]
             - minus_c_proximal_leg2 * acceleration[0] + t191 * rate_proximal_leg2;
-        let t366 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t369 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
-            + c_distal_leg2 * (t366 - t322);
-        let t376 = rate_distal_leg3 * rate_distal_leg3;
+        let t363 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t366 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
+            + c_distal_leg2 * (t363 - t285);
+        let t371 = minus_s_proximal_leg2 * t279;
+        let t373 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
             - minus_s_proximal_leg3 * acceleration[0] - t225 * rate_proximal_leg3;
-        let t386 = c_distal_leg3 * (t376 - t334)
+        let t383 = c_distal_leg3 * (t373 - t299)
             - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t300);
-        let t397 = minus_s_distal_leg1 * (t311 - t349)
+        let t385 = minus_s_proximal_leg3 * t293;
+        let t394 = minus_s_distal_leg1 * (t310 - t346)
             + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t272);
-        let t399 = c_distal_leg1 * rate_dot_proximal_leg1;
-        let t405 = c_distal_leg2 * rate_dot_proximal_leg2;
-        let t411 = minus_s_distal_leg2 * (t323 - t366)
+        let t406 = minus_s_distal_leg2 * (t321 - t363)
             + c_distal_leg2 * (minus_rate_dot_distal_leg2 - t286);
-        let t421 = c_distal_leg3 * (t300 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t335 - t376);
-        let t423 = c_distal_leg3 * rate_dot_proximal_leg3;
-        let t429 = c_distal_leg1 * t239;
-        let t436 = c_distal_leg2 * t242;
-        let t443 = 9.81 * c_distal_leg3;
+        let t416 = c_distal_leg3 * (t300 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t332 - t373);
+        let t423 = c_distal_leg1 * t239;
+        let t430 = c_distal_leg2 * t242;
+        let t437 = 9.81 * c_distal_leg3;
         Ok([
             [
                 t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
@@ -3721,18 +3713,18 @@ impl Spherical3Rrr {
                 gproximal_wx_leg3 * rate_proximal_leg3, ::overact::math::sign(rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wx_leg2, rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wx_leg3, rate_proximal_leg3), 1.0,
-                gproximal_wx_leg2, gproximal_wx_leg3, t269,
-                gproximal_wx_leg2 * t283 + minus_c_proximal_leg2 * t286,
-                -(gproximal_wx_leg3 * t297 + minus_s_proximal_leg3 * t300), t308,
-                gproximal_wx_leg2 * t320 + minus_c_proximal_leg2 * t324,
-                -(gproximal_wx_leg3 * t332 + minus_s_proximal_leg3 * t336), t352,
-                gproximal_wx_leg2 * t369 - minus_c_proximal_leg2 * t280,
-                gproximal_wx_leg3 * t386 + minus_s_proximal_leg3 * t294, -t397,
-                minus_c_proximal_leg2 * t405 - gproximal_wx_leg2 * t411,
-                gproximal_wx_leg3 * t421 - minus_s_proximal_leg3 * t423, -t429,
-                gproximal_wx_leg2 * t436
+                gproximal_wx_leg2, gproximal_wx_leg3, t268,
+                gproximal_wx_leg2 * t282 + minus_c_proximal_leg2 * t286,
+                -(gproximal_wx_leg3 * t296 + minus_s_proximal_leg3 * t300), t308,
+                gproximal_wx_leg2 * t319 + minus_c_proximal_leg2 * t322,
+                -(gproximal_wx_leg3 * t330 + minus_s_proximal_leg3 * t333), t349,
+                gproximal_wx_leg2 * t366 - minus_c_proximal_leg2 * t279,
+                gproximal_wx_leg3 * t383 + t385, -t394,
+                minus_s_distal_leg2 * t210 - gproximal_wx_leg2 * t406,
+                gproximal_wx_leg3 * t416 - t215 * t385, -t423,
+                gproximal_wx_leg2 * t430
                     - minus_c_proximal_leg2 * (minus_s_distal_leg2 * t247),
-                -(minus_s_proximal_leg3 * t443),
+                -(minus_s_proximal_leg3 * t437),
             ],
             [
                 t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
@@ -3746,40 +3738,39 @@ impl Spherical3Rrr {
                 ::overact::math::signed(gproximal_wy_leg1, rate_proximal_leg1),
                 ::overact::math::sign(rate_proximal_leg2),
                 ::overact::math::signed(gproximal_wy_leg3, rate_proximal_leg3), gproximal_wy_leg1,
-                1.0, gproximal_wy_leg3, gproximal_wy_leg1 * t269 - minus_s_proximal_leg1 * t272,
-                t283, minus_c_proximal_leg3 * t300 - gproximal_wy_leg3 * t297,
-                gproximal_wy_leg1 * t308 - minus_s_proximal_leg1 * t312, t320,
-                minus_c_proximal_leg3 * t336 - gproximal_wy_leg3 * t332,
-                gproximal_wy_leg1 * t352 + minus_s_proximal_leg1 * t266, t369,
-                gproximal_wy_leg3 * t386 - minus_c_proximal_leg3 * t294,
-                -(gproximal_wy_leg1 * t397 + minus_s_proximal_leg1 * t399), -t411,
-                gproximal_wy_leg3 * t421 + minus_c_proximal_leg3 * t423,
+                1.0, gproximal_wy_leg3, gproximal_wy_leg1 * t268 - minus_s_proximal_leg1 * t272,
+                t282, minus_c_proximal_leg3 * t300 - gproximal_wy_leg3 * t296,
+                gproximal_wy_leg1 * t308 - minus_s_proximal_leg1 * t311, t319,
+                minus_c_proximal_leg3 * t333 - gproximal_wy_leg3 * t330,
+                gproximal_wy_leg1 * t349 + minus_s_proximal_leg1 * t265, t366,
+                gproximal_wy_leg3 * t383 - minus_c_proximal_leg3 * t293,
+                -(gproximal_wy_leg1 * t394 + minus_s_distal_leg1 * t182), -t406,
+                gproximal_wy_leg3 * t416 + gproximal_wx_leg3 * t293,
                 minus_s_proximal_leg1 * (minus_s_distal_leg1 * t245)
-                    - gproximal_wy_leg1 * t429,
-                t436,
-                minus_c_proximal_leg3 * t443,
+                    - gproximal_wy_leg1 * t423,
+                t430,
+                minus_c_proximal_leg3 * t437,
             ],
             [
                 t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
                 t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
-                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
-                gproximal_wz_leg1 * rate_dot_proximal_leg1,
-                gproximal_wz_leg2 * rate_dot_proximal_leg2, rate_dot_proximal_leg3, -t241, t244,
-                gproximal_wz_leg1 * t245, gproximal_wz_leg2 * t247,
-                gproximal_wz_leg1 * rate_proximal_leg1, gproximal_wz_leg2 * rate_proximal_leg2,
-                rate_proximal_leg3, ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1),
+                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0, t182,
+                t210, rate_dot_proximal_leg3, -t241, t244, gproximal_wz_leg1 * t245,
+                gproximal_wz_leg2 * t247, gproximal_wz_leg1 * rate_proximal_leg1,
+                gproximal_wz_leg2 * rate_proximal_leg2, rate_proximal_leg3,
+                ::overact::math::signed(gproximal_wz_leg1, rate_proximal_leg1),
                 ::overact::math::signed(gproximal_wz_leg2, rate_proximal_leg2),
                 ::overact::math::sign(rate_proximal_leg3), gproximal_wz_leg1, gproximal_wz_leg2,
-                1.0, gproximal_wz_leg1 * t269 + minus_c_proximal_leg1 * t272,
-                gproximal_wz_leg2 * t283 - minus_s_proximal_leg2 * t286, -t297,
-                gproximal_wz_leg1 * t308 + minus_c_proximal_leg1 * t312,
-                gproximal_wz_leg2 * t320 - minus_s_proximal_leg2 * t324, -t332,
-                gproximal_wz_leg1 * t352 - minus_c_proximal_leg1 * t266,
-                gproximal_wz_leg2 * t369 + minus_s_proximal_leg2 * t280, t386,
-                minus_c_proximal_leg1 * t399 - gproximal_wz_leg1 * t397,
-                -(gproximal_wz_leg2 * t411 + minus_s_proximal_leg2 * t405), t421,
-                -(minus_c_proximal_leg1 * t245 / minus_s_distal_leg1),
-                minus_s_proximal_leg2 * t247 / minus_s_distal_leg2, 0.0,
+                1.0, gproximal_wz_leg1 * t268 + minus_c_proximal_leg1 * t272,
+                gproximal_wz_leg2 * t282 - minus_s_proximal_leg2 * t286, -t296,
+                gproximal_wz_leg1 * t308 + minus_c_proximal_leg1 * t311,
+                gproximal_wz_leg2 * t319 - minus_s_proximal_leg2 * t322, -t330,
+                gproximal_wz_leg1 * t349 - minus_c_proximal_leg1 * t265,
+                gproximal_wz_leg2 * t366 + t371, t383,
+                t265 * gproximal_wy_leg1 - gproximal_wz_leg1 * t394,
+                -(gproximal_wz_leg2 * t406 + t187 * t371), t416,
+                -(minus_s_proximal_leg1 * t239 / minus_s_distal_leg1),
+                minus_c_proximal_leg2 * t242 / minus_s_distal_leg2, 0.0,
             ],
         ])
     }
@@ -3794,7 +3785,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 492 operations (185 additions, 301 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 399 intermediates.
+    /// 487 operations (186 additions, 288 multiplications, 13 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 394 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3820,221 +3811,219 @@ impl Spherical3Rrr {
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / c_distal_leg1;
         let t14 = minus_s_distal_leg1 * t13;
-        let t16 = 1.0 - pose[1] * t6;
-        let t17 = t16 - t4;
-        let c_proximal_leg1 = t13 * t17;
+        let t15 = pose[3] * t0;
+        let t16 = pose[0] * t6;
+        let t17 = t15 + t16;
+        let s_proximal_leg1 = t13 * t17;
+        let t20 = 1.0 - pose[1] * t6;
+        let t21 = t20 - t4;
+        let c_proximal_leg1 = t13 * t21;
         let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
-        let t22 = pose[3] * t6;
-        let t23 = pose[0] * t0;
-        let minus_s_distal_leg3 = t22 - t23;
-        let t26 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t26, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t26);
+        let t24 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t26 = pose[3] * t6;
+        let t27 = pose[0] * t0;
+        let minus_s_distal_leg3 = t26 - t27;
+        let t30 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t30, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t28 = 1.0 / c_distal_leg3;
-        let t29 = t7 + t8;
-        let s_proximal_leg3 = t28 * t29;
-        let t31 = minus_s_distal_leg3 * t28;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t31;
-        let c_proximal_leg3 = t5 * t28;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t31;
-        let t38 = t22 + t23;
-        let t39 = pose[3] * t0;
-        let t40 = pose[0] * t6;
-        let minus_s_distal_leg2 = t39 - t40;
-        let t43 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t43, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t43);
+        let t32 = 1.0 / c_distal_leg3;
+        let t33 = t7 + t8;
+        let s_proximal_leg3 = t32 * t33;
+        let t35 = minus_s_distal_leg3 * t32;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
+        let t37 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t39 = t26 + t27;
+        let minus_s_distal_leg2 = t15 - t16;
+        let t42 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t42, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t42);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t45 = 1.0 / c_distal_leg2;
-        let s_proximal_leg2 = t38 * t45;
-        let t47 = minus_s_distal_leg2 * t45;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t47;
-        let t50 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t44 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t39 * t44;
+        let t46 = minus_s_distal_leg2 * t44;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t46;
+        let t48 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let c_proximal_leg3 = t5 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let t52 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t53 = actuator_velocities[0] - t48 - t52;
+        let t56 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t54 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t60 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t54, 1.0, "actuators")?;
-        ::overact::guard::platform(t54, 1.0, "actuators")?;
-        let t55 = 1.0 / t54;
-        let t56 = t50 * t55;
-        let t58 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t50 * t56;
-        ::overact::guard::platform(t58, 1.0, "actuators")?;
-        ::overact::guard::platform(t58, 1.0, "actuators")?;
-        let t59 = 1.0 / t58;
-        let t60 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t62 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t64 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t66 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t67 = actuator_velocities[0] - t64 - t66;
-        let t69 = actuator_velocities[1] - t60 - t62 - t67 * t56;
-        let t71 = t39 + t40;
-        let s_proximal_leg1 = t13 * t71;
+        ::overact::guard::platform(t60, 1.0, "actuators")?;
+        ::overact::guard::platform(t60, 1.0, "actuators")?;
+        let t61 = t56 / t60;
+        let t63 = actuator_velocities[1] - t24 - t37 - t53 * t61;
+        let t69 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t56 * t61;
+        ::overact::guard::platform(t69, 1.0, "actuators")?;
+        ::overact::guard::platform(t69, 1.0, "actuators")?;
         let minus_gproximal_wz_leg1 = s_proximal_leg1 * t14;
-        let t75 = t16 - t1;
-        let c_proximal_leg2 = t75 * t45;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t47;
-        let t82 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t73 = t20 - t1;
+        let c_proximal_leg2 = t73 / c_distal_leg2;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t46;
+        let t80 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t83 = t82 * t55;
-        let t85 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t50 * t83;
-        let t86 = t85 * t59;
-        let t94 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t82 * t83
-            - t85 * t86;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        let t95 = 1.0 / t94;
-        let t96 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t97 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t104 = t95 * (actuator_velocities[2] - (t96 + t97) - t67 * t83 - t86 * t69);
-        let t106 = t59 * t69 - t86 * t104;
-        let t109 = c_proximal_leg1 * t106 + s_proximal_leg1 * t104;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t106 - c_proximal_leg1 * t104;
-        let t113 = t109 * minus_rate_distal_leg1;
-        let t115 = actuator_velocities[0] * minus_rate_distal_leg1;
-        let t116 = t14 * t113 - t115;
-        let minus_rate_dot_proximal_leg1 = t14 * t116 + t113;
-        let t119 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t81 = t80 / t60;
+        let t83 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t56 * t81;
+        let t84 = t83 / t69;
+        let t85 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t86 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t100 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t80 * t81
+            - t83 * t84;
+        ::overact::guard::platform(t100, 1.0, "actuators")?;
+        ::overact::guard::platform(t100, 1.0, "actuators")?;
+        let t101 = (actuator_velocities[2] - (t85 + t86) - t53 * t81 - t84 * t63) / t100;
+        let t103 = t63 / t69 - t84 * t101;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t103 - c_proximal_leg1 * t101;
+        let t109 = c_proximal_leg1 * t103 + s_proximal_leg1 * t101;
         let rate_wrist_leg1 = t13 * t109;
-        let t122 = actuator_velocities[0] + minus_s_distal_leg1 * rate_wrist_leg1;
-        let t125 = t38 * t122 + t75 * t104;
-        let t126 = t45 * t125;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t104 - c_proximal_leg2 * t122;
-        let t130 = t126 * minus_rate_distal_leg2;
-        let t132 = actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t47 * (t47 * t130 - t132) + t130;
-        let t136 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_distal_leg3 = c_proximal_leg3 * t106 - s_proximal_leg3 * t122;
-        let t142 = actuator_velocities[2] * rate_distal_leg3;
-        let t145 = t5 * t122 + t29 * t106;
-        let t146 = t28 * t145;
-        let t147 = t146 * rate_distal_leg3;
-        let minus_rate_dot_proximal_leg3 = t31 * (t142 - t31 * t147) - t147;
-        let t152 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t158 = t119 - minus_gproximal_wx_leg2 * t136
-            - minus_gproximal_wx_leg3 * t152;
-        let t160 = t136 - minus_gproximal_wy_leg1 * t119 - minus_gproximal_wy_leg3 * t152
-            - t56 * t158;
-        let t170 = t95
-            * (t152 - (minus_gproximal_wz_leg1 * t119 + minus_gproximal_wz_leg2 * t136)
-                - t83 * t158 - t86 * t160);
-        let t172 = t59 * t160 - t86 * t170;
-        let t175 = c_proximal_leg1 * t172 + s_proximal_leg1 * t170;
-        let t177 = t119 + t14 * t175;
-        let t182 = t5 * t177 + t29 * t172 + minus_s_distal_leg3 * t170;
-        let t185 = t145 + minus_s_distal_leg3 * t104;
-        let t187 = minus_s_distal_leg2 * t106 + t125;
-        let t188 = t185 * t187;
-        let t189 = minus_s_distal_leg1 * t188;
-        let t191 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t192 = t191 + rate_wrist_leg1;
-        let t193 = t192 * t185;
-        let t194 = t38 * t193;
-        let t197 = t17 * t188;
-        let t199 = minus_s_distal_leg2 * t193;
-        let t202 = t71 * t188;
-        let t204 = t75 * t193;
-        let t206 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t207 = c_distal_leg1 * actuator_velocities[0];
-        let rate_dot_wrist_leg1 = t13 * (t175 + t116);
-        let t212 = t206 + minus_rate_distal_leg1 * t207 + rate_dot_wrist_leg1;
-        let t213 = t212 - t188;
-        let t215 = t192 * t187;
-        let t216 = t182 + t215;
-        let t219 = t185 * t185;
-        let t220 = t192 * t192;
-        let t221 = t219 - t220;
-        let t238 = t38 * t177 + minus_s_distal_leg2 * t172 + t75 * t170;
-        let t239 = t238 + t193;
-        let t241 = t187 * t187;
-        let t242 = t241 - t219;
-        let t245 = t182 - t215;
-        let t259 = t5 * t215;
-        let t263 = t29 * t215;
-        let t267 = minus_s_distal_leg3 * t215;
-        let t270 = t220 - t241;
-        let t272 = t238 - t193;
-        let t275 = t212 + t188;
-        let t297 = 9.81 * t29;
-        let t298 = 9.81 * t5;
-        let t309 = 9.81 * c_proximal_leg1;
-        let t311 = minus_gproximal_wz_leg1 * t309;
-        let t312 = 9.81 * s_proximal_leg2;
-        let t314 = minus_gproximal_wz_leg2 * t312;
-        let t315 = 9.81 * s_proximal_leg1;
-        let t317 = 9.81 * c_proximal_leg2;
-        let t328 = minus_rate_distal_leg1 * t191;
-        let t329 = c_distal_leg1 * actuator_accelerations[0];
-        let t331 = t328 + t328 - t329;
-        let t332 = c_distal_leg1 * t331;
-        let t334 = t207 * t191;
-        let t340 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t341 = minus_rate_distal_leg2 * t340;
-        let t342 = c_distal_leg2 * actuator_accelerations[1];
-        let t344 = t341 + t341 - t342;
-        let t345 = c_distal_leg2 * t344;
-        let t347 = c_distal_leg2 * actuator_velocities[1];
-        let t348 = t347 * t340;
-        let t354 = c_distal_leg3 * actuator_velocities[2];
-        let t355 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t356 = t354 * t355;
-        let t358 = rate_distal_leg3 * t355;
-        let t359 = c_distal_leg3 * actuator_accelerations[2];
-        let t361 = t358 + t359 + t358;
-        let t362 = c_distal_leg3 * t361;
-        let t370 = 2.0 * (t115 - minus_s_distal_leg1 * t331);
-        let t372 = t207 * t207;
-        let t373 = t191 * t191;
-        let t374 = t372 - t373;
-        let t380 = t347 * t347;
-        let t381 = t340 * t340;
-        let t382 = t380 - t381;
-        let t386 = 2.0 * (t132 - minus_s_distal_leg2 * t344);
-        let t394 = 2.0 * (t142 - minus_s_distal_leg3 * t361);
-        let t396 = t354 * t354;
-        let t397 = t355 * t355;
-        let t398 = t396 - t397;
+        let t111 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t113 = actuator_velocities[0] * minus_rate_distal_leg1;
+        let t114 = minus_rate_distal_leg1 * t111 - t113;
+        let minus_rate_dot_proximal_leg1 = t14 * t114 + t109 * minus_rate_distal_leg1;
+        let t118 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t119 = actuator_velocities[0] + t111;
+        let t122 = t39 * t119 + t73 * t101;
+        let t123 = t122 / c_distal_leg2;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t101 - c_proximal_leg2 * t119;
+        let t127 = t123 * minus_rate_distal_leg2;
+        let t129 = actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t46 * (t46 * t127 - t129) + t127;
+        let t133 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t103 - s_proximal_leg3 * t119;
+        let t139 = actuator_velocities[2] * rate_distal_leg3;
+        let t142 = t5 * t119 + t33 * t103;
+        let t143 = t32 * t142;
+        let t144 = t143 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t35 * (t139 - t35 * t144) - t144;
+        let t149 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t155 = t118 - minus_gproximal_wx_leg2 * t133
+            - minus_gproximal_wx_leg3 * t149;
+        let t157 = t133 - minus_gproximal_wy_leg1 * t118 - minus_gproximal_wy_leg3 * t149
+            - t61 * t155;
+        let t167 = (t149
+            - (minus_gproximal_wz_leg1 * t118 + minus_gproximal_wz_leg2 * t133)
+            - t81 * t155 - t84 * t157) / t100;
+        let t169 = t157 / t69 - t84 * t167;
+        let t172 = c_proximal_leg1 * t169 + s_proximal_leg1 * t167;
+        let t174 = t118 + t14 * t172;
+        let t179 = t5 * t174 + t33 * t169 + minus_s_distal_leg3 * t167;
+        let t182 = t142 + minus_s_distal_leg3 * t101;
+        let t184 = minus_s_distal_leg2 * t103 + t122;
+        let t185 = t182 * t184;
+        let t186 = minus_s_distal_leg1 * t185;
+        let t188 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t189 = t188 + rate_wrist_leg1;
+        let t190 = t189 * t182;
+        let t191 = t39 * t190;
+        let t194 = t21 * t185;
+        let t196 = minus_s_distal_leg2 * t190;
+        let t199 = t17 * t185;
+        let t201 = t73 * t190;
+        let t203 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t204 = c_distal_leg1 * actuator_velocities[0];
+        let rate_dot_wrist_leg1 = t13 * (t172 + t114);
+        let t209 = t203 + minus_rate_distal_leg1 * t204 + rate_dot_wrist_leg1;
+        let t210 = t209 - t185;
+        let t212 = t189 * t184;
+        let t213 = t179 + t212;
+        let t216 = t182 * t182;
+        let t217 = t189 * t189;
+        let t218 = t216 - t217;
+        let t235 = t39 * t174 + minus_s_distal_leg2 * t169 + t73 * t167;
+        let t236 = t235 + t190;
+        let t238 = t184 * t184;
+        let t239 = t238 - t216;
+        let t242 = t179 - t212;
+        let t256 = t5 * t212;
+        let t260 = t33 * t212;
+        let t264 = minus_s_distal_leg3 * t212;
+        let t267 = t217 - t238;
+        let t269 = t235 - t190;
+        let t272 = t209 + t185;
+        let t294 = 9.81 * t33;
+        let t295 = 9.81 * t5;
+        let t298 = 9.81 * minus_s_distal_leg2;
+        let t306 = 9.81 * c_proximal_leg1;
+        let t308 = minus_gproximal_wz_leg1 * t306;
+        let t309 = 9.81 * s_proximal_leg2;
+        let t311 = minus_gproximal_wz_leg2 * t309;
+        let t312 = 9.81 * s_proximal_leg1;
+        let t314 = 9.81 * c_proximal_leg2;
+        let t325 = minus_rate_distal_leg1 * t188;
+        let t326 = c_distal_leg1 * actuator_accelerations[0];
+        let t328 = t325 + t325 - t326;
+        let t329 = c_distal_leg1 * t328;
+        let t331 = t204 * t188;
+        let t337 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t338 = minus_rate_distal_leg2 * t337;
+        let t339 = c_distal_leg2 * actuator_accelerations[1];
+        let t341 = t338 + t338 - t339;
+        let t342 = c_distal_leg2 * t341;
+        let t344 = c_distal_leg2 * actuator_velocities[1];
+        let t345 = t344 * t337;
+        let t351 = c_distal_leg3 * actuator_velocities[2];
+        let t352 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t353 = t351 * t352;
+        let t355 = rate_distal_leg3 * t352;
+        let t356 = c_distal_leg3 * actuator_accelerations[2];
+        let t358 = t355 + t356 + t355;
+        let t359 = c_distal_leg3 * t358;
+        let t367 = 2.0 * (t113 - minus_s_distal_leg1 * t328);
+        let t369 = t204 * t204;
+        let t370 = t188 * t188;
+        let t371 = t369 - t370;
+        let t377 = t344 * t344;
+        let t378 = t337 * t337;
+        let t379 = t377 - t378;
+        let t383 = 2.0 * (t129 - minus_s_distal_leg2 * t341);
+        let t390 = t139 - minus_s_distal_leg3 * t358;
+        let t391 = t390 + t390;
+        let t393 = t351 * t351;
+        let t394 = t352 * t352;
+        let t395 = t393 - t394;
         let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t109;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t172
-            - c_proximal_leg1 * t170 + minus_rate_dot_distal_leg1;
-        let t411 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t414 = c_distal_leg1 * (t334 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t411 - t372);
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t126;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t170
-            - c_proximal_leg2 * t177 + minus_rate_dot_distal_leg2;
-        let t428 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t431 = c_distal_leg2 * (t348 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t428 - t380);
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t146;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t172 - s_proximal_leg3 * t177
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t169
+            - c_proximal_leg1 * t167 + minus_rate_dot_distal_leg1;
+        let t408 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t411 = c_distal_leg1 * (t331 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t408 - t369);
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t123;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t167
+            - c_proximal_leg2 * t174 + minus_rate_dot_distal_leg2;
+        let t425 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t428 = c_distal_leg2 * (t345 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t425 - t377);
+        let t433 = s_proximal_leg2 * t339;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t143;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t169 - s_proximal_leg3 * t174
             - minus_rate_dot_distal_leg3;
-        let t445 = rate_distal_leg3 * rate_distal_leg3;
-        let t448 = c_distal_leg3 * (t356 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t445 - t396);
-        let t459 = minus_s_distal_leg1 * (t334 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t373 - t411);
-        let t470 = minus_s_distal_leg2 * (t348 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t381 - t428);
-        let t472 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t478 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t484 = minus_s_distal_leg3 * (t356 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t397 - t445);
-        let t490 = minus_s_distal_leg1 * t309;
-        let t496 = minus_s_distal_leg2 * t312;
+        let t442 = rate_distal_leg3 * rate_distal_leg3;
+        let t445 = c_distal_leg3 * (t353 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t442 - t393);
+        let t456 = minus_s_distal_leg1 * (t331 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t370 - t408);
+        let t467 = minus_s_distal_leg2 * (t345 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t378 - t425);
+        let t479 = minus_s_distal_leg3 * (t353 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t394 - t442);
+        let t485 = minus_s_distal_leg1 * t306;
+        let t491 = s_proximal_leg2 * t298;
         Ok([
             [
-                t5 * t182 + t189 - t194, t5 * t213 + minus_s_distal_leg1 * t216 + t38 * t221,
-                t5 * t239 + minus_s_distal_leg1 * t242 + t38 * t245,
-                minus_s_distal_leg1 * t212 - t259 + t194,
-                t5 * t270 + minus_s_distal_leg1 * t272 + t38 * t275, t259 - t189 + t38 * t238, t297,
-                9.81 * t17, 9.81 * minus_s_distal_leg2, actuator_accelerations[0],
+                t5 * t179 + t186 - t191, t5 * t210 + minus_s_distal_leg1 * t213 + t39 * t218,
+                t5 * t236 + minus_s_distal_leg1 * t239 + t39 * t242,
+                minus_s_distal_leg1 * t209 - t256 + t191,
+                t5 * t267 + minus_s_distal_leg1 * t269 + t39 * t272, t256 - t186 + t39 * t235, t294,
+                9.81 * t21, t298, actuator_accelerations[0],
                 -(minus_gproximal_wx_leg2 * actuator_accelerations[1]),
-                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t309,
-                -(minus_gproximal_wx_leg2 * t312), t315, -t314, actuator_velocities[0], -t64, -t66,
+                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t306,
+                -(minus_gproximal_wx_leg2 * t309), t312, -t311, actuator_velocities[0], -t48, -t52,
                 ::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
@@ -4047,31 +4036,31 @@ impl Spherical3Rrr {
                 1.0,
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
-                -t332,
-                minus_gproximal_wx_leg2 * t345 - c_proximal_leg2 * t348,
-                s_proximal_leg3 * t356 - minus_gproximal_wx_leg3 * t362,
-                t370,
-                c_proximal_leg2 * t382 - minus_gproximal_wx_leg2 * t386,
-                -(s_proximal_leg3 * t398 - minus_gproximal_wx_leg3 * t394),
-                -t414,
-                minus_gproximal_wx_leg2 * t431 - c_proximal_leg2 * t342,
-                minus_gproximal_wx_leg3 * t448 + s_proximal_leg3 * t359,
-                t459,
-                -(minus_gproximal_wx_leg2 * t470 + c_proximal_leg2 * t472),
-                s_proximal_leg3 * t478 - minus_gproximal_wx_leg3 * t484,
-                t490,
-                minus_gproximal_wx_leg2 * t496 - t75 * t317,
-                t31 * t297,
+                -t329,
+                minus_gproximal_wx_leg2 * t342 - c_proximal_leg2 * t345,
+                s_proximal_leg3 * t353 - minus_gproximal_wx_leg3 * t359,
+                t367,
+                c_proximal_leg2 * t379 - minus_gproximal_wx_leg2 * t383,
+                -(s_proximal_leg3 * t395 - minus_gproximal_wx_leg3 * t391),
+                -t411,
+                minus_gproximal_wx_leg2 * t428 - c_proximal_leg2 * t339,
+                minus_gproximal_wx_leg3 * t445 + s_proximal_leg3 * t356,
+                t456,
+                -(minus_gproximal_wx_leg2 * t467 + minus_gproximal_wz_leg2 * t339),
+                minus_gproximal_wy_leg3 * t356 - minus_gproximal_wx_leg3 * t479,
+                t485,
+                minus_gproximal_wx_leg2 * t491 - t73 * t314,
+                t35 * t294,
             ],
             [
-                t29 * t182 + t197 - t199, t29 * t213 + t17 * t216 + minus_s_distal_leg2 * t221,
-                t29 * t239 + t17 * t242 + minus_s_distal_leg2 * t245, t17 * t212 - t263 + t199,
-                t29 * t270 + t17 * t272 + minus_s_distal_leg2 * t275,
-                t263 - t197 + minus_s_distal_leg2 * t238, -t298, -(9.81 * minus_s_distal_leg1),
-                -(9.81 * t38), -(minus_gproximal_wy_leg1 * actuator_accelerations[0]),
+                t33 * t179 + t194 - t196, t33 * t210 + t21 * t213 + minus_s_distal_leg2 * t218,
+                t33 * t236 + t21 * t239 + minus_s_distal_leg2 * t242, t21 * t209 - t260 + t196,
+                t33 * t267 + t21 * t269 + minus_s_distal_leg2 * t272,
+                t260 - t194 + minus_s_distal_leg2 * t235, -t295, -(9.81 * minus_s_distal_leg1),
+                -(9.81 * t39), -(minus_gproximal_wy_leg1 * actuator_accelerations[0]),
                 actuator_accelerations[1], -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
-                minus_gproximal_wy_leg1 * t309, t312, -t311, t317, -t60, actuator_velocities[1],
-                -t62,
+                minus_gproximal_wy_leg1 * t306, t309, -t308, t314, -t24, actuator_velocities[1],
+                -t37,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
@@ -4084,31 +4073,31 @@ impl Spherical3Rrr {
                 -minus_gproximal_wy_leg1,
                 1.0,
                 -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t332 + s_proximal_leg1 * t334,
-                -t345,
-                -(minus_gproximal_wy_leg3 * t362 + c_proximal_leg3 * t356),
-                -(minus_gproximal_wy_leg1 * t370 + s_proximal_leg1 * t374),
-                t386,
-                c_proximal_leg3 * t398 + minus_gproximal_wy_leg3 * t394,
-                minus_gproximal_wy_leg1 * t414 + s_proximal_leg1 * t329,
-                -t431,
-                minus_gproximal_wy_leg3 * t448 - c_proximal_leg3 * t359,
-                s_proximal_leg1 * t206 - minus_gproximal_wy_leg1 * t459,
-                t470,
-                -(minus_gproximal_wy_leg3 * t484 + c_proximal_leg3 * t478),
-                t71 * t315 - minus_gproximal_wy_leg1 * t490,
-                -t496,
-                -(t31 * t298),
+                minus_gproximal_wy_leg1 * t329 + s_proximal_leg1 * t331,
+                -t342,
+                -(minus_gproximal_wy_leg3 * t359 + c_proximal_leg3 * t353),
+                -(minus_gproximal_wy_leg1 * t367 + s_proximal_leg1 * t371),
+                t383,
+                c_proximal_leg3 * t395 + minus_gproximal_wy_leg3 * t391,
+                minus_gproximal_wy_leg1 * t411 + s_proximal_leg1 * t326,
+                -t428,
+                minus_gproximal_wy_leg3 * t445 - c_proximal_leg3 * t356,
+                s_proximal_leg1 * t203 - minus_gproximal_wy_leg1 * t456,
+                t467,
+                -(minus_gproximal_wy_leg3 * t479 + minus_gproximal_wx_leg3 * t356),
+                t17 * t312 - minus_gproximal_wy_leg1 * t485,
+                -t491,
+                -(t35 * t295),
             ],
             [
-                minus_s_distal_leg3 * t182 + t202 - t204,
-                minus_s_distal_leg3 * t213 + t71 * t216 + t75 * t221,
-                minus_s_distal_leg3 * t239 + t71 * t242 + t75 * t245, t71 * t212 - t267 + t204,
-                minus_s_distal_leg3 * t270 + t71 * t272 + t75 * t275, t267 - t202 + t75 * t238, 0.0,
+                minus_s_distal_leg3 * t179 + t199 - t201,
+                minus_s_distal_leg3 * t210 + t17 * t213 + t73 * t218,
+                minus_s_distal_leg3 * t236 + t17 * t239 + t73 * t242, t17 * t209 - t264 + t201,
+                minus_s_distal_leg3 * t267 + t17 * t269 + t73 * t272, t264 - t199 + t73 * t235, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * actuator_accelerations[0]),
                 -(minus_gproximal_wz_leg2 * actuator_accelerations[1]), actuator_accelerations[2],
-                t311, -t314, -(minus_gproximal_wz_leg1 * t315), -(minus_gproximal_wz_leg2 * t317),
-                -t96, -t97, actuator_velocities[2],
+                t308, -t311, -(minus_gproximal_wz_leg1 * t312), -(minus_gproximal_wz_leg2 * t314),
+                -t85, -t86, actuator_velocities[2],
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
@@ -4121,20 +4110,20 @@ impl Spherical3Rrr {
                 -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2,
                 1.0,
-                minus_gproximal_wz_leg1 * t332 - c_proximal_leg1 * t334,
-                minus_gproximal_wz_leg2 * t345 + s_proximal_leg2 * t348,
-                t362,
-                c_proximal_leg1 * t374 - minus_gproximal_wz_leg1 * t370,
-                -(minus_gproximal_wz_leg2 * t386 + s_proximal_leg2 * t382),
-                -t394,
-                minus_gproximal_wz_leg1 * t414 - c_proximal_leg1 * t329,
-                minus_gproximal_wz_leg2 * t431 + s_proximal_leg2 * t342,
-                -t448,
-                -(minus_gproximal_wz_leg1 * t459 + c_proximal_leg1 * t206),
-                s_proximal_leg2 * t472 - minus_gproximal_wz_leg2 * t470,
-                t484,
-                -(t309 * (t13 * s_proximal_leg1)),
-                t317 * (s_proximal_leg2 * t45),
+                minus_gproximal_wz_leg1 * t329 - c_proximal_leg1 * t331,
+                minus_gproximal_wz_leg2 * t342 + s_proximal_leg2 * t345,
+                t359,
+                c_proximal_leg1 * t371 - minus_gproximal_wz_leg1 * t367,
+                -(minus_gproximal_wz_leg2 * t383 + s_proximal_leg2 * t379),
+                -t391,
+                minus_gproximal_wz_leg1 * t411 - c_proximal_leg1 * t326,
+                minus_gproximal_wz_leg2 * t428 + t433,
+                -t445,
+                -(minus_gproximal_wz_leg1 * t456 + c_proximal_leg1 * t203),
+                t46 * t433 - minus_gproximal_wz_leg2 * t467,
+                t479,
+                -(t306 * (t13 * s_proximal_leg1)),
+                t314 * (s_proximal_leg2 * t44),
                 0.0,
             ],
         ])

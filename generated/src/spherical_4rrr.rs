@@ -1652,7 +1652,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 733 operations (276 additions, 453 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 565 intermediates.
+    /// 715 operations (272 additions, 424 multiplications, 19 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 547 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1661,547 +1661,550 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
+        let t0 = pose[2] + pose[2];
         let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
+        let t2 = 1.0 - t1;
+        let t3 = pose[3] + pose[3];
         let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 2.0 * pose[1];
+        let t5 = t2 - t4;
+        let t6 = pose[1] + pose[1];
         let t7 = pose[3] * t6;
         let t8 = pose[0] * t0;
         let t9 = t7 + t8;
-        let t10 = t5 - t9;
         let t11 = t7 - t8;
-        let t13 = 1.0 - pose[1] * t6;
-        let t14 = t13 - t1;
-        let t15 = t11 - t14;
-        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
-        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t19, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t19);
+        let t12 = pose[1] * t6;
+        let t13 = t2 - t12;
+        let t14 = t11 - t13;
+        let minus_s_distal_leg1 = 0.5 * (t5 - t9 + t14);
+        let t18 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t18, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t21 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t21 * (t10 - minus_s_distal_leg1);
-        let t24 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t26 = 0.7071067811865475 * (t24 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t26 * t21;
-        let t29 = pose[2] * t6;
-        let t30 = pose[0] * t3;
-        let t31 = t29 + t30;
-        let t32 = pose[3] * t0;
-        let t33 = pose[0] * t6;
-        let t34 = t32 - t33;
-        let t35 = t31 - t34;
-        let s_proximal_leg1 = t21 * (0.7071067811865475 * t35);
-        let t38 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t41 = t24 + c_distal_leg1;
-        let t42 = 0.7071067811865475 * t41;
+        let t20 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t20 * (minus_s_distal_leg1 - t14);
+        let t23 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t25 = 0.7071067811865475 * (t23 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t25 * t20;
+        let t28 = pose[2] * t6;
+        let t29 = pose[0] * t3;
+        let t30 = t28 + t29;
+        let t31 = pose[3] * t0;
+        let t32 = pose[0] * t6;
+        let t33 = t31 - t32;
+        let t34 = t30 - t33;
+        let s_proximal_leg1 = t20 * (0.7071067811865475 * t34);
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t51 = minus_s_distal_leg1 * t21;
-        let t56 = t26 * twist[0] + t38 * twist[1] - t42 * twist[2];
-        let t57 = t51 * t56;
-        let t58 = rate_distal_leg1 * t57;
-        let t63 = t5 * twist[0] + t31 * twist[1] + t11 * twist[2];
-        let t68 = t9 * twist[0] + t34 * twist[1] + t14 * twist[2];
-        let rate_wrist_leg1 = t57 + 0.7071067811865475 * (t63 - t68);
-        let t74 = t26 * acceleration[0] + t38 * acceleration[1] - t42 * acceleration[2]
-            - (t58 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t21 * t74;
-        let t76 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t38 * t21;
-        let t78 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let gproximal_wz_leg1 = t42 * t21;
-        let t80 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t81 = 6.936717523440031 * s_proximal_leg1;
-        let t83 = minus_gproximal_wy_leg1 * t81;
-        let t85 = 6.936717523440031 * c_proximal_leg1;
-        let t86 = minus_gproximal_wx_leg1 * t85;
-        let t87 = minus_gproximal_wy_leg1 * t85;
-        let t88 = gproximal_wz_leg1 * t85;
-        let minus_rate_proximal_leg1 = t21 * t56;
-        let t97 = t58 + t74 + t58;
-        let t98 = c_distal_leg1 * t97;
-        let t100 = t56 * t57;
-        let t101 = minus_gdistal_wx_leg1 * t100;
-        let t102 = minus_gproximal_wx_leg1 * t98 + t101;
-        let t105 = minus_gproximal_wy_leg1 * t98 - c_proximal_leg1 * t100;
-        let t107 = gproximal_wz_leg1 * t98 + t101;
-        let t108 = t56 * rate_distal_leg1;
-        let t109 = t51 * t74;
-        let t114 = c_distal_leg1 * (t108 - (t109 - t108)) - minus_s_distal_leg1 * t97;
-        let t116 = t56 * t56;
-        let t117 = t57 * t57;
-        let t118 = t116 - t117;
-        let t119 = minus_gdistal_wx_leg1 * t118;
+        let t42 = minus_s_distal_leg1 * t20;
+        let t44 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t47 = t23 + c_distal_leg1;
+        let t48 = 0.7071067811865475 * t47;
+        let t50 = t25 * twist[0] + t44 * twist[1] - t48 * twist[2];
+        let t51 = t42 * t50;
+        let t52 = rate_distal_leg1 * t51;
+        let t62 = t5 * twist[0] + t30 * twist[1] + t11 * twist[2];
+        let t67 = t9 * twist[0] + t33 * twist[1] + t13 * twist[2];
+        let t68 = t62 - t67;
+        let rate_wrist_leg1 = t51 + 0.7071067811865475 * t68;
+        let t72 = t25 * acceleration[0] + t44 * acceleration[1] - t48 * acceleration[2]
+            - rate_distal_leg1 * rate_wrist_leg1;
+        let t73 = t72 - t52;
+        let minus_rate_dot_proximal_leg1 = t20 * t73;
+        let t75 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t44 * t20;
+        let t77 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let gproximal_wz_leg1 = t48 * t20;
+        let t79 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t80 = 6.936717523440031 * s_proximal_leg1;
+        let t81 = minus_gproximal_wx_leg1 * t80;
+        let t82 = minus_gproximal_wy_leg1 * t80;
+        let t83 = gproximal_wz_leg1 * t80;
+        let t84 = 6.936717523440031 * c_proximal_leg1;
+        let t85 = minus_gproximal_wx_leg1 * t84;
+        let t86 = minus_gproximal_wy_leg1 * t84;
+        let t87 = gproximal_wz_leg1 * t84;
+        let minus_rate_proximal_leg1 = t20 * t50;
+        let t95 = t52 + t72;
+        let t97 = t50 * t51;
+        let t98 = minus_gdistal_wx_leg1 * t97;
+        let t99 = t25 * t95 + t98;
+        let t102 = t44 * t95 - c_proximal_leg1 * t97;
+        let t104 = t48 * t95 + t98;
+        let t105 = t50 * rate_distal_leg1;
+        let t106 = t42 * t73;
+        let t111 = c_distal_leg1 * (t105 - (t106 - t105)) - minus_s_distal_leg1 * t95;
+        let t113 = t50 * t50;
+        let t114 = t51 * t51;
+        let t115 = t113 - t114;
+        let t116 = minus_gdistal_wx_leg1 * t115;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t56 * rate_wrist_leg1;
-        let t135 = rate_distal_leg1 * rate_distal_leg1;
-        let t138 = c_distal_leg1 * (t100 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t135 - t116);
-        let t140 = minus_gdistal_wx_leg1 * t74;
-        let t154 = minus_s_distal_leg1 * (t100 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t117 - t135);
-        let t156 = minus_gdistal_wx_leg1 * t109;
-        let t163 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t165 = 6.936717523440031 * t38;
-        let t167 = t15 * (-6.936717523440031);
-        let t168 = minus_gdistal_wx_leg1 * t167;
-        let t179 = t13 - t4;
-        let t180 = t179 - t34;
-        let t181 = t32 + t33;
-        let t182 = t181 - t14;
-        let minus_s_distal_leg2 = 0.5 * (t180 + t182);
+            + minus_gdistal_wx_leg1 * acceleration[2] + t50 * rate_wrist_leg1;
+        let t132 = rate_distal_leg1 * rate_distal_leg1;
+        let t135 = c_distal_leg1 * (t97 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t132 - t113);
+        let t137 = minus_gdistal_wx_leg1 * t73;
+        let t151 = minus_s_distal_leg1 * (t97 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t114 - t132);
+        let t153 = minus_gdistal_wx_leg1 * t106;
+        let t160 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t163 = t14 * (-6.936717523440031);
+        let t164 = minus_gdistal_wx_leg1 * t163;
+        let t175 = t4 - t1;
+        let t176 = t13 - t175;
+        let t177 = t176 - t33;
+        let t178 = t31 + t32;
+        let t179 = t178 - t13;
+        let minus_s_distal_leg2 = 0.5 * (t177 + t179);
+        let t182 = t28 - t29;
+        let t183 = t182 - t9;
         let t186 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t186, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t186);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t188 = 1.0 / c_distal_leg2;
-        let t189 = t29 - t30;
-        let t190 = t189 - t9;
-        let minus_s_proximal_leg2 = t188 * (0.7071067811865475 * t190);
-        let t193 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t193 * t188;
-        let c_proximal_leg2 = t188 * (t180 - minus_s_distal_leg2);
-        let t198 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t200 = 0.7071067811865475 * (t198 - c_distal_leg2);
-        let t203 = t198 + c_distal_leg2;
-        let t204 = 0.7071067811865475 * t203;
+        let minus_s_proximal_leg2 = 0.7071067811865475 * t183 / c_distal_leg2;
+        let t189 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t189 / c_distal_leg2;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
+        let c_proximal_leg2 = (t177 - minus_s_distal_leg2) / c_distal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t213 = minus_s_distal_leg2 * t188;
-        let t218 = t193 * twist[0] + t200 * twist[1] - t204 * twist[2];
-        let t219 = t213 * t218;
-        let t220 = rate_distal_leg2 * t219;
-        let t225 = t189 * twist[0] + t179 * twist[1] + t181 * twist[2];
-        let rate_wrist_leg2 = t219 - 0.7071067811865475 * (t68 - t225);
-        let t231 = t193 * acceleration[0] + t200 * acceleration[1]
-            - t204 * acceleration[2] - (t220 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t188 * t231;
-        let t233 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wy_leg2 = t200 * t188;
-        let t235 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = t204 * t188;
-        let t237 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t238 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t242 = 6.936717523440031 * c_proximal_leg2;
-        let t243 = minus_gproximal_wx_leg2 * t242;
-        let t244 = minus_gproximal_wy_leg2 * t242;
-        let t245 = gproximal_wz_leg2 * t242;
-        let minus_rate_proximal_leg2 = t188 * t218;
-        let t254 = t220 + t231 + t220;
-        let t255 = c_distal_leg2 * t254;
-        let t257 = t218 * t219;
-        let t259 = minus_gproximal_wx_leg2 * t255 + c_proximal_leg2 * t257;
-        let t261 = gdistal_wy_leg2 * t257;
-        let t262 = minus_gproximal_wy_leg2 * t255 - t261;
-        let t264 = t261 - gproximal_wz_leg2 * t255;
-        let t265 = t218 * rate_distal_leg2;
-        let t266 = t213 * t231;
-        let t271 = c_distal_leg2 * (t265 - (t266 - t265)) - minus_s_distal_leg2 * t254;
-        let t273 = t218 * t218;
-        let t274 = t219 * t219;
-        let t275 = t273 - t274;
-        let t278 = gdistal_wy_leg2 * t275;
+        let t199 = minus_s_distal_leg2 / c_distal_leg2;
+        let t201 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t203 = 0.7071067811865475 * (t201 - c_distal_leg2);
+        let t206 = t201 + c_distal_leg2;
+        let t207 = 0.7071067811865475 * t206;
+        let t209 = t189 * twist[0] + t203 * twist[1] - t207 * twist[2];
+        let t210 = t199 * t209;
+        let t211 = rate_distal_leg2 * t210;
+        let t221 = t182 * twist[0] + t176 * twist[1] + t178 * twist[2];
+        let t222 = t67 - t221;
+        let rate_wrist_leg2 = t210 - 0.7071067811865475 * t222;
+        let t226 = t189 * acceleration[0] + t203 * acceleration[1]
+            - t207 * acceleration[2] - rate_distal_leg2 * rate_wrist_leg2;
+        let t227 = t226 - t211;
+        let minus_rate_dot_proximal_leg2 = t227 / c_distal_leg2;
+        let t229 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wy_leg2 = t203 / c_distal_leg2;
+        let t231 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = t207 / c_distal_leg2;
+        let t233 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t234 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t235 = minus_gproximal_wx_leg2 * t234;
+        let t236 = minus_gproximal_wy_leg2 * t234;
+        let t238 = 6.936717523440031 * c_proximal_leg2;
+        let t239 = minus_gproximal_wx_leg2 * t238;
+        let t240 = minus_gproximal_wy_leg2 * t238;
+        let t241 = gproximal_wz_leg2 * t238;
+        let minus_rate_proximal_leg2 = t209 / c_distal_leg2;
+        let t249 = t211 + t226;
+        let t250 = minus_s_distal_leg2 * t249;
+        let t252 = t209 * t210;
+        let t254 = minus_s_proximal_leg2 * t250 + c_proximal_leg2 * t252;
+        let t256 = gdistal_wy_leg2 * t252;
+        let t257 = t203 * t249 - t256;
+        let t259 = t256 - t207 * t249;
+        let t260 = t209 * rate_distal_leg2;
+        let t261 = t199 * t227;
+        let t265 = c_distal_leg2 * (t260 - (t261 - t260)) - t250;
+        let t267 = t209 * t209;
+        let t268 = t210 * t210;
+        let t269 = t267 - t268;
+        let t272 = gdistal_wy_leg2 * t269;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t218 * rate_wrist_leg2;
-        let t292 = rate_distal_leg2 * rate_distal_leg2;
-        let t295 = c_distal_leg2 * (t257 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t292 - t273);
-        let t300 = gdistal_wy_leg2 * t231;
-        let t311 = minus_s_distal_leg2 * (t257 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t274 - t292);
-        let t315 = gdistal_wy_leg2 * t266;
-        let t321 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t322 = 6.936717523440031 * t193;
-        let t329 = minus_gproximal_wy_leg2 * t322 - 0.7071067811865475 * t182 * t238;
-        let t330 = 6.936717523440031 * t190;
-        let t331 = t213 * t330;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t14);
-        let t339 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t339, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t339);
+            + t209 * rate_wrist_leg2;
+        let t286 = rate_distal_leg2 * rate_distal_leg2;
+        let t289 = c_distal_leg2 * (t252 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t286 - t267);
+        let t294 = gdistal_wy_leg2 * t227;
+        let t305 = minus_s_distal_leg2 * (t252 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t268 - t286);
+        let t309 = gdistal_wy_leg2 * t261;
+        let t315 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t322 = minus_s_distal_leg2 * t236 - 0.7071067811865475 * t179 * t234;
+        let t323 = 9.81 * t189;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t12 - t4);
+        let t331 = t11 + t13;
+        let t334 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t334, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t334);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t341 = 1.0 / c_distal_leg3;
-        let t342 = t11 + t14;
-        let c_proximal_leg3 = t341 * (t342 - s_distal_leg3);
-        let t345 = s_distal_leg3 * c_proximal_leg3;
-        let t347 = 0.7071067811865475 * (t345 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t347 * t341;
-        let t350 = t31 + t34;
-        let s_proximal_leg3 = t341 * (0.7071067811865475 * t350);
-        let t353 = s_distal_leg3 * s_proximal_leg3;
-        let t356 = t345 - c_distal_leg3;
-        let t357 = 0.7071067811865475 * t356;
+        let c_proximal_leg3 = (t331 - s_distal_leg3) / c_distal_leg3;
+        let t337 = s_distal_leg3 * c_proximal_leg3;
+        let t339 = 0.7071067811865475 * (t337 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t339 / c_distal_leg3;
+        let t341 = t30 + t33;
+        let s_proximal_leg3 = 0.7071067811865475 * t341 / c_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t366 = s_distal_leg3 * t341;
-        let t371 = t347 * twist[0] + t353 * twist[1] + t357 * twist[2];
-        let t372 = t366 * t371;
-        let t373 = rate_distal_leg3 * t372;
-        let minus_rate_wrist_leg3 = t372 + 0.7071067811865475 * (t63 + t68);
-        let t379 = t347 * acceleration[0] + t353 * acceleration[1]
-            + t357 * acceleration[2] + t373 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t341 * t379;
-        let t381 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t353 * t341;
-        let t383 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t357 * t341;
-        let t385 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t386 = 6.936717523440031 * s_proximal_leg3;
-        let t388 = minus_gproximal_wy_leg3 * t386;
-        let t390 = 6.936717523440031 * c_proximal_leg3;
-        let t391 = minus_gproximal_wx_leg3 * t390;
-        let t392 = minus_gproximal_wy_leg3 * t390;
-        let t393 = minus_gproximal_wz_leg3 * t390;
-        let minus_rate_proximal_leg3 = t341 * t371;
-        let t401 = t371 * t372;
-        let t402 = gdistal_wx_leg3 * t401;
-        let t404 = t379 - t373 - t373;
-        let t405 = c_distal_leg3 * t404;
-        let t407 = t402 + minus_gproximal_wx_leg3 * t405;
-        let t410 = c_proximal_leg3 * t401 - minus_gproximal_wy_leg3 * t405;
-        let t412 = t402 + minus_gproximal_wz_leg3 * t405;
-        let t413 = t371 * t371;
-        let t414 = t372 * t372;
-        let t415 = t413 - t414;
-        let t416 = gdistal_wx_leg3 * t415;
-        let t417 = t371 * rate_distal_leg3;
-        let t418 = t366 * t379;
-        let t423 = c_distal_leg3 * (t417 + t418 + t417) + s_distal_leg3 * t404;
-        let t431 = gdistal_wx_leg3 * t379;
-        let t432 = rate_distal_leg3 * rate_distal_leg3;
+        let t350 = s_distal_leg3 / c_distal_leg3;
+        let t352 = s_distal_leg3 * s_proximal_leg3;
+        let t355 = t337 - c_distal_leg3;
+        let t356 = 0.7071067811865475 * t355;
+        let t358 = t339 * twist[0] + t352 * twist[1] + t356 * twist[2];
+        let t359 = t350 * t358;
+        let t360 = rate_distal_leg3 * t359;
+        let t366 = t62 + t67;
+        let minus_rate_wrist_leg3 = t359 + 0.7071067811865475 * t366;
+        let t370 = t339 * acceleration[0] + t352 * acceleration[1]
+            + t356 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t371 = t360 + t370;
+        let minus_rate_dot_proximal_leg3 = t371 / c_distal_leg3;
+        let t373 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t350;
+        let t375 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t356 / c_distal_leg3;
+        let t377 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t378 = 6.936717523440031 * s_proximal_leg3;
+        let t379 = minus_gproximal_wx_leg3 * t378;
+        let t381 = minus_gproximal_wz_leg3 * t378;
+        let t382 = 6.936717523440031 * c_proximal_leg3;
+        let t383 = minus_gproximal_wx_leg3 * t382;
+        let t384 = minus_gproximal_wy_leg3 * t382;
+        let t385 = minus_gproximal_wz_leg3 * t382;
+        let minus_rate_proximal_leg3 = t358 / c_distal_leg3;
+        let t393 = t358 * t359;
+        let t394 = gdistal_wx_leg3 * t393;
+        let t395 = t370 - t360;
+        let t397 = t394 + t339 * t395;
+        let t400 = c_proximal_leg3 * t393 - t352 * t395;
+        let t402 = t394 + t356 * t395;
+        let t403 = t358 * t358;
+        let t404 = t359 * t359;
+        let t405 = t403 - t404;
+        let t406 = gdistal_wx_leg3 * t405;
+        let t407 = t358 * rate_distal_leg3;
+        let t408 = t350 * t371;
+        let t413 = c_distal_leg3 * (t407 + t408 + t407) + s_distal_leg3 * t395;
+        let t421 = gdistal_wx_leg3 * t371;
+        let t422 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t371 * minus_rate_wrist_leg3;
-        let t444 = s_distal_leg3 * (t432 - t413)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t401);
-        let t459 = s_distal_leg3 * (t401 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t414 - t432);
-        let t461 = gdistal_wx_leg3 * t418;
-        let t468 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t470 = 6.936717523440031 * t353;
-        let t472 = 6.936717523440031 * t342;
-        let t473 = gdistal_wx_leg3 * t472;
-        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t179;
-        let t487 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t487, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t487);
+            - t358 * minus_rate_wrist_leg3;
+        let t434 = s_distal_leg3 * (t422 - t403)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t393);
+        let t449 = s_distal_leg3 * (t393 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t404 - t422);
+        let t451 = gdistal_wx_leg3 * t408;
+        let t458 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t461 = 6.936717523440031 * t331;
+        let t462 = gdistal_wx_leg3 * t461;
+        let t464 = t352 * t378;
+        let s_distal_leg4 = minus_s_distal_leg2 + t175;
+        let t474 = t182 + t9;
+        let t477 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t477, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t477);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t489 = 1.0 / c_distal_leg4;
-        let t490 = t189 + t9;
-        let minus_s_proximal_leg4 = t489 * (0.7071067811865475 * t490);
-        let t493 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t493 * t489;
-        let t496 = t181 + t14;
-        let c_proximal_leg4 = t489 * (t496 - s_distal_leg4);
-        let t499 = s_distal_leg4 * c_proximal_leg4;
-        let t501 = 0.7071067811865475 * (t499 + c_distal_leg4);
-        let t504 = t499 - c_distal_leg4;
-        let t505 = 0.7071067811865475 * t504;
+        let minus_s_proximal_leg4 = 0.7071067811865475 * t474 / c_distal_leg4;
+        let t480 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t481 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t480 * t481;
+        let t483 = t178 + t13;
+        let c_proximal_leg4 = (t483 - s_distal_leg4) / c_distal_leg4;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t514 = s_distal_leg4 * t489;
-        let t519 = t493 * twist[0] + t501 * twist[1] + t505 * twist[2];
-        let t520 = t514 * t519;
-        let t521 = rate_distal_leg4 * t520;
-        let minus_rate_wrist_leg4 = t520 + 0.7071067811865475 * (t225 + t68);
-        let t527 = t493 * acceleration[0] + t501 * acceleration[1]
-            + t505 * acceleration[2] + t521 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t489 * t527;
-        let t529 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t501 * t489;
-        let t531 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t505 * t489;
-        let t533 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t534 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t538 = 6.936717523440031 * c_proximal_leg4;
-        let t539 = minus_gproximal_wx_leg4 * t538;
-        let t540 = minus_gproximal_wy_leg4 * t538;
-        let t541 = minus_gproximal_wz_leg4 * t538;
-        let minus_rate_proximal_leg4 = t489 * t519;
-        let t549 = t519 * t520;
-        let t552 = t527 - t521 - t521;
-        let t553 = c_distal_leg4 * t552;
-        let t555 = c_proximal_leg4 * t549 + minus_gproximal_wx_leg4 * t553;
-        let t557 = minus_gdistal_wy_leg4 * t549;
-        let t558 = t557 - minus_gproximal_wy_leg4 * t553;
-        let t560 = t557 - minus_gproximal_wz_leg4 * t553;
-        let t561 = t519 * t519;
-        let t562 = t520 * t520;
-        let t563 = t561 - t562;
-        let t565 = t519 * rate_distal_leg4;
-        let t566 = t514 * t527;
-        let t571 = c_distal_leg4 * (t565 + t566 + t565) + s_distal_leg4 * t552;
-        let t575 = minus_gdistal_wy_leg4 * t563;
-        let t580 = rate_distal_leg4 * rate_distal_leg4;
+        let t492 = s_distal_leg4 * t481;
+        let t494 = s_distal_leg4 * c_proximal_leg4;
+        let t496 = 0.7071067811865475 * (t494 + c_distal_leg4);
+        let t499 = t494 - c_distal_leg4;
+        let t500 = 0.7071067811865475 * t499;
+        let t502 = t480 * twist[0] + t496 * twist[1] + t500 * twist[2];
+        let t503 = t492 * t502;
+        let t504 = rate_distal_leg4 * t503;
+        let t510 = t221 + t67;
+        let minus_rate_wrist_leg4 = t503 + 0.7071067811865475 * t510;
+        let t514 = t480 * acceleration[0] + t496 * acceleration[1]
+            + t500 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t515 = t504 + t514;
+        let minus_rate_dot_proximal_leg4 = t481 * t515;
+        let t517 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t496 * t481;
+        let t519 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t500 * t481;
+        let t521 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t522 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t523 = minus_gproximal_wx_leg4 * t522;
+        let t524 = minus_gproximal_wy_leg4 * t522;
+        let t526 = 6.936717523440031 * c_proximal_leg4;
+        let t527 = minus_gproximal_wx_leg4 * t526;
+        let t528 = minus_gproximal_wy_leg4 * t526;
+        let t529 = minus_gproximal_wz_leg4 * t526;
+        let minus_rate_proximal_leg4 = t481 * t502;
+        let t537 = t502 * t503;
+        let t539 = t514 - t504;
+        let t540 = s_distal_leg4 * t539;
+        let t542 = c_proximal_leg4 * t537 + minus_s_proximal_leg4 * t540;
+        let t544 = minus_gdistal_wy_leg4 * t537;
+        let t545 = t544 - t496 * t539;
+        let t547 = t544 - t500 * t539;
+        let t548 = t502 * t502;
+        let t549 = t503 * t503;
+        let t550 = t548 - t549;
+        let t552 = t502 * rate_distal_leg4;
+        let t553 = t492 * t515;
+        let t557 = c_distal_leg4 * (t552 + t553 + t552) + t540;
+        let t561 = minus_gdistal_wy_leg4 * t550;
+        let t566 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t519 * minus_rate_wrist_leg4;
-        let t592 = s_distal_leg4 * (t580 - t561)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t549);
-        let t596 = minus_gdistal_wy_leg4 * t527;
-        let t607 = s_distal_leg4 * (t549 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t562 - t580);
-        let t611 = minus_gdistal_wy_leg4 * t566;
-        let t617 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t619 = 6.936717523440031 * t493;
-        let t625 = t534 * (0.7071067811865475 * t496) + minus_gproximal_wy_leg4 * t619;
-        let t626 = 9.81 * t493;
-        let t636 = t5 * acceleration[0] + t31 * acceleration[1] + t11 * acceleration[2];
-        let t638 = t63 * t68;
-        let t639 = t189 * t638;
-        let t641 = t63 * t225;
-        let t642 = t9 * t641;
-        let t645 = t179 * t638;
-        let t647 = t34 * t641;
-        let t650 = t181 * t638;
-        let t652 = t14 * t641;
-        let t658 = t189 * acceleration[0] + t179 * acceleration[1]
-            + t181 * acceleration[2];
-        let t659 = t658 - t638;
-        let t661 = t225 * t68;
-        let t662 = t636 + t661;
-        let t665 = t63 * t63;
-        let t666 = t225 * t225;
-        let t667 = t665 - t666;
-        let t684 = t9 * acceleration[0] + t34 * acceleration[1] + t14 * acceleration[2];
-        let t685 = t684 + t641;
-        let t687 = t68 * t68;
-        let t688 = t687 - t665;
-        let t691 = t636 - t661;
-        let t705 = t5 * t661;
-        let t709 = t31 * t661;
-        let t713 = t11 * t661;
-        let t716 = t666 - t687;
-        let t718 = t684 - t641;
-        let t721 = t658 + t638;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t502 * minus_rate_wrist_leg4;
+        let t578 = s_distal_leg4 * (t566 - t548)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t537);
+        let t582 = minus_gdistal_wy_leg4 * t515;
+        let t593 = s_distal_leg4 * (t537 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t549 - t566);
+        let t597 = minus_gdistal_wy_leg4 * t553;
+        let t603 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t610 = t522 * (0.7071067811865475 * t483) + s_distal_leg4 * t524;
+        let t611 = 9.81 * t480;
+        let t621 = t5 * acceleration[0] + t30 * acceleration[1] + t11 * acceleration[2];
+        let t623 = t62 * t67;
+        let t624 = t182 * t623;
+        let t626 = t62 * t221;
+        let t627 = t9 * t626;
+        let t630 = t176 * t623;
+        let t632 = t33 * t626;
+        let t635 = t178 * t623;
+        let t637 = t13 * t626;
+        let t643 = t182 * acceleration[0] + t176 * acceleration[1]
+            + t178 * acceleration[2];
+        let t644 = t643 - t623;
+        let t646 = t221 * t67;
+        let t647 = t621 + t646;
+        let t650 = t366 * t68;
+        let t651 = t510 * t222;
+        let t652 = t650 + t651;
+        let t669 = t9 * acceleration[0] + t33 * acceleration[1] + t13 * acceleration[2];
+        let t670 = t669 + t626;
+        let t674 = t621 - t646;
+        let t688 = t5 * t646;
+        let t692 = t30 * t646;
+        let t696 = t11 * t646;
+        let t700 = t669 - t626;
+        let t703 = t643 + t623;
         Ok([
             [
-                t76, minus_gproximal_wx_leg1 * t81, t86, t76,
-                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                t75, t81, t85, t75, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t102,
-                -(minus_gproximal_wx_leg1 * t114 + t119),
-                minus_gproximal_wx_leg1 * t138 - t140,
-                t76 - t102,
-                -(minus_gproximal_wx_leg1 * t154 + t156),
-                -t163,
-                -(minus_gproximal_wx_leg1 * t165 + t168),
-                t35 * (-6.936717523440031),
-                -t86,
-                t233,
-                -(minus_gproximal_wx_leg2 * t238),
-                t243,
-                t233,
+                t99,
+                -(minus_gproximal_wx_leg1 * t111 + t116),
+                minus_gproximal_wx_leg1 * t135 - t137,
+                t75 - t99,
+                -(minus_gproximal_wx_leg1 * t151 + t153),
+                -t160,
+                -(minus_s_distal_leg1 * t81 + t164),
+                t34 * (-6.936717523440031),
+                -t85,
+                t229,
+                -t235,
+                t239,
+                t229,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t259,
-                -(minus_gproximal_wx_leg2 * t271 + c_proximal_leg2 * t275),
-                minus_gproximal_wx_leg2 * t295 - c_proximal_leg2 * t231,
-                t233 - t259,
-                -(minus_gproximal_wx_leg2 * t311 + c_proximal_leg2 * t266),
+                t254,
+                -(minus_gproximal_wx_leg2 * t265 + c_proximal_leg2 * t269),
+                minus_gproximal_wx_leg2 * t289 - c_proximal_leg2 * t227,
+                t229 - t254,
+                -(minus_gproximal_wx_leg2 * t305 + c_proximal_leg2 * t261),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t322 + t182 * t242,
-                -(gdistal_wy_leg2 * t331 + t203 * t242),
-                -t243,
-                t381,
-                minus_gproximal_wx_leg3 * t386,
-                t391,
-                t381,
+                minus_s_distal_leg2 * t235 + t179 * t238,
+                -(gdistal_wy_leg2 * t323 + t206 * t238),
+                -t239,
+                t373,
+                t379,
+                t383,
+                t373,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t407,
-                t416 - minus_gproximal_wx_leg3 * t423,
-                t431 - minus_gproximal_wx_leg3 * t444,
-                t381 - t407,
-                -(minus_gproximal_wx_leg3 * t459 + t461),
-                t468,
-                minus_gproximal_wx_leg3 * t470 + t473,
-                6.936717523440031 * t350,
-                -t391,
-                t529,
-                -(minus_gproximal_wx_leg4 * t534),
-                t539,
-                t529,
+                t397,
+                t406 - minus_gproximal_wx_leg3 * t413,
+                t421 - minus_gproximal_wx_leg3 * t434,
+                t373 - t397,
+                -(minus_gproximal_wx_leg3 * t449 + t451),
+                t458,
+                s_distal_leg3 * t379 + t462,
+                6.936717523440031 * t341,
+                -t383,
+                t517,
+                -t523,
+                t527,
+                t517,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t555,
-                c_proximal_leg4 * t563 - minus_gproximal_wx_leg4 * t571,
-                c_proximal_leg4 * t527 - minus_gproximal_wx_leg4 * t592,
-                t529 - t555,
-                -(minus_gproximal_wx_leg4 * t607 + c_proximal_leg4 * t566),
+                t542,
+                c_proximal_leg4 * t550 - minus_gproximal_wx_leg4 * t557,
+                c_proximal_leg4 * t515 - minus_gproximal_wx_leg4 * t578,
+                t517 - t542,
+                -(minus_gproximal_wx_leg4 * t593 + c_proximal_leg4 * t553),
                 c_proximal_leg4 * rate_dot_distal_leg4,
-                t496 * t538 - minus_gproximal_wx_leg4 * t619,
-                -(minus_gdistal_wy_leg4 * t626 + t504 * t538),
-                -t539,
-                t5 * t636 + t639 - t642,
-                t5 * t659 + t189 * t662 + t9 * t667,
-                t5 * t685 + t189 * t688 + t9 * t691,
-                t189 * t658 - t705 + t642,
-                t5 * t716 + t189 * t718 + t9 * t721,
-                t705 - t639 + t9 * t684,
-                9.81 * t31,
-                9.81 * t179,
-                9.81 * t34,
+                t483 * t526 - s_distal_leg4 * t523,
+                -(minus_gdistal_wy_leg4 * t611 + t499 * t526),
+                -t527,
+                t5 * t621 + t624 - t627,
+                t5 * t644 + t182 * t647 + t9 * t652,
+                t5 * t670 - t182 * t650 + t9 * t674,
+                t182 * t643 - t688 + t627,
+                t182 * t700 - t5 * t651 + t9 * t703,
+                t688 - t624 + t9 * t669,
+                9.81 * t30,
+                9.81 * t176,
+                9.81 * t33,
             ],
             [
-                t78, t83, t87, t78, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t77, t82, t86, t77, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t105,
-                c_proximal_leg1 * t118 - minus_gproximal_wy_leg1 * t114,
-                minus_gproximal_wy_leg1 * t138 + c_proximal_leg1 * t74,
-                t78 - t105,
-                c_proximal_leg1 * t109 - minus_gproximal_wy_leg1 * t154,
+                t102,
+                c_proximal_leg1 * t115 - minus_gproximal_wy_leg1 * t111,
+                minus_gproximal_wy_leg1 * t135 + c_proximal_leg1 * t73,
+                t77 - t102,
+                c_proximal_leg1 * t106 - minus_gproximal_wy_leg1 * t151,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * t167 - minus_gproximal_wy_leg1 * t165,
-                c_distal_leg1 * t83 + t41 * t85,
-                -t87,
-                t235,
-                -(minus_gproximal_wy_leg2 * t238),
-                t244,
-                t235,
+                c_proximal_leg1 * t163 - minus_s_distal_leg1 * t82,
+                t44 * t80 + t47 * t84,
+                -t86,
+                t231,
+                -t236,
+                t240,
+                t231,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t262,
-                t278 - minus_gproximal_wy_leg2 * t271,
-                minus_gproximal_wy_leg2 * t295 + t300,
-                t235 - t262,
-                t315 - minus_gproximal_wy_leg2 * t311,
-                t321,
-                t329,
-                t330,
-                -t244,
-                t383,
-                t388,
-                t392,
-                t383,
+                t257,
+                t272 - minus_gproximal_wy_leg2 * t265,
+                minus_gproximal_wy_leg2 * t289 + t294,
+                t231 - t257,
+                t309 - minus_gproximal_wy_leg2 * t305,
+                t315,
+                t322,
+                6.936717523440031 * t183,
+                -t240,
+                t375,
+                minus_gproximal_wy_leg3 * t378,
+                t384,
+                t375,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t410,
-                -(minus_gproximal_wy_leg3 * t423 + c_proximal_leg3 * t415),
-                -(minus_gproximal_wy_leg3 * t444 + c_proximal_leg3 * t379),
-                t383 + t410,
-                c_proximal_leg3 * t418 - minus_gproximal_wy_leg3 * t459,
+                -t400,
+                -(minus_gproximal_wy_leg3 * t413 + c_proximal_leg3 * t405),
+                -(minus_gproximal_wy_leg3 * t434 + c_proximal_leg3 * t371),
+                t375 + t400,
+                c_proximal_leg3 * t408 - minus_gproximal_wy_leg3 * t449,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t470 - c_proximal_leg3 * t472,
-                c_distal_leg3 * t388 + t356 * t390,
-                -t392,
-                t531,
-                -(minus_gproximal_wy_leg4 * t534),
-                t540,
-                t531,
+                t350 * t464 - c_proximal_leg3 * t461,
+                t464 + t355 * t382,
+                -t384,
+                t519,
+                -t524,
+                t528,
+                t519,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                -t558,
-                -(minus_gproximal_wy_leg4 * t571 + t575),
-                -(minus_gproximal_wy_leg4 * t592 + t596),
-                t531 + t558,
-                t611 - minus_gproximal_wy_leg4 * t607,
-                -t617,
-                -t625,
-                -(6.936717523440031 * t490),
-                -t540,
-                t31 * t636 + t645 - t647,
-                t31 * t659 + t179 * t662 + t34 * t667,
-                t31 * t685 + t179 * t688 + t34 * t691,
-                t179 * t658 - t709 + t647,
-                t31 * t716 + t179 * t718 + t34 * t721,
-                t709 - t645 + t34 * t684,
+                -t545,
+                -(minus_gproximal_wy_leg4 * t557 + t561),
+                -(minus_gproximal_wy_leg4 * t578 + t582),
+                t519 + t545,
+                t597 - minus_gproximal_wy_leg4 * t593,
+                -t603,
+                -t610,
+                -(6.936717523440031 * t474),
+                -t528,
+                t30 * t621 + t630 - t632,
+                t30 * t644 + t176 * t647 + t33 * t652,
+                t30 * t670 - t176 * t650 + t33 * t674,
+                t176 * t643 - t692 + t632,
+                t176 * t700 - t30 * t651 + t33 * t703,
+                t692 - t630 + t33 * t669,
                 -(9.81 * t5),
-                -(9.81 * t189),
+                -(9.81 * t182),
                 -(9.81 * t9),
             ],
             [
-                -t80, -(gproximal_wz_leg1 * t81), -t88, -t80,
-                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -t79, -t83, -t87, -t79, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t107, gproximal_wz_leg1 * t114 + t119,
-                t140 - gproximal_wz_leg1 * t138, t107 - t80, gproximal_wz_leg1 * t154 + t156, t163,
-                gproximal_wz_leg1 * t165 + t168, 0.0, t88, -t237, gproximal_wz_leg2 * t238, -t245,
-                -t237, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -t104, gproximal_wz_leg1 * t111 + t116,
+                t137 - gproximal_wz_leg1 * t135, t104 - t79, gproximal_wz_leg1 * t151 + t153, t160,
+                minus_s_distal_leg1 * t83 + t164, 0.0, t87, -t233, gproximal_wz_leg2 * t234, -t241,
+                -t233, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t264, gproximal_wz_leg2 * t271 - t278,
-                -(gproximal_wz_leg2 * t295 + t300), -(t237 + t264), gproximal_wz_leg2 * t311 - t315,
-                -t321, -(t329 + t331), 0.0, t245, t385, minus_gproximal_wz_leg3 * t386, t393, t385,
+                gproximal_wz_leg2, t259, gproximal_wz_leg2 * t265 - t272,
+                -(gproximal_wz_leg2 * t289 + t294), -(t233 + t259), gproximal_wz_leg2 * t305 - t309,
+                -t315, -(t322 + t323), 0.0, t241, t377, t381, t385, t377,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t412,
-                t416 - minus_gproximal_wz_leg3 * t423,
-                t431 - minus_gproximal_wz_leg3 * t444,
-                t385 - t412,
-                -(minus_gproximal_wz_leg3 * t459 + t461),
-                t468,
-                minus_gproximal_wz_leg3 * t470 + t473,
+                t402,
+                t406 - minus_gproximal_wz_leg3 * t413,
+                t421 - minus_gproximal_wz_leg3 * t434,
+                t377 - t402,
+                -(minus_gproximal_wz_leg3 * t449 + t451),
+                t458,
+                s_distal_leg3 * t381 + t462,
                 0.0,
-                -t393,
-                t533,
-                -(minus_gproximal_wz_leg4 * t534),
-                t541,
-                t533,
+                -t385,
+                t521,
+                -(minus_gproximal_wz_leg4 * t522),
+                t529,
+                t521,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                -t560,
-                -(minus_gproximal_wz_leg4 * t571 + t575),
-                -(minus_gproximal_wz_leg4 * t592 + t596),
-                t533 + t560,
-                t611 - minus_gproximal_wz_leg4 * t607,
-                -t617,
-                t626 - t625,
+                -t547,
+                -(minus_gproximal_wz_leg4 * t557 + t561),
+                -(minus_gproximal_wz_leg4 * t578 + t582),
+                t521 + t547,
+                t597 - minus_gproximal_wz_leg4 * t593,
+                -t603,
+                t611 - t610,
                 0.0,
-                -t541,
-                t11 * t636 + t650 - t652,
-                t11 * t659 + t181 * t662 + t14 * t667,
-                t11 * t685 + t181 * t688 + t14 * t691,
-                t181 * t658 - t713 + t652,
-                t11 * t716 + t181 * t718 + t14 * t721,
-                t713 - t650 + t14 * t684,
+                -t529,
+                t11 * t621 + t635 - t637,
+                t11 * t644 + t178 * t647 + t13 * t652,
+                t11 * t670 - t178 * t650 + t13 * t674,
+                t178 * t643 - t696 + t637,
+                t178 * t700 - t11 * t651 + t13 * t703,
+                t696 - t635 + t13 * t669,
                 0.0,
                 0.0,
                 0.0,
@@ -2219,7 +2222,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 715 operations (260 additions, 451 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 559 intermediates.
+    /// 697 operations (259 additions, 424 multiplications, 14 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 541 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2242,526 +2245,522 @@ impl Spherical4Rrr {
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
         ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t4 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let t5 = c_distal_leg1 * t4;
+        let t2 = 1.0 / minus_s_distal_leg1;
+        let t3 = c_distal_leg1 * t2;
         let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t7 = t5 + t6;
-        let t8 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = t7 * t8;
-        let t10 = t5 - t6;
-        let t13 = minus_s_proximal_leg1 * c_distal_leg1;
+        let t7 = minus_c_proximal_leg1 * t6;
+        let t8 = t3 * t7;
+        let t9 = t8 + t6;
+        let gproximal_wx_leg1 = t9 * t2;
         let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
         let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t23 = c_distal_leg1 * t8;
-        let t28 = t10 * twist[2] - (t7 * twist[0] + t13 * twist[1]);
-        let t29 = t23 * t28;
-        let t30 = rate_distal_leg1 * t29;
+        let t17 = t8 - t6;
+        let t20 = minus_s_proximal_leg1 * c_distal_leg1;
+        let t23 = t17 * twist[2] - (t9 * twist[0] + t20 * twist[1]);
+        let t24 = t3 * t23;
+        let t25 = rate_distal_leg1 * t24;
         let t31 = 0.7071067811865476 * c_distal_leg1;
-        let t32 = minus_s_distal_leg1 * t4;
-        let t33 = t31 - t32;
-        let t35 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t38 = t32 + t31;
-        let minus_rate_wrist_leg1 = t29 + t33 * twist[0] - t35 * twist[1]
-            + t38 * twist[2];
-        let t44 = t10 * acceleration[2] - (t7 * acceleration[0] + t13 * acceleration[1])
-            + t30 + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let minus_rate_dot_proximal_leg1 = t8 * t44;
-        let t46 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let gproximal_wy_leg1 = t13 * t8;
-        let t48 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let minus_gproximal_wz_leg1 = t10 * t8;
-        let t50 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t51 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t55 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t56 = gproximal_wx_leg1 * t55;
-        let t57 = gproximal_wy_leg1 * t55;
-        let t58 = minus_gproximal_wz_leg1 * t55;
-        let minus_rate_proximal_leg1 = t8 * t28;
-        let t67 = t44 - t30 - t30;
-        let t68 = minus_s_distal_leg1 * t67;
-        let t70 = t28 * t29;
-        let t71 = minus_gdistal_wx_leg1 * t70;
-        let t72 = gproximal_wx_leg1 * t68 + t71;
-        let t75 = minus_c_proximal_leg1 * t70 - gproximal_wy_leg1 * t68;
-        let t77 = t71 + minus_gproximal_wz_leg1 * t68;
-        let t78 = t28 * rate_distal_leg1;
-        let t79 = t23 * t44;
-        let t84 = minus_s_distal_leg1 * (t78 + t79 + t78) + c_distal_leg1 * t67;
-        let t86 = t28 * t28;
-        let t87 = t29 * t29;
-        let t88 = t86 - t87;
-        let t89 = minus_gdistal_wx_leg1 * t88;
-        let t96 = rate_distal_leg1 * rate_distal_leg1;
+        let t32 = t31 - t7;
+        let t34 = minus_s_proximal_leg1 * minus_s_distal_leg1;
+        let t37 = t7 + t31;
+        let minus_rate_wrist_leg1 = t24 + t32 * twist[0] - t34 * twist[1]
+            + t37 * twist[2];
+        let t42 = t17 * acceleration[2] - (t9 * acceleration[0] + t20 * acceleration[1])
+            + rate_distal_leg1 * minus_rate_wrist_leg1;
+        let t43 = t25 + t42;
+        let minus_rate_dot_proximal_leg1 = t2 * t43;
+        let t45 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let gproximal_wy_leg1 = t20 * t2;
+        let t47 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let minus_gproximal_wz_leg1 = t17 * t2;
+        let t49 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t50 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t51 = gproximal_wx_leg1 * t50;
+        let t52 = gproximal_wy_leg1 * t50;
+        let t53 = minus_gproximal_wz_leg1 * t50;
+        let t54 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t55 = gproximal_wx_leg1 * t54;
+        let t56 = gproximal_wy_leg1 * t54;
+        let t57 = minus_gproximal_wz_leg1 * t54;
+        let minus_rate_proximal_leg1 = t2 * t23;
+        let t65 = t42 - t25;
+        let t67 = t23 * t24;
+        let t68 = minus_gdistal_wx_leg1 * t67;
+        let t69 = t9 * t65 + t68;
+        let t72 = minus_c_proximal_leg1 * t67 - t20 * t65;
+        let t74 = t68 + t17 * t65;
+        let t75 = t23 * rate_distal_leg1;
+        let t76 = t3 * t43;
+        let t81 = minus_s_distal_leg1 * (t75 + t76 + t75) + c_distal_leg1 * t65;
+        let t83 = t23 * t23;
+        let t84 = t24 * t24;
+        let t85 = t83 - t84;
+        let t86 = minus_gdistal_wx_leg1 * t85;
+        let t93 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] - t28 * minus_rate_wrist_leg1;
-        let t108 = c_distal_leg1 * (t96 - t86)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t70);
-        let t110 = minus_gdistal_wx_leg1 * t44;
-        let t124 = c_distal_leg1 * (t70 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t87 - t96);
-        let t126 = minus_gdistal_wx_leg1 * t79;
-        let t133 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t135 = c_distal_leg1 * t51;
-        let t137 = 9.81 * t38;
-        let t138 = minus_gdistal_wx_leg1 * t137;
-        let t151 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t152 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t151 * t152;
-        let t155 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t156 = c_distal_leg2 * t155;
-        let t157 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t158 = t156 + t157;
-        let t161 = t156 - t157;
+            + minus_gdistal_wx_leg1 * acceleration[2] - t23 * minus_rate_wrist_leg1;
+        let t105 = c_distal_leg1 * (t93 - t83)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t67);
+        let t107 = minus_gdistal_wx_leg1 * t43;
+        let t121 = c_distal_leg1 * (t67 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t84 - t93);
+        let t123 = minus_gdistal_wx_leg1 * t76;
+        let t130 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t133 = 9.81 * t37;
+        let t134 = minus_gdistal_wx_leg1 * t133;
+        let t147 = minus_s_proximal_leg2 * c_distal_leg2;
+        let t148 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wx_leg2 = t147 * t148;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t170 = c_distal_leg2 * t152;
-        let t175 = t151 * twist[0] - t158 * twist[1] + t161 * twist[2];
-        let t176 = t170 * t175;
-        let t177 = rate_distal_leg2 * t176;
-        let t178 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t180 = 0.7071067811865476 * c_distal_leg2;
-        let t181 = minus_s_distal_leg2 * t155;
-        let t182 = t180 - t181;
-        let t185 = t181 + t180;
-        let minus_rate_wrist_leg2 = t176 + t178 * twist[0] + t182 * twist[1]
-            + t185 * twist[2];
-        let t191 = t151 * acceleration[0] - t158 * acceleration[1]
-            + t161 * acceleration[2] + t177 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t152 * t191;
-        let t193 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wy_leg2 = t158 * t152;
-        let t195 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = t161 * t152;
-        let t197 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t198 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t202 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t203 = minus_gproximal_wx_leg2 * t202;
-        let t204 = gproximal_wy_leg2 * t202;
-        let t205 = minus_gproximal_wz_leg2 * t202;
-        let minus_rate_proximal_leg2 = t152 * t175;
-        let t214 = t191 - t177 - t177;
-        let t215 = minus_s_distal_leg2 * t214;
-        let t217 = t175 * t176;
-        let t219 = minus_c_proximal_leg2 * t217 - minus_gproximal_wx_leg2 * t215;
-        let t221 = minus_gdistal_wy_leg2 * t217;
-        let t222 = gproximal_wy_leg2 * t215 + t221;
-        let t224 = t221 + minus_gproximal_wz_leg2 * t215;
-        let t225 = t175 * rate_distal_leg2;
-        let t226 = t170 * t191;
-        let t231 = minus_s_distal_leg2 * (t225 + t226 + t225) + c_distal_leg2 * t214;
-        let t233 = t175 * t175;
-        let t234 = t176 * t176;
-        let t235 = t233 - t234;
-        let t239 = minus_gdistal_wy_leg2 * t235;
-        let t243 = rate_distal_leg2 * rate_distal_leg2;
+        let t156 = c_distal_leg2 * t148;
+        let t158 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t159 = minus_c_proximal_leg2 * t158;
+        let t160 = t156 * t159;
+        let t161 = t160 + t158;
+        let t164 = t160 - t158;
+        let t166 = t147 * twist[0] - t161 * twist[1] + t164 * twist[2];
+        let t167 = t156 * t166;
+        let t168 = rate_distal_leg2 * t167;
+        let t174 = minus_s_proximal_leg2 * minus_s_distal_leg2;
+        let t176 = 0.7071067811865476 * c_distal_leg2;
+        let t177 = t176 - t159;
+        let t180 = t159 + t176;
+        let minus_rate_wrist_leg2 = t167 + t174 * twist[0] + t177 * twist[1]
+            + t180 * twist[2];
+        let t185 = t147 * acceleration[0] - t161 * acceleration[1]
+            + t164 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let t186 = t168 + t185;
+        let minus_rate_dot_proximal_leg2 = t148 * t186;
+        let t188 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wy_leg2 = t161 * t148;
+        let t190 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = t164 * t148;
+        let t192 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t193 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t194 = minus_gproximal_wx_leg2 * t193;
+        let t195 = gproximal_wy_leg2 * t193;
+        let t196 = minus_gproximal_wz_leg2 * t193;
+        let t197 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t198 = minus_gproximal_wx_leg2 * t197;
+        let t199 = gproximal_wy_leg2 * t197;
+        let t200 = minus_gproximal_wz_leg2 * t197;
+        let minus_rate_proximal_leg2 = t148 * t166;
+        let t208 = t185 - t168;
+        let t210 = t166 * t167;
+        let t212 = minus_c_proximal_leg2 * t210 - t147 * t208;
+        let t214 = minus_gdistal_wy_leg2 * t210;
+        let t215 = t161 * t208 + t214;
+        let t217 = t214 + t164 * t208;
+        let t218 = t166 * rate_distal_leg2;
+        let t219 = t156 * t186;
+        let t224 = minus_s_distal_leg2 * (t218 + t219 + t218) + c_distal_leg2 * t208;
+        let t226 = t166 * t166;
+        let t227 = t167 * t167;
+        let t228 = t226 - t227;
+        let t232 = minus_gdistal_wy_leg2 * t228;
+        let t236 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t175 * minus_rate_wrist_leg2;
-        let t255 = c_distal_leg2 * (t243 - t233)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t217);
-        let t260 = minus_gdistal_wy_leg2 * t191;
-        let t272 = c_distal_leg2 * (t217 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t234 - t243);
-        let t276 = minus_gdistal_wy_leg2 * t226;
-        let t281 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t282 = c_distal_leg2 * t198;
-        let t284 = 9.81 * t185;
-        let t288 = minus_gdistal_wy_leg2 * t284;
-        let t298 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t299 = c_distal_leg3 * t298;
-        let t300 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t301 = t299 + t300;
-        let t302 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t301 * t302;
-        let t305 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t308 = t299 - t300;
+            - t166 * minus_rate_wrist_leg2;
+        let t248 = c_distal_leg2 * (t236 - t226)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t210);
+        let t253 = minus_gdistal_wy_leg2 * t186;
+        let t265 = c_distal_leg2 * (t210 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t227 - t236);
+        let t269 = minus_gdistal_wy_leg2 * t219;
+        let t274 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t276 = 9.81 * t180;
+        let t280 = minus_gdistal_wy_leg2 * t276;
+        let t288 = c_distal_leg3 / minus_s_distal_leg3;
+        let t291 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t292 = minus_c_proximal_leg3 * t291;
+        let t293 = t288 * t292;
+        let t294 = t293 + t291;
+        let minus_gproximal_wx_leg3 = t294 / minus_s_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t317 = c_distal_leg3 * t302;
-        let t322 = t301 * twist[0] + t305 * twist[1] + t308 * twist[2];
-        let t323 = t317 * t322;
-        let t324 = rate_distal_leg3 * t323;
-        let t325 = minus_s_distal_leg3 * t298;
-        let t326 = 0.7071067811865476 * c_distal_leg3;
-        let t327 = t325 - t326;
-        let t329 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t332 = t325 + t326;
-        let minus_rate_wrist_leg3 = t323 + t327 * twist[0] + t329 * twist[1]
-            + t332 * twist[2];
-        let t338 = t301 * acceleration[0] + t305 * acceleration[1]
-            + t308 * acceleration[2] + t324 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t302 * t338;
-        let t340 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t305 * t302;
-        let t342 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t308 * t302;
-        let t344 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t345 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t349 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t350 = minus_gproximal_wx_leg3 * t349;
-        let t351 = minus_gproximal_wy_leg3 * t349;
-        let t352 = minus_gproximal_wz_leg3 * t349;
-        let minus_rate_proximal_leg3 = t302 * t322;
-        let t360 = t322 * t323;
-        let t361 = gdistal_wx_leg3 * t360;
-        let t363 = t338 - t324 - t324;
-        let t364 = minus_s_distal_leg3 * t363;
-        let t366 = t361 + minus_gproximal_wx_leg3 * t364;
-        let t369 = minus_c_proximal_leg3 * t360 - minus_gproximal_wy_leg3 * t364;
-        let t371 = t361 + minus_gproximal_wz_leg3 * t364;
-        let t372 = t322 * t322;
-        let t373 = t323 * t323;
-        let t374 = t372 - t373;
-        let t375 = gdistal_wx_leg3 * t374;
-        let t376 = t322 * rate_distal_leg3;
-        let t377 = t317 * t338;
-        let t382 = minus_s_distal_leg3 * (t376 + t377 + t376) + c_distal_leg3 * t363;
-        let t390 = gdistal_wx_leg3 * t338;
-        let t391 = rate_distal_leg3 * rate_distal_leg3;
+        let t303 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t306 = t293 - t291;
+        let t308 = t294 * twist[0] + t303 * twist[1] + t306 * twist[2];
+        let t309 = t288 * t308;
+        let t310 = rate_distal_leg3 * t309;
+        let t316 = 0.7071067811865476 * c_distal_leg3;
+        let t317 = t292 - t316;
+        let t319 = minus_s_proximal_leg3 * minus_s_distal_leg3;
+        let t322 = t292 + t316;
+        let minus_rate_wrist_leg3 = t309 + t317 * twist[0] + t319 * twist[1]
+            + t322 * twist[2];
+        let t327 = t294 * acceleration[0] + t303 * acceleration[1]
+            + t306 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t328 = t310 + t327;
+        let minus_rate_dot_proximal_leg3 = t328 / minus_s_distal_leg3;
+        let t330 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t303 / minus_s_distal_leg3;
+        let t332 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t306 / minus_s_distal_leg3;
+        let t334 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t335 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t336 = minus_gproximal_wx_leg3 * t335;
+        let t337 = minus_gproximal_wy_leg3 * t335;
+        let t338 = minus_gproximal_wz_leg3 * t335;
+        let t339 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t340 = minus_gproximal_wx_leg3 * t339;
+        let t341 = minus_gproximal_wy_leg3 * t339;
+        let t342 = minus_gproximal_wz_leg3 * t339;
+        let minus_rate_proximal_leg3 = t308 / minus_s_distal_leg3;
+        let t350 = t308 * t309;
+        let t351 = gdistal_wx_leg3 * t350;
+        let t352 = t327 - t310;
+        let t354 = t351 + t294 * t352;
+        let t357 = minus_c_proximal_leg3 * t350 - t303 * t352;
+        let t359 = t351 + t306 * t352;
+        let t360 = t308 * t308;
+        let t361 = t309 * t309;
+        let t362 = t360 - t361;
+        let t363 = gdistal_wx_leg3 * t362;
+        let t364 = t308 * rate_distal_leg3;
+        let t365 = t288 * t328;
+        let t370 = minus_s_distal_leg3 * (t364 + t365 + t364) + c_distal_leg3 * t352;
+        let t378 = gdistal_wx_leg3 * t328;
+        let t379 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t322 * minus_rate_wrist_leg3;
-        let t403 = c_distal_leg3 * (t391 - t372)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t360);
-        let t418 = c_distal_leg3 * (t360 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t373 - t391);
-        let t420 = gdistal_wx_leg3 * t377;
-        let t427 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t429 = c_distal_leg3 * t345;
-        let t431 = 9.81 * t332;
-        let t432 = gdistal_wx_leg3 * t431;
-        let t445 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t446 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t445 * t446;
-        let t448 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t449 = c_distal_leg4 * t448;
-        let t450 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t451 = t449 + t450;
-        let t455 = t449 - t450;
+            - t308 * minus_rate_wrist_leg3;
+        let t391 = c_distal_leg3 * (t379 - t360)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t350);
+        let t406 = c_distal_leg3 * (t350 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t361 - t379);
+        let t408 = gdistal_wx_leg3 * t365;
+        let t415 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t418 = 9.81 * t322;
+        let t419 = gdistal_wx_leg3 * t418;
+        let t432 = minus_s_proximal_leg4 * c_distal_leg4;
+        let gproximal_wx_leg4 = t432 / minus_s_distal_leg4;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t464 = c_distal_leg4 * t446;
-        let t469 = t451 * twist[1] - t445 * twist[0] + t455 * twist[2];
-        let t470 = t464 * t469;
-        let t471 = rate_distal_leg4 * t470;
-        let t472 = minus_s_distal_leg4 * t448;
-        let t473 = 0.7071067811865476 * c_distal_leg4;
-        let t474 = t472 - t473;
-        let t476 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let t479 = t472 + t473;
-        let minus_rate_wrist_leg4 = t470 + t474 * twist[1] - t476 * twist[0]
-            + t479 * twist[2];
-        let t485 = t451 * acceleration[1] - t445 * acceleration[0]
-            + t455 * acceleration[2] + t471 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t446 * t485;
-        let t487 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t451 * t446;
-        let t489 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t455 * t446;
-        let t491 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t492 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t496 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t497 = gproximal_wx_leg4 * t496;
-        let t498 = minus_gproximal_wy_leg4 * t496;
-        let t499 = minus_gproximal_wz_leg4 * t496;
-        let minus_rate_proximal_leg4 = t446 * t469;
-        let t508 = t485 - t471 - t471;
-        let t509 = minus_s_distal_leg4 * t508;
-        let t511 = t469 * t470;
-        let t513 = minus_c_proximal_leg4 * t511 - gproximal_wx_leg4 * t509;
-        let t514 = gdistal_wy_leg4 * t511;
-        let t516 = t514 + minus_gproximal_wy_leg4 * t509;
-        let t518 = t514 + minus_gproximal_wz_leg4 * t509;
-        let t519 = t469 * rate_distal_leg4;
-        let t520 = t464 * t485;
-        let t525 = minus_s_distal_leg4 * (t519 + t520 + t519) + c_distal_leg4 * t508;
-        let t527 = t469 * t469;
-        let t528 = t470 * t470;
-        let t529 = t527 - t528;
-        let t532 = gdistal_wy_leg4 * t529;
-        let t537 = rate_distal_leg4 * rate_distal_leg4;
+        let t440 = c_distal_leg4 / minus_s_distal_leg4;
+        let t441 = 0.7071067811865476 * c_distal_leg4;
+        let t442 = minus_c_proximal_leg4 * t441;
+        let t443 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t444 = t442 + t443;
+        let t448 = t442 - t443;
+        let t450 = t444 * twist[1] - t432 * twist[0] + t448 * twist[2];
+        let t451 = t440 * t450;
+        let t452 = rate_distal_leg4 * t451;
+        let t458 = minus_c_proximal_leg4 * t443;
+        let t459 = t458 - t441;
+        let t461 = minus_s_proximal_leg4 * minus_s_distal_leg4;
+        let t464 = t458 + t441;
+        let minus_rate_wrist_leg4 = t451 + t459 * twist[1] - t461 * twist[0]
+            + t464 * twist[2];
+        let t469 = t444 * acceleration[1] - t432 * acceleration[0]
+            + t448 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t470 = t452 + t469;
+        let minus_rate_dot_proximal_leg4 = t470 / minus_s_distal_leg4;
+        let t472 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t444 / minus_s_distal_leg4;
+        let t474 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t448 / minus_s_distal_leg4;
+        let t476 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t477 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t478 = gproximal_wx_leg4 * t477;
+        let t479 = minus_gproximal_wy_leg4 * t477;
+        let t480 = minus_gproximal_wz_leg4 * t477;
+        let t481 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let t482 = gproximal_wx_leg4 * t481;
+        let t483 = minus_gproximal_wy_leg4 * t481;
+        let t484 = minus_gproximal_wz_leg4 * t481;
+        let minus_rate_proximal_leg4 = t450 / minus_s_distal_leg4;
+        let t492 = t469 - t452;
+        let t493 = c_distal_leg4 * t492;
+        let t495 = t450 * t451;
+        let t497 = minus_c_proximal_leg4 * t495 - minus_s_proximal_leg4 * t493;
+        let t498 = gdistal_wy_leg4 * t495;
+        let t500 = t498 + t444 * t492;
+        let t502 = t498 + t448 * t492;
+        let t503 = t450 * rate_distal_leg4;
+        let t504 = t440 * t470;
+        let t508 = minus_s_distal_leg4 * (t503 + t504 + t503) + t493;
+        let t510 = t450 * t450;
+        let t511 = t451 * t451;
+        let t512 = t510 - t511;
+        let t515 = gdistal_wy_leg4 * t512;
+        let t520 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t469 * minus_rate_wrist_leg4;
-        let t549 = c_distal_leg4 * (t537 - t527)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t511);
-        let t553 = gdistal_wy_leg4 * t485;
-        let t565 = c_distal_leg4 * (t511 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t528 - t537);
-        let t570 = gdistal_wy_leg4 * t520;
-        let t575 = gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t576 = 9.81 * t479;
-        let t578 = c_distal_leg4 * t492;
-        let t582 = gdistal_wy_leg4 * t576;
-        let t588 = 2.0 * pose[2];
-        let t589 = pose[2] * t588;
-        let t591 = 2.0 * pose[3];
-        let t592 = pose[3] * t591;
-        let t593 = 1.0 - t589 - t592;
-        let t595 = 2.0 * pose[1];
-        let t596 = pose[2] * t595;
-        let t597 = pose[0] * t591;
-        let t598 = t596 + t597;
-        let t601 = pose[3] * t595;
-        let t602 = pose[0] * t588;
-        let t603 = t601 - t602;
-        let t605 = t593 * acceleration[0] + t598 * acceleration[1]
-            + t603 * acceleration[2];
-        let t607 = t596 - t597;
-        let t612 = t593 * twist[0] + t598 * twist[1] + t603 * twist[2];
-        let t613 = t601 + t602;
-        let t615 = pose[3] * t588;
-        let t616 = pose[0] * t595;
-        let t617 = t615 - t616;
-        let t621 = 1.0 - pose[1] * t595;
-        let t622 = t621 - t589;
-        let t624 = t613 * twist[0] + t617 * twist[1] + t622 * twist[2];
-        let t625 = t612 * t624;
-        let t626 = t607 * t625;
-        let t629 = t621 - t592;
-        let t632 = t615 + t616;
-        let t634 = t607 * twist[0] + t629 * twist[1] + t632 * twist[2];
-        let t635 = t612 * t634;
-        let t636 = t613 * t635;
-        let t639 = t629 * t625;
-        let t641 = t617 * t635;
-        let t644 = t632 * t625;
-        let t646 = t622 * t635;
-        let t652 = t607 * acceleration[0] + t629 * acceleration[1]
-            + t632 * acceleration[2];
-        let t653 = t652 - t625;
-        let t655 = t634 * t624;
-        let t656 = t605 + t655;
-        let t659 = t612 * t612;
-        let t660 = t634 * t634;
-        let t661 = t659 - t660;
-        let t678 = t613 * acceleration[0] + t617 * acceleration[1]
-            + t622 * acceleration[2];
-        let t679 = t678 + t635;
-        let t681 = t624 * t624;
-        let t682 = t681 - t659;
-        let t685 = t605 - t655;
-        let t699 = t593 * t655;
-        let t703 = t598 * t655;
-        let t707 = t603 * t655;
-        let t710 = t660 - t681;
-        let t712 = t678 - t635;
-        let t715 = t652 + t625;
+            - t450 * minus_rate_wrist_leg4;
+        let t532 = c_distal_leg4 * (t520 - t510)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t495);
+        let t536 = gdistal_wy_leg4 * t470;
+        let t548 = c_distal_leg4 * (t495 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t511 - t520);
+        let t553 = gdistal_wy_leg4 * t504;
+        let t558 = gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t564 = t464 * t477;
+        let t570 = pose[2] + pose[2];
+        let t571 = pose[2] * t570;
+        let t573 = pose[3] + pose[3];
+        let t574 = pose[3] * t573;
+        let t575 = 1.0 - t571 - t574;
+        let t577 = pose[1] + pose[1];
+        let t578 = pose[2] * t577;
+        let t579 = pose[0] * t573;
+        let t580 = t578 + t579;
+        let t583 = pose[3] * t577;
+        let t584 = pose[0] * t570;
+        let t585 = t583 - t584;
+        let t587 = t575 * acceleration[0] + t580 * acceleration[1]
+            + t585 * acceleration[2];
+        let t589 = t578 - t579;
+        let t594 = t575 * twist[0] + t580 * twist[1] + t585 * twist[2];
+        let t595 = t583 + t584;
+        let t597 = pose[3] * t570;
+        let t598 = pose[0] * t577;
+        let t599 = t597 - t598;
+        let t603 = 1.0 - pose[1] * t577;
+        let t604 = t603 - t571;
+        let t606 = t595 * twist[0] + t599 * twist[1] + t604 * twist[2];
+        let t607 = t594 * t606;
+        let t608 = t589 * t607;
+        let t611 = t603 - t574;
+        let t614 = t597 + t598;
+        let t616 = t589 * twist[0] + t611 * twist[1] + t614 * twist[2];
+        let t617 = t594 * t616;
+        let t618 = t595 * t617;
+        let t621 = t611 * t607;
+        let t623 = t599 * t617;
+        let t626 = t614 * t607;
+        let t628 = t604 * t617;
+        let t634 = t589 * acceleration[0] + t611 * acceleration[1]
+            + t614 * acceleration[2];
+        let t635 = t634 - t607;
+        let t637 = t616 * t606;
+        let t638 = t587 + t637;
+        let t641 = t594 * t594;
+        let t642 = t616 * t616;
+        let t643 = t641 - t642;
+        let t660 = t595 * acceleration[0] + t599 * acceleration[1]
+            + t604 * acceleration[2];
+        let t661 = t660 + t617;
+        let t663 = t606 * t606;
+        let t664 = t663 - t641;
+        let t667 = t587 - t637;
+        let t681 = t575 * t637;
+        let t685 = t580 * t637;
+        let t689 = t585 * t637;
+        let t692 = t642 - t663;
+        let t694 = t660 - t617;
+        let t697 = t634 + t607;
         Ok([
             [
-                -t46, -(gproximal_wx_leg1 * t51), -t56, -t46,
-                -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
+                -t45, -t51, -t55, -t45, -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
-                gproximal_wx_leg1, -t72, gproximal_wx_leg1 * t84 - t89,
-                gproximal_wx_leg1 * t108 - t110, -(t46 - t72), gproximal_wx_leg1 * t124 + t126,
-                -t133, -(gproximal_wx_leg1 * t135 + t138), -(9.81 * t35), t56, t193,
-                minus_gproximal_wx_leg2 * t198, t203, t193,
+                gproximal_wx_leg1, -t69, gproximal_wx_leg1 * t81 - t86,
+                gproximal_wx_leg1 * t105 - t107, -(t45 - t69), gproximal_wx_leg1 * t121 + t123,
+                -t130, -(c_distal_leg1 * t51 + t134), -(9.81 * t34), t55, t188, t194, t198, t188,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                -t219,
-                -(minus_gproximal_wx_leg2 * t231 + minus_c_proximal_leg2 * t235),
-                -(minus_gproximal_wx_leg2 * t255 + minus_c_proximal_leg2 * t191),
-                t193 + t219,
-                minus_c_proximal_leg2 * t226 - minus_gproximal_wx_leg2 * t272,
+                -t212,
+                -(minus_gproximal_wx_leg2 * t224 + minus_c_proximal_leg2 * t228),
+                -(minus_gproximal_wx_leg2 * t248 + minus_c_proximal_leg2 * t186),
+                t188 + t212,
+                minus_c_proximal_leg2 * t219 - minus_gproximal_wx_leg2 * t265,
                 -(minus_c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t282 - minus_c_proximal_leg2 * t284,
-                9.81 * t182,
-                -t203,
+                c_distal_leg2 * t194 - minus_c_proximal_leg2 * t276,
+                9.81 * t177,
+                -t198,
+                t330,
+                t336,
                 t340,
-                minus_gproximal_wx_leg3 * t345,
-                t350,
-                t340,
+                t330,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t366,
-                t375 - minus_gproximal_wx_leg3 * t382,
-                t390 - minus_gproximal_wx_leg3 * t403,
-                t340 - t366,
-                -(minus_gproximal_wx_leg3 * t418 + t420),
-                t427,
-                minus_gproximal_wx_leg3 * t429 + t432,
-                9.81 * t329,
-                -t350,
-                -t487,
-                -(gproximal_wx_leg4 * t492),
-                -t497,
-                -t487,
+                t354,
+                t363 - minus_gproximal_wx_leg3 * t370,
+                t378 - minus_gproximal_wx_leg3 * t391,
+                t330 - t354,
+                -(minus_gproximal_wx_leg3 * t406 + t408),
+                t415,
+                c_distal_leg3 * t336 + t419,
+                9.81 * t319,
+                -t340,
+                -t472,
+                -t478,
+                -t482,
+                -t472,
                 -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
                 -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
                 gproximal_wx_leg4,
-                t513,
-                gproximal_wx_leg4 * t525 + minus_c_proximal_leg4 * t529,
-                gproximal_wx_leg4 * t549 + minus_c_proximal_leg4 * t485,
-                -(t487 + t513),
-                gproximal_wx_leg4 * t565 - minus_c_proximal_leg4 * t520,
-                minus_c_proximal_leg4 * rate_dot_distal_leg4,
-                minus_c_proximal_leg4 * t576 - gproximal_wx_leg4 * t578,
-                9.81 * t474,
                 t497,
-                t593 * t605 + t626 - t636,
-                t593 * t653 + t607 * t656 + t613 * t661,
-                t593 * t679 + t607 * t682 + t613 * t685,
-                t607 * t652 - t699 + t636,
-                t593 * t710 + t607 * t712 + t613 * t715,
-                t699 - t626 + t613 * t678,
-                9.81 * t598,
-                9.81 * t629,
-                9.81 * t617,
+                gproximal_wx_leg4 * t508 + minus_c_proximal_leg4 * t512,
+                gproximal_wx_leg4 * t532 + minus_c_proximal_leg4 * t470,
+                -(t472 + t497),
+                gproximal_wx_leg4 * t548 - minus_c_proximal_leg4 * t504,
+                minus_c_proximal_leg4 * rate_dot_distal_leg4,
+                minus_c_proximal_leg4 * (9.81 * t464) - c_distal_leg4 * t478,
+                9.81 * t459,
+                t482,
+                t575 * t587 + t608 - t618,
+                t575 * t635 + t589 * t638 + t595 * t643,
+                t575 * t661 + t589 * t664 + t595 * t667,
+                t589 * t634 - t681 + t618,
+                t575 * t692 + t589 * t694 + t595 * t697,
+                t681 - t608 + t595 * t660,
+                9.81 * t580,
+                9.81 * t611,
+                9.81 * t599,
             ],
             [
-                -t48, -(gproximal_wy_leg1 * t51), -t57, -t48,
-                -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
+                -t47, -t52, -t56, -t47, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
-                gproximal_wy_leg1, t75, gproximal_wy_leg1 * t84 + minus_c_proximal_leg1 * t88,
-                gproximal_wy_leg1 * t108 + minus_c_proximal_leg1 * t44, -(t48 + t75),
-                gproximal_wy_leg1 * t124 - minus_c_proximal_leg1 * t79,
+                gproximal_wy_leg1, t72, gproximal_wy_leg1 * t81 + minus_c_proximal_leg1 * t85,
+                gproximal_wy_leg1 * t105 + minus_c_proximal_leg1 * t43, -(t47 + t72),
+                gproximal_wy_leg1 * t121 - minus_c_proximal_leg1 * t76,
                 minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                minus_c_proximal_leg1 * t137 - gproximal_wy_leg1 * t135, -(9.81 * t33), t57, -t195,
-                -(gproximal_wy_leg2 * t198), -t204, -t195,
-                -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
+                minus_c_proximal_leg1 * t133 - c_distal_leg1 * t52, -(9.81 * t32), t56, -t190,
+                -t195, -t199, -t190, -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
-                gproximal_wy_leg2, -t222, gproximal_wy_leg2 * t231 - t239,
-                gproximal_wy_leg2 * t255 - t260, -(t195 - t222), gproximal_wy_leg2 * t272 + t276,
-                -t281, -(gproximal_wy_leg2 * t282 + t288), -(9.81 * t178), t204, t342,
-                minus_gproximal_wy_leg3 * t345, t351, t342,
+                gproximal_wy_leg2, -t215, gproximal_wy_leg2 * t224 - t232,
+                gproximal_wy_leg2 * t248 - t253, -(t190 - t215), gproximal_wy_leg2 * t265 + t269,
+                -t274, -(c_distal_leg2 * t195 + t280), -(9.81 * t174), t199, t332, t337, t341, t332,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t369,
-                -(minus_gproximal_wy_leg3 * t382 + minus_c_proximal_leg3 * t374),
-                -(minus_gproximal_wy_leg3 * t403 + minus_c_proximal_leg3 * t338),
-                t342 + t369,
-                minus_c_proximal_leg3 * t377 - minus_gproximal_wy_leg3 * t418,
+                -t357,
+                -(minus_gproximal_wy_leg3 * t370 + minus_c_proximal_leg3 * t362),
+                -(minus_gproximal_wy_leg3 * t391 + minus_c_proximal_leg3 * t328),
+                t332 + t357,
+                minus_c_proximal_leg3 * t365 - minus_gproximal_wy_leg3 * t406,
                 -(minus_c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t429 - minus_c_proximal_leg3 * t431,
-                -(9.81 * t327),
-                -t351,
-                t489,
-                minus_gproximal_wy_leg4 * t492,
-                t498,
-                t489,
+                c_distal_leg3 * t337 - minus_c_proximal_leg3 * t418,
+                -(9.81 * t317),
+                -t341,
+                t474,
+                t479,
+                t483,
+                t474,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t516,
-                t532 - minus_gproximal_wy_leg4 * t525,
-                t553 - minus_gproximal_wy_leg4 * t549,
-                t489 - t516,
-                -(minus_gproximal_wy_leg4 * t565 + t570),
-                t575,
-                minus_gproximal_wy_leg4 * t578 + t582,
-                9.81 * t476,
-                -t498,
-                t598 * t605 + t639 - t641,
-                t598 * t653 + t629 * t656 + t617 * t661,
-                t598 * t679 + t629 * t682 + t617 * t685,
-                t629 * t652 - t703 + t641,
-                t598 * t710 + t629 * t712 + t617 * t715,
-                t703 - t639 + t617 * t678,
-                -(9.81 * t593),
-                -(9.81 * t607),
-                -(9.81 * t613),
+                t500,
+                t515 - minus_gproximal_wy_leg4 * t508,
+                t536 - minus_gproximal_wy_leg4 * t532,
+                t474 - t500,
+                -(minus_gproximal_wy_leg4 * t548 + t553),
+                t558,
+                c_distal_leg4 * t479 + t564,
+                9.81 * t461,
+                -t483,
+                t580 * t587 + t621 - t623,
+                t580 * t635 + t611 * t638 + t599 * t643,
+                t580 * t661 + t611 * t664 + t599 * t667,
+                t611 * t634 - t685 + t623,
+                t580 * t692 + t611 * t694 + t599 * t697,
+                t685 - t621 + t599 * t660,
+                -(9.81 * t575),
+                -(9.81 * t589),
+                -(9.81 * t595),
             ],
             [
-                t50, minus_gproximal_wz_leg1 * t51, t58, t50,
-                minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
+                t49, t53, t57, t49, minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wz_leg1,
-                t77,
-                t89 - minus_gproximal_wz_leg1 * t84,
-                t110 - minus_gproximal_wz_leg1 * t108,
-                t50 - t77,
-                -(minus_gproximal_wz_leg1 * t124 + t126),
-                t133,
-                minus_gproximal_wz_leg1 * t135 + t138,
+                t74,
+                t86 - minus_gproximal_wz_leg1 * t81,
+                t107 - minus_gproximal_wz_leg1 * t105,
+                t49 - t74,
+                -(minus_gproximal_wz_leg1 * t121 + t123),
+                t130,
+                c_distal_leg1 * t53 + t134,
                 0.0,
-                -t58,
-                t197,
-                minus_gproximal_wz_leg2 * t198,
-                t205,
-                t197,
+                -t57,
+                t192,
+                t196,
+                t200,
+                t192,
                 minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wz_leg2,
-                t224,
-                t239 - minus_gproximal_wz_leg2 * t231,
-                t260 - minus_gproximal_wz_leg2 * t255,
-                t197 - t224,
-                -(minus_gproximal_wz_leg2 * t272 + t276),
-                t281,
-                minus_gproximal_wz_leg2 * t282 + t288,
+                t217,
+                t232 - minus_gproximal_wz_leg2 * t224,
+                t253 - minus_gproximal_wz_leg2 * t248,
+                t192 - t217,
+                -(minus_gproximal_wz_leg2 * t265 + t269),
+                t274,
+                c_distal_leg2 * t196 + t280,
                 0.0,
-                -t205,
-                t344,
-                minus_gproximal_wz_leg3 * t345,
-                t352,
-                t344,
+                -t200,
+                t334,
+                t338,
+                t342,
+                t334,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t371,
-                t375 - minus_gproximal_wz_leg3 * t382,
-                t390 - minus_gproximal_wz_leg3 * t403,
-                t344 - t371,
-                -(minus_gproximal_wz_leg3 * t418 + t420),
-                t427,
-                minus_gproximal_wz_leg3 * t429 + t432,
+                t359,
+                t363 - minus_gproximal_wz_leg3 * t370,
+                t378 - minus_gproximal_wz_leg3 * t391,
+                t334 - t359,
+                -(minus_gproximal_wz_leg3 * t406 + t408),
+                t415,
+                c_distal_leg3 * t338 + t419,
                 0.0,
-                -t352,
-                t491,
-                minus_gproximal_wz_leg4 * t492,
-                t499,
-                t491,
+                -t342,
+                t476,
+                t480,
+                t484,
+                t476,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t518,
-                t532 - minus_gproximal_wz_leg4 * t525,
-                t553 - minus_gproximal_wz_leg4 * t549,
-                t491 - t518,
-                -(minus_gproximal_wz_leg4 * t565 + t570),
-                t575,
-                minus_gproximal_wz_leg4 * t578 + t582,
+                t502,
+                t515 - minus_gproximal_wz_leg4 * t508,
+                t536 - minus_gproximal_wz_leg4 * t532,
+                t476 - t502,
+                -(minus_gproximal_wz_leg4 * t548 + t553),
+                t558,
+                c_distal_leg4 * t480 + t564,
                 0.0,
-                -t499,
-                t603 * t605 + t644 - t646,
-                t603 * t653 + t632 * t656 + t622 * t661,
-                t603 * t679 + t632 * t682 + t622 * t685,
-                t632 * t652 - t707 + t646,
-                t603 * t710 + t632 * t712 + t622 * t715,
-                t707 - t644 + t622 * t678,
+                -t484,
+                t585 * t587 + t626 - t628,
+                t585 * t635 + t614 * t638 + t604 * t643,
+                t585 * t661 + t614 * t664 + t604 * t667,
+                t614 * t634 - t689 + t628,
+                t585 * t692 + t614 * t694 + t604 * t697,
+                t689 - t626 + t604 * t660,
                 0.0,
                 0.0,
                 0.0,
@@ -2779,7 +2778,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 865 operations (332 additions, 526 multiplications, 7 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 697 intermediates.
+    /// 850 operations (329 additions, 505 multiplications, 16 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 682 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2792,615 +2791,613 @@ impl Spherical4Rrr {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
+        let t2 = 1.0 - t1;
         let t3 = 2.0 * pose[3];
         let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
+        let t5 = t2 - t4;
         let t6 = 2.0 * pose[1];
         let t7 = pose[3] * t6;
         let t8 = pose[0] * t0;
         let t9 = t7 + t8;
-        let t10 = t5 - t9;
         let t11 = t7 - t8;
-        let t13 = 1.0 - pose[1] * t6;
-        let t14 = t13 - t1;
-        let t15 = t11 - t14;
-        let minus_s_distal_leg1 = 0.5 * (t10 + t15);
-        let t19 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t19, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t19);
+        let t13 = t2 - pose[1] * t6;
+        let t14 = t11 - t13;
+        let minus_s_distal_leg1 = 0.5 * (t5 - t9 + t14);
+        let t18 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t18, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t21 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t21 * (t10 - minus_s_distal_leg1);
-        let t24 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t26 = 0.7071067811865475 * (t24 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t26 * t21;
-        let t28 = pose[2] * t6;
-        let t29 = pose[0] * t3;
-        let t30 = t28 + t29;
-        let t31 = pose[3] * t0;
-        let t32 = pose[0] * t6;
-        let t33 = t31 - t32;
-        let t34 = t30 - t33;
-        let s_proximal_leg1 = t21 * (0.7071067811865475 * t34);
-        let t37 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t37 * t21;
-        let t40 = t13 - t4;
-        let t41 = t40 - t33;
-        let t42 = t31 + t32;
-        let t43 = t42 - t14;
-        let minus_s_distal_leg2 = 0.5 * (t41 + t43);
-        let t47 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t47, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t47);
+        let t20 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t20 * (minus_s_distal_leg1 - t14);
+        let t23 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t25 = 0.7071067811865475 * (t23 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t25 * t20;
+        let t27 = pose[2] * t6;
+        let t28 = pose[0] * t3;
+        let t29 = t27 + t28;
+        let t30 = pose[3] * t0;
+        let t31 = pose[0] * t6;
+        let t32 = t30 - t31;
+        let t34 = 0.7071067811865475 * (t29 - t32);
+        let s_proximal_leg1 = t20 * t34;
+        let t36 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t36 * t20;
+        let t39 = t4 - t1;
+        let t40 = t13 - t39;
+        let t42 = t30 + t31;
+        let t43 = t42 - t13;
+        let minus_s_distal_leg2 = 0.5 * (t40 - t32 + t43);
+        let t46 = t27 - t28;
+        let t47 = t46 - t9;
+        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t50, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t49 = 1.0 / c_distal_leg2;
-        let c_proximal_leg2 = t49 * (t41 - minus_s_distal_leg2);
-        let t52 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t54 = 0.7071067811865475 * (t52 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t54 * t49;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t14);
-        let t61 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t61, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t61);
+        let minus_s_proximal_leg2 = 0.7071067811865475 * t47 / c_distal_leg2;
+        let t53 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t54 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = t53 * t54;
+        let c_proximal_leg2 = t54 * (minus_s_distal_leg2 - t43);
+        let t58 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t60 = 0.7071067811865475 * (t58 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t60 * t54;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t13);
+        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t67, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t67);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t63 = 1.0 / c_distal_leg3;
-        let t64 = t30 + t33;
-        let s_proximal_leg3 = t63 * (0.7071067811865475 * t64);
-        let t67 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t67 * t63;
-        let s_distal_leg4 = minus_s_distal_leg2 + t14 - t40;
-        let t74 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t74, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t74);
+        let t69 = 1.0 / c_distal_leg3;
+        let t70 = t11 + t13;
+        let c_proximal_leg3 = t69 * (t70 - s_distal_leg3);
+        let t73 = s_distal_leg3 * c_proximal_leg3;
+        let t75 = 0.7071067811865475 * (t73 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t75 * t69;
+        let t78 = 0.7071067811865475 * (t29 + t32);
+        let s_proximal_leg3 = t78 / c_distal_leg3;
+        let t80 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t80 * t69;
+        let s_distal_leg4 = minus_s_distal_leg2 + t39;
+        let t86 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t86, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t86);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t76 = 1.0 / c_distal_leg4;
-        let t77 = t42 + t14;
-        let c_proximal_leg4 = t76 * (t77 - s_distal_leg4);
-        let t80 = s_distal_leg4 * c_proximal_leg4;
-        let t82 = 0.7071067811865475 * (t80 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t82 * t76;
-        let t87 = t28 - t29;
-        let t88 = t87 - t9;
-        let minus_s_proximal_leg2 = t49 * (0.7071067811865475 * t88);
-        let t91 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t91 * t49;
-        let t95 = t11 + t14;
-        let c_proximal_leg3 = t63 * (t95 - s_distal_leg3);
-        let t98 = s_distal_leg3 * c_proximal_leg3;
-        let t100 = 0.7071067811865475 * (t98 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t100 * t63;
-        let t104 = t87 + t9;
-        let minus_s_proximal_leg4 = t76 * (0.7071067811865475 * t104);
-        let t107 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t107 * t76;
-        let t110 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t88 = 1.0 / c_distal_leg4;
+        let t89 = t46 + t9;
+        let minus_s_proximal_leg4 = t88 * (0.7071067811865475 * t89);
+        let t92 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t92 * t88;
+        let t94 = t42 + t13;
+        let c_proximal_leg4 = (t94 - s_distal_leg4) / c_distal_leg4;
+        let t97 = s_distal_leg4 * c_proximal_leg4;
+        let t99 = 0.7071067811865475 * (t97 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t99 * t88;
+        let t102 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t117 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t109 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
-        let t118 = 1.0 / t117;
-        let t119 = t110 * t118;
-        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t110 * t119;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        let t122 = 1.0 / t121;
+        ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
+        let t110 = t102 / t109;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t130 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t118 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t140 = t130 * t119
+        let t128 = t118 * t110
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t142 = t98 - c_distal_leg3;
-        let t143 = 0.7071067811865475 * t142;
-        let minus_gproximal_wz_leg3 = t143 * t63;
-        let t146 = t24 + c_distal_leg1;
-        let t147 = 0.7071067811865475 * t146;
-        let gproximal_wz_leg1 = t147 * t21;
-        let t150 = t52 + c_distal_leg2;
-        let t151 = 0.7071067811865475 * t150;
-        let gproximal_wz_leg2 = t151 * t49;
-        let t156 = t80 - c_distal_leg4;
-        let t157 = 0.7071067811865475 * t156;
-        let minus_gproximal_wz_leg4 = t157 * t76;
-        let t167 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t137 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t102 * t110;
+        ::overact::guard::platform(t137, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t137, 0.9999999999999998, "actuators")?;
+        let t139 = t73 - c_distal_leg3;
+        let t140 = 0.7071067811865475 * t139;
+        let minus_gproximal_wz_leg3 = t140 * t69;
+        let t143 = t23 + c_distal_leg1;
+        let t144 = 0.7071067811865475 * t143;
+        let gproximal_wz_leg1 = t144 * t20;
+        let t147 = t58 + c_distal_leg2;
+        let t148 = 0.7071067811865475 * t147;
+        let gproximal_wz_leg2 = t148 * t54;
+        let t153 = t97 - c_distal_leg4;
+        let t154 = 0.7071067811865475 * t153;
+        let minus_gproximal_wz_leg4 = t154 * t88;
+        let t164 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t168 = t167 * t118;
-        let t170 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t165 = t164 / t109;
+        let t167 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t110 * t168;
-        let t171 = t170 * t122;
-        let t182 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t167 * t168
-            - t170 * t171;
-        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
-        let t183 = 1.0 / t182;
-        let t194 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t102 * t165;
+        let t168 = t167 / t137;
+        let t179 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t130 * t168
-            - t171 * t140;
-        let t195 = t183 * t194;
-        let t197 = t122 * t140 - t171 * t195;
-        let t201 = t130 * t118 + t119 * t197 + t168 * t195;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t201 + c_proximal_leg1 * t197
-            + minus_gdistal_wx_leg1 * t195;
-        let t211 = t37 * t197 - t26 * t201 - t147 * t195;
-        let minus_rate_proximal_leg1 = t21 * t211;
-        let t213 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
-        let t214 = rate_distal_leg1 * t213;
-        let t219 = t30 * t197 - t5 * t201 + t11 * t195;
-        let t224 = t33 * t197 - t9 * t201 + t14 * t195;
-        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * (t219 - t224) + t213;
-        let t229 = t214 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t21 * t229;
-        let t231 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t118 * t165
+            - t168 * t128;
+        let t190 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2
+            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t164 * t165
+            - t167 * t168;
+        ::overact::guard::platform(t190, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t190, 1.9999999999999996, "actuators")?;
+        let t191 = t179 / t190;
+        let t193 = t128 / t137 - t168 * t191;
+        let t197 = t118 / t109 + t110 * t193 + t165 * t191;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t197 + c_proximal_leg1 * t193
+            + minus_gdistal_wx_leg1 * t191;
+        let t207 = t36 * t193 - t25 * t197 - t144 * t191;
+        let minus_rate_proximal_leg1 = t20 * t207;
+        let t209 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t210 = rate_distal_leg1 * t209;
+        let t215 = t29 * t193 - t5 * t197 + t11 * t191;
+        let t220 = t32 * t193 - t9 * t197 + t13 * t191;
+        let t221 = t215 - t220;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t221 + t209;
+        let t225 = t210 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t20 * t225;
+        let t227 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t201 + gdistal_wy_leg2 * t197
-            - gdistal_wy_leg2 * t195;
-        let t243 = t54 * t197 - t91 * t201 - t151 * t195;
-        let minus_rate_proximal_leg2 = t49 * t243;
-        let t245 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
-        let t246 = rate_distal_leg2 * t245;
-        let t251 = t40 * t197 - t87 * t201 + t42 * t195;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * (t224 - t251) - t245;
-        let t256 = t246 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t49 * t256;
-        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t197 + gdistal_wy_leg2 * t193
+            - gdistal_wy_leg2 * t191;
+        let t239 = t60 * t193 - t53 * t197 - t148 * t191;
+        let minus_rate_proximal_leg2 = t54 * t239;
+        let t241 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t242 = rate_distal_leg2 * t241;
+        let t247 = t40 * t193 - t46 * t197 + t42 * t191;
+        let t248 = t220 - t247;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * t248 - t241;
+        let t252 = t242 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t54 * t252;
+        let t254 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t195
-            - (gdistal_wx_leg3 * t201 + c_proximal_leg3 * t197);
-        let t271 = t67 * t197 - t100 * t201 + t143 * t195;
-        let minus_rate_proximal_leg3 = t63 * t271;
-        let t273 = s_distal_leg3 * minus_rate_proximal_leg3;
-        let t274 = rate_distal_leg3 * t273;
-        let minus_rate_wrist_leg3 = t273 + 0.7071067811865475 * (t219 + t224);
-        let t279 = t274 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t63 * t279;
-        let t281 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t191
+            - (gdistal_wx_leg3 * t197 + c_proximal_leg3 * t193);
+        let t267 = t80 * t193 - t75 * t197 + t140 * t191;
+        let minus_rate_proximal_leg3 = t69 * t267;
+        let t269 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t270 = rate_distal_leg3 * t269;
+        let t271 = t215 + t220;
+        let minus_rate_wrist_leg3 = t269 + 0.7071067811865475 * t271;
+        let t275 = t270 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t69 * t275;
+        let t277 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t201
-            + minus_gdistal_wy_leg4 * t197 + minus_gdistal_wy_leg4 * t195;
-        let t294 = t82 * t197 - t107 * t201 + t157 * t195;
-        let minus_rate_proximal_leg4 = t76 * t294;
-        let t296 = s_distal_leg4 * minus_rate_proximal_leg4;
-        let t297 = minus_rate_distal_leg4 * t296;
-        let minus_rate_wrist_leg4 = t296 + 0.7071067811865475 * (t251 + t224);
-        let t302 = t297 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t76 * t302;
-        let t304 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t306 = minus_gproximal_wx_leg1 * t231 + minus_gproximal_wx_leg2 * t258
-            + minus_gproximal_wx_leg3 * t281 + minus_gproximal_wx_leg4 * t304;
-        let t315 = t119 * t306
-            - (minus_gproximal_wy_leg1 * t231 + minus_gproximal_wy_leg2 * t258
-                + minus_gproximal_wy_leg3 * t281 + minus_gproximal_wy_leg4 * t304);
-        let t327 = gproximal_wz_leg1 * t231 + gproximal_wz_leg2 * t258
-            - minus_gproximal_wz_leg3 * t281 - minus_gproximal_wz_leg4 * t304
-            + t168 * t306 - t171 * t315;
-        let t328 = t183 * t327;
-        let t330 = t122 * t315 - t171 * t328;
-        let t336 = t118 * t306 + t119 * t330 + t168 * t328;
-        let t341 = t37 * t330 - t26 * t336 - t147 * t328 - t229;
-        let minus_rate_dot_proximal_leg1 = t21 * t341;
-        let t343 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let t344 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let t345 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t346 = 6.936717523440031 * s_proximal_leg1;
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t197
+            + minus_gdistal_wy_leg4 * t193 + minus_gdistal_wy_leg4 * t191;
+        let t290 = t99 * t193 - t92 * t197 + t154 * t191;
+        let minus_rate_proximal_leg4 = t88 * t290;
+        let t292 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t293 = minus_rate_distal_leg4 * t292;
+        let t294 = t247 + t220;
+        let minus_rate_wrist_leg4 = t292 + 0.7071067811865475 * t294;
+        let t298 = t293 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t88 * t298;
+        let t300 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t302 = minus_gproximal_wx_leg1 * t227 + minus_gproximal_wx_leg2 * t254
+            + minus_gproximal_wx_leg3 * t277 + minus_gproximal_wx_leg4 * t300;
+        let t311 = t110 * t302
+            - (minus_gproximal_wy_leg1 * t227 + minus_gproximal_wy_leg2 * t254
+                + minus_gproximal_wy_leg3 * t277 + minus_gproximal_wy_leg4 * t300);
+        let t323 = gproximal_wz_leg1 * t227 + gproximal_wz_leg2 * t254
+            - minus_gproximal_wz_leg3 * t277 - minus_gproximal_wz_leg4 * t300
+            + t165 * t302 - t168 * t311;
+        let t324 = t323 / t190;
+        let t326 = t311 / t137 - t168 * t324;
+        let t332 = t302 / t109 + t110 * t326 + t165 * t324;
+        let t337 = t36 * t326 - t25 * t332 - t144 * t324 - t225;
+        let minus_rate_dot_proximal_leg1 = t20 * t337;
+        let t339 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t340 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t341 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t342 = 6.936717523440031 * s_proximal_leg1;
+        let t343 = minus_gproximal_wx_leg1 * t342;
+        let t344 = minus_gproximal_wy_leg1 * t342;
+        let t345 = gproximal_wz_leg1 * t342;
+        let t346 = 6.936717523440031 * c_proximal_leg1;
+        let t347 = minus_gproximal_wx_leg1 * t346;
         let t348 = minus_gproximal_wy_leg1 * t346;
-        let t350 = 6.936717523440031 * c_proximal_leg1;
-        let t351 = minus_gproximal_wx_leg1 * t350;
-        let t352 = minus_gproximal_wy_leg1 * t350;
-        let t353 = gproximal_wz_leg1 * t350;
-        let t361 = t214 + t341 + t214;
-        let t362 = c_distal_leg1 * t361;
-        let t364 = t211 * t213;
-        let t365 = minus_gdistal_wx_leg1 * t364;
-        let t366 = minus_gproximal_wx_leg1 * t362 + t365;
-        let t369 = minus_gproximal_wy_leg1 * t362 - c_proximal_leg1 * t364;
-        let t371 = gproximal_wz_leg1 * t362 + t365;
-        let t372 = t211 * rate_distal_leg1;
-        let t373 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t378 = c_distal_leg1 * (t372 - (t373 - t372)) - minus_s_distal_leg1 * t361;
-        let t380 = t211 * t211;
-        let t381 = t213 * t213;
-        let t382 = t380 - t381;
-        let t383 = minus_gdistal_wx_leg1 * t382;
-        let minus_minus_rate_dot_distal_leg1 = t211 * minus_minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t336 + c_proximal_leg1 * t330
-            + minus_gdistal_wx_leg1 * t328 + minus_minus_rate_dot_distal_leg1;
-        let t399 = rate_distal_leg1 * rate_distal_leg1;
-        let t402 = c_distal_leg1 * (t364 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t399 - t380);
-        let t404 = minus_gdistal_wx_leg1 * t341;
-        let t418 = minus_s_distal_leg1 * (t364 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t381 - t399);
-        let t420 = minus_gdistal_wx_leg1 * t373;
-        let t427 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t429 = 6.936717523440031 * t37;
-        let t431 = t15 * (-6.936717523440031);
-        let t432 = minus_gdistal_wx_leg1 * t431;
-        let t448 = t54 * t330 - t91 * t336 - t151 * t328 - t256;
-        let minus_rate_dot_proximal_leg2 = t49 * t448;
-        let t450 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let t451 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let t452 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t453 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t454 = minus_gproximal_wx_leg2 * t453;
-        let t457 = 6.936717523440031 * c_proximal_leg2;
-        let t458 = minus_gproximal_wx_leg2 * t457;
-        let t459 = minus_gproximal_wy_leg2 * t457;
-        let t460 = gproximal_wz_leg2 * t457;
-        let t468 = t246 + t448 + t246;
-        let t469 = c_distal_leg2 * t468;
-        let t471 = t243 * t245;
-        let t473 = minus_gproximal_wx_leg2 * t469 + c_proximal_leg2 * t471;
-        let t475 = gdistal_wy_leg2 * t471;
-        let t476 = minus_gproximal_wy_leg2 * t469 - t475;
-        let t478 = t475 - gproximal_wz_leg2 * t469;
-        let t479 = t243 * rate_distal_leg2;
-        let t480 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t485 = c_distal_leg2 * (t479 - (t480 - t479)) - minus_s_distal_leg2 * t468;
-        let t487 = t243 * t243;
-        let t488 = t245 * t245;
-        let t489 = t487 - t488;
-        let t492 = gdistal_wy_leg2 * t489;
-        let minus_rate_dot_distal_leg2 = t243 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t336 + gdistal_wy_leg2 * t330
-            - gdistal_wy_leg2 * t328 - minus_rate_dot_distal_leg2;
-        let t506 = rate_distal_leg2 * rate_distal_leg2;
-        let t509 = c_distal_leg2 * (t471 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t506 - t487);
-        let t514 = gdistal_wy_leg2 * t448;
-        let t525 = minus_s_distal_leg2 * (t471 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t488 - t506);
-        let t529 = gdistal_wy_leg2 * t480;
-        let t535 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t536 = 6.936717523440031 * t91;
-        let t542 = 0.7071067811865475 * t43 * t453;
-        let t555 = t67 * t330 - t100 * t336 + t143 * t328 + t279;
-        let minus_rate_dot_proximal_leg3_2 = t63 * t555;
-        let t557 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t558 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t559 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t560 = 6.936717523440031 * s_proximal_leg3;
-        let t562 = minus_gproximal_wy_leg3 * t560;
-        let t564 = 6.936717523440031 * c_proximal_leg3;
-        let t565 = minus_gproximal_wx_leg3 * t564;
-        let t566 = minus_gproximal_wy_leg3 * t564;
-        let t567 = minus_gproximal_wz_leg3 * t564;
-        let t574 = t271 * t273;
-        let t575 = gdistal_wx_leg3 * t574;
-        let t577 = t555 - t274 - t274;
-        let t578 = c_distal_leg3 * t577;
-        let t580 = t575 + minus_gproximal_wx_leg3 * t578;
-        let t583 = c_proximal_leg3 * t574 - minus_gproximal_wy_leg3 * t578;
-        let t585 = t575 + minus_gproximal_wz_leg3 * t578;
-        let t586 = t271 * t271;
-        let t587 = t273 * t273;
-        let t588 = t586 - t587;
-        let t589 = gdistal_wx_leg3 * t588;
-        let t590 = t271 * rate_distal_leg3;
-        let t591 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t596 = c_distal_leg3 * (t590 + t591 + t590) + s_distal_leg3 * t577;
-        let t604 = gdistal_wx_leg3 * t555;
-        let t605 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t271 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t328
-            - (gdistal_wx_leg3 * t336 + c_proximal_leg3 * t330)
+        let t349 = gproximal_wz_leg1 * t346;
+        let t357 = t210 + t337 + t210;
+        let t359 = t207 * t209;
+        let t360 = minus_gdistal_wx_leg1 * t359;
+        let t361 = t25 * t357 + t360;
+        let t362 = minus_s_distal_leg1 * t357;
+        let t365 = s_proximal_leg1 * t362 - c_proximal_leg1 * t359;
+        let t367 = t144 * t357 + t360;
+        let t368 = t207 * rate_distal_leg1;
+        let t369 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t373 = c_distal_leg1 * (t368 - (t369 - t368)) - t362;
+        let t375 = t207 * t207;
+        let t376 = t209 * t209;
+        let t377 = t375 - t376;
+        let t378 = minus_gdistal_wx_leg1 * t377;
+        let minus_minus_rate_dot_distal_leg1 = t207 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t332 + c_proximal_leg1 * t326
+            + minus_gdistal_wx_leg1 * t324 + minus_minus_rate_dot_distal_leg1;
+        let t394 = rate_distal_leg1 * rate_distal_leg1;
+        let t397 = c_distal_leg1 * (t359 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t394 - t375);
+        let t399 = minus_gdistal_wx_leg1 * t337;
+        let t413 = minus_s_distal_leg1 * (t359 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t376 - t394);
+        let t415 = minus_gdistal_wx_leg1 * t369;
+        let t422 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t425 = t14 * (-6.936717523440031);
+        let t426 = minus_gdistal_wx_leg1 * t425;
+        let t442 = t60 * t326 - t53 * t332 - t148 * t324 - t252;
+        let minus_rate_dot_proximal_leg2 = t54 * t442;
+        let t444 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let t445 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let t446 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t447 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t448 = minus_gproximal_wx_leg2 * t447;
+        let t449 = minus_gproximal_wy_leg2 * t447;
+        let t450 = gproximal_wz_leg2 * t447;
+        let t451 = 6.936717523440031 * c_proximal_leg2;
+        let t452 = minus_gproximal_wx_leg2 * t451;
+        let t453 = minus_gproximal_wy_leg2 * t451;
+        let t454 = gproximal_wz_leg2 * t451;
+        let t462 = t242 + t442 + t242;
+        let t463 = minus_s_distal_leg2 * t462;
+        let t465 = t239 * t241;
+        let t467 = minus_s_proximal_leg2 * t463 + c_proximal_leg2 * t465;
+        let t469 = gdistal_wy_leg2 * t465;
+        let t470 = t60 * t462 - t469;
+        let t472 = t469 - t148 * t462;
+        let t473 = t239 * rate_distal_leg2;
+        let t474 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t478 = c_distal_leg2 * (t473 - (t474 - t473)) - t463;
+        let t480 = t239 * t239;
+        let t481 = t241 * t241;
+        let t482 = t480 - t481;
+        let t485 = gdistal_wy_leg2 * t482;
+        let minus_rate_dot_distal_leg2 = t239 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t332 + gdistal_wy_leg2 * t326
+            - gdistal_wy_leg2 * t324 - minus_rate_dot_distal_leg2;
+        let t499 = rate_distal_leg2 * rate_distal_leg2;
+        let t502 = c_distal_leg2 * (t465 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t499 - t480);
+        let t507 = gdistal_wy_leg2 * t442;
+        let t518 = minus_s_distal_leg2 * (t465 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t481 - t499);
+        let t522 = gdistal_wy_leg2 * t474;
+        let t528 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t534 = 0.7071067811865475 * t43 * t447;
+        let t547 = t80 * t326 - t75 * t332 + t140 * t324 + t275;
+        let minus_rate_dot_proximal_leg3_2 = t69 * t547;
+        let t549 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t550 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t551 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t552 = 6.936717523440031 * s_proximal_leg3;
+        let t553 = minus_gproximal_wx_leg3 * t552;
+        let t554 = minus_gproximal_wy_leg3 * t552;
+        let t555 = minus_gproximal_wz_leg3 * t552;
+        let t556 = 6.936717523440031 * c_proximal_leg3;
+        let t557 = minus_gproximal_wx_leg3 * t556;
+        let t558 = minus_gproximal_wy_leg3 * t556;
+        let t559 = minus_gproximal_wz_leg3 * t556;
+        let t566 = t267 * t269;
+        let t567 = gdistal_wx_leg3 * t566;
+        let t569 = t547 - t270 - t270;
+        let t571 = t567 + t75 * t569;
+        let t572 = s_distal_leg3 * t569;
+        let t575 = c_proximal_leg3 * t566 - s_proximal_leg3 * t572;
+        let t577 = t567 + t140 * t569;
+        let t578 = t267 * t267;
+        let t579 = t269 * t269;
+        let t580 = t578 - t579;
+        let t581 = gdistal_wx_leg3 * t580;
+        let t582 = t267 * rate_distal_leg3;
+        let t583 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t587 = c_distal_leg3 * (t582 + t583 + t582) + t572;
+        let t595 = gdistal_wx_leg3 * t547;
+        let t596 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t267 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t324
+            - (gdistal_wx_leg3 * t332 + c_proximal_leg3 * t326)
             - minus_rate_dot_distal_leg3;
-        let t617 = s_distal_leg3 * (t605 - t586)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t574);
-        let t632 = s_distal_leg3 * (t574 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t587 - t605);
-        let t634 = gdistal_wx_leg3 * t591;
-        let t641 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t643 = 6.936717523440031 * t67;
-        let t645 = t95 * 6.936717523440031;
-        let t646 = gdistal_wx_leg3 * t645;
-        let t662 = t82 * t330 - t107 * t336 + t157 * t328 - t302;
-        let minus_rate_dot_proximal_leg4 = t76 * t662;
-        let t664 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let t665 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let t666 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t667 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t671 = 6.936717523440031 * c_proximal_leg4;
-        let t672 = minus_gproximal_wx_leg4 * t671;
-        let t673 = minus_gproximal_wy_leg4 * t671;
-        let t674 = minus_gproximal_wz_leg4 * t671;
-        let t682 = t297 + t662 + t297;
-        let t683 = c_distal_leg4 * t682;
-        let t685 = t294 * t296;
-        let t687 = minus_gproximal_wx_leg4 * t683 + c_proximal_leg4 * t685;
-        let t689 = minus_gdistal_wy_leg4 * t685;
-        let t690 = minus_gproximal_wy_leg4 * t683 - t689;
-        let t692 = minus_gproximal_wz_leg4 * t683 - t689;
-        let t693 = t294 * t294;
-        let t694 = t296 * t296;
-        let t695 = t693 - t694;
-        let t698 = t294 * minus_rate_distal_leg4;
-        let t699 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t703 = s_distal_leg4 * t682 - c_distal_leg4 * (t698 + t698 - t699);
-        let t707 = minus_gdistal_wy_leg4 * t695;
-        let minus_rate_dot_distal_leg4 = t294 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t336
-            + minus_gdistal_wy_leg4 * t330 + minus_gdistal_wy_leg4 * t328
+        let t608 = s_distal_leg3 * (t596 - t578)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t566);
+        let t623 = s_distal_leg3 * (t566 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t579 - t596);
+        let t625 = gdistal_wx_leg3 * t583;
+        let t632 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t635 = t70 * 6.936717523440031;
+        let t636 = gdistal_wx_leg3 * t635;
+        let t652 = t99 * t326 - t92 * t332 + t154 * t324 - t298;
+        let minus_rate_dot_proximal_leg4 = t88 * t652;
+        let t654 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let t655 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let t656 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t657 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t658 = minus_gproximal_wx_leg4 * t657;
+        let t659 = minus_gproximal_wy_leg4 * t657;
+        let t661 = 6.936717523440031 * c_proximal_leg4;
+        let t662 = minus_gproximal_wx_leg4 * t661;
+        let t663 = minus_gproximal_wy_leg4 * t661;
+        let t664 = minus_gproximal_wz_leg4 * t661;
+        let t672 = t293 + t652 + t293;
+        let t673 = s_distal_leg4 * t672;
+        let t675 = t290 * t292;
+        let t677 = minus_s_proximal_leg4 * t673 + c_proximal_leg4 * t675;
+        let t679 = minus_gdistal_wy_leg4 * t675;
+        let t680 = t99 * t672 - t679;
+        let t682 = t154 * t672 - t679;
+        let t683 = t290 * t290;
+        let t684 = t292 * t292;
+        let t685 = t683 - t684;
+        let t687 = t290 * minus_rate_distal_leg4;
+        let t688 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t692 = t673 - c_distal_leg4 * (t687 + t687 - t688);
+        let t696 = minus_gdistal_wy_leg4 * t685;
+        let minus_rate_dot_distal_leg4 = t290 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t332
+            + minus_gdistal_wy_leg4 * t326 + minus_gdistal_wy_leg4 * t324
             + minus_rate_dot_distal_leg4;
-        let t721 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t724 = c_distal_leg4 * (t685 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t721 - t693);
-        let t728 = minus_gdistal_wy_leg4 * t662;
-        let t739 = c_distal_leg4 * (t694 - t721)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t685);
-        let t744 = minus_gdistal_wy_leg4 * t699;
-        let t749 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
-        let t751 = 6.936717523440031 * t107;
-        let t757 = t667 * (0.7071067811865475 * t77) + minus_gproximal_wy_leg4 * t751;
-        let t758 = t107 * 9.81;
-        let t768 = t30 * t330 - t5 * t336 + t11 * t328;
-        let t770 = t219 * t224;
-        let t771 = t87 * t770;
-        let t773 = t219 * t251;
-        let t774 = t9 * t773;
-        let t777 = t40 * t770;
-        let t779 = t33 * t773;
-        let t782 = t42 * t770;
-        let t784 = t14 * t773;
-        let t790 = t40 * t330 - t87 * t336 + t42 * t328;
-        let t791 = t790 - t770;
-        let t793 = t251 * t224;
-        let t794 = t768 + t793;
-        let t797 = t219 * t219;
-        let t798 = t251 * t251;
-        let t799 = t797 - t798;
-        let t816 = t33 * t330 - t9 * t336 + t14 * t328;
-        let t817 = t816 + t773;
-        let t819 = t224 * t224;
-        let t820 = t819 - t797;
-        let t823 = t768 - t793;
-        let t837 = t5 * t793;
-        let t841 = t30 * t793;
-        let t845 = t11 * t793;
-        let t848 = t798 - t819;
-        let t850 = t816 - t773;
-        let t853 = t790 + t770;
+        let t710 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t713 = c_distal_leg4 * (t675 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t710 - t683);
+        let t717 = minus_gdistal_wy_leg4 * t652;
+        let t728 = c_distal_leg4 * (t684 - t710)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t675);
+        let t733 = minus_gdistal_wy_leg4 * t688;
+        let t738 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
+        let t745 = t657 * (0.7071067811865475 * t94) + s_distal_leg4 * t659;
+        let t746 = t92 * 9.81;
+        let t756 = t29 * t326 - t5 * t332 + t11 * t324;
+        let t758 = t215 * t220;
+        let t759 = t46 * t758;
+        let t761 = t215 * t247;
+        let t762 = t9 * t761;
+        let t765 = t40 * t758;
+        let t767 = t32 * t761;
+        let t770 = t42 * t758;
+        let t772 = t13 * t761;
+        let t778 = t40 * t326 - t46 * t332 + t42 * t324;
+        let t779 = t778 - t758;
+        let t781 = t247 * t220;
+        let t782 = t756 + t781;
+        let t785 = t271 * t221;
+        let t786 = t294 * t248;
+        let t787 = t785 + t786;
+        let t804 = t32 * t326 - t9 * t332 + t13 * t324;
+        let t805 = t804 + t761;
+        let t809 = t756 - t781;
+        let t823 = t5 * t781;
+        let t827 = t29 * t781;
+        let t831 = t11 * t781;
+        let t835 = t804 - t761;
+        let t838 = t778 + t758;
         Ok([
             [
-                t343, minus_gproximal_wx_leg1 * t346, t351, t343,
-                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                t339, t343, t347, t339, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t366,
-                -(minus_gproximal_wx_leg1 * t378 + t383),
-                minus_gproximal_wx_leg1 * t402 - t404,
-                t343 - t366,
-                -(minus_gproximal_wx_leg1 * t418 + t420),
-                -t427,
-                -(minus_gproximal_wx_leg1 * t429 + t432),
-                t34 * (-6.936717523440031),
-                -t351,
-                t450,
-                -t454,
-                t458,
-                t450,
+                t361,
+                -(minus_gproximal_wx_leg1 * t373 + t378),
+                minus_gproximal_wx_leg1 * t397 - t399,
+                t339 - t361,
+                -(minus_gproximal_wx_leg1 * t413 + t415),
+                -t422,
+                -(minus_s_distal_leg1 * t343 + t426),
+                t34 * (-9.81),
+                -t347,
+                t444,
+                -t448,
+                t452,
+                t444,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t473,
-                -(minus_gproximal_wx_leg2 * t485 + c_proximal_leg2 * t489),
-                minus_gproximal_wx_leg2 * t509 - c_proximal_leg2 * t448,
-                t450 - t473,
-                -(minus_gproximal_wx_leg2 * t525 + c_proximal_leg2 * t480),
+                t467,
+                -(minus_gproximal_wx_leg2 * t478 + c_proximal_leg2 * t482),
+                minus_gproximal_wx_leg2 * t502 - c_proximal_leg2 * t442,
+                t444 - t467,
+                -(minus_gproximal_wx_leg2 * t518 + c_proximal_leg2 * t474),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_gproximal_wx_leg2 * t536 + t43 * t457,
-                -(c_distal_leg2 * t454 + t150 * t457),
-                -t458,
+                minus_s_distal_leg2 * t448 + t43 * t451,
+                -(t53 * t447 + t147 * t451),
+                -t452,
+                t549,
+                t553,
                 t557,
-                minus_gproximal_wx_leg3 * t560,
-                t565,
-                t557,
+                t549,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t580,
-                t589 - minus_gproximal_wx_leg3 * t596,
-                t604 - minus_gproximal_wx_leg3 * t617,
-                t557 - t580,
-                -(minus_gproximal_wx_leg3 * t632 + t634),
-                t641,
-                minus_gproximal_wx_leg3 * t643 + t646,
-                t64 * 6.936717523440031,
-                -t565,
-                t664,
-                -(minus_gproximal_wx_leg4 * t667),
-                t672,
-                t664,
+                t571,
+                t581 - minus_gproximal_wx_leg3 * t587,
+                t595 - minus_gproximal_wx_leg3 * t608,
+                t549 - t571,
+                -(minus_gproximal_wx_leg3 * t623 + t625),
+                t632,
+                s_distal_leg3 * t553 + t636,
+                9.81 * t78,
+                -t557,
+                t654,
+                -t658,
+                t662,
+                t654,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t687,
-                c_proximal_leg4 * t695 - minus_gproximal_wx_leg4 * t703,
-                c_proximal_leg4 * t662 - minus_gproximal_wx_leg4 * t724,
-                t664 - t687,
-                minus_gproximal_wx_leg4 * t739 - c_proximal_leg4 * t699,
+                t677,
+                c_proximal_leg4 * t685 - minus_gproximal_wx_leg4 * t692,
+                c_proximal_leg4 * t652 - minus_gproximal_wx_leg4 * t713,
+                t654 - t677,
+                minus_gproximal_wx_leg4 * t728 - c_proximal_leg4 * t688,
                 -(c_proximal_leg4 * minus_rate_dot_distal_leg4_2),
-                t77 * t671 - minus_gproximal_wx_leg4 * t751,
-                -(minus_gdistal_wy_leg4 * t758 + t156 * t671),
-                -t672,
-                t5 * t768 + t771 - t774,
-                t5 * t791 + t87 * t794 + t9 * t799,
-                t5 * t817 + t87 * t820 + t9 * t823,
-                t87 * t790 - t837 + t774,
-                t5 * t848 + t87 * t850 + t9 * t853,
-                t837 - t771 + t9 * t816,
-                9.81 * t30,
+                t94 * t661 - s_distal_leg4 * t658,
+                -(minus_gdistal_wy_leg4 * t746 + t153 * t661),
+                -t662,
+                t5 * t756 + t759 - t762,
+                t5 * t779 + t46 * t782 + t9 * t787,
+                t5 * t805 - t46 * t785 + t9 * t809,
+                t46 * t778 - t823 + t762,
+                t46 * t835 - t5 * t786 + t9 * t838,
+                t823 - t759 + t9 * t804,
+                9.81 * t29,
                 9.81 * t40,
-                9.81 * t33,
+                9.81 * t32,
             ],
             [
-                t344, t348, t352, t344, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t340, t344, t348, t340, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t369,
-                c_proximal_leg1 * t382 - minus_gproximal_wy_leg1 * t378,
-                minus_gproximal_wy_leg1 * t402 + c_proximal_leg1 * t341,
-                t344 - t369,
-                c_proximal_leg1 * t373 - minus_gproximal_wy_leg1 * t418,
+                t365,
+                c_proximal_leg1 * t377 - minus_gproximal_wy_leg1 * t373,
+                minus_gproximal_wy_leg1 * t397 + c_proximal_leg1 * t337,
+                t340 - t365,
+                c_proximal_leg1 * t369 - minus_gproximal_wy_leg1 * t413,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * t431 - minus_gproximal_wy_leg1 * t429,
-                c_distal_leg1 * t348 + t146 * t350,
-                -t352,
-                t451,
-                -(minus_gproximal_wy_leg2 * t453),
-                t459,
-                t451,
+                c_proximal_leg1 * t425 - minus_s_distal_leg1 * t344,
+                c_distal_leg1 * t344 + t143 * t346,
+                -t348,
+                t445,
+                -t449,
+                t453,
+                t445,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t476,
-                t492 - minus_gproximal_wy_leg2 * t485,
-                minus_gproximal_wy_leg2 * t509 + t514,
-                t451 - t476,
-                t529 - minus_gproximal_wy_leg2 * t525,
-                t535,
-                minus_gproximal_wy_leg2 * t536 - t542,
-                t88 * 6.936717523440031,
-                -t459,
+                t470,
+                t485 - minus_gproximal_wy_leg2 * t478,
+                minus_gproximal_wy_leg2 * t502 + t507,
+                t445 - t470,
+                t522 - minus_gproximal_wy_leg2 * t518,
+                t528,
+                minus_s_distal_leg2 * t449 - t534,
+                t47 * 6.936717523440031,
+                -t453,
+                t550,
+                t554,
                 t558,
-                t562,
-                t566,
-                t558,
+                t550,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t583,
-                -(minus_gproximal_wy_leg3 * t596 + c_proximal_leg3 * t588),
-                -(minus_gproximal_wy_leg3 * t617 + c_proximal_leg3 * t555),
-                t558 + t583,
-                c_proximal_leg3 * t591 - minus_gproximal_wy_leg3 * t632,
+                -t575,
+                -(minus_gproximal_wy_leg3 * t587 + c_proximal_leg3 * t580),
+                -(minus_gproximal_wy_leg3 * t608 + c_proximal_leg3 * t547),
+                t550 + t575,
+                c_proximal_leg3 * t583 - minus_gproximal_wy_leg3 * t623,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                minus_gproximal_wy_leg3 * t643 - c_proximal_leg3 * t645,
-                c_distal_leg3 * t562 + t142 * t564,
-                -t566,
-                t665,
-                -(minus_gproximal_wy_leg4 * t667),
-                t673,
-                t665,
+                s_distal_leg3 * t554 - c_proximal_leg3 * t635,
+                c_distal_leg3 * t554 + t139 * t556,
+                -t558,
+                t655,
+                -t659,
+                t663,
+                t655,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t690,
-                -(minus_gproximal_wy_leg4 * t703 + t707),
-                -(minus_gproximal_wy_leg4 * t724 + t728),
-                t665 - t690,
-                minus_gproximal_wy_leg4 * t739 + t744,
-                t749,
-                -t757,
-                t104 * (-6.936717523440031),
-                -t673,
-                t30 * t768 + t777 - t779,
-                t30 * t791 + t40 * t794 + t33 * t799,
-                t30 * t817 + t40 * t820 + t33 * t823,
-                t40 * t790 - t841 + t779,
-                t30 * t848 + t40 * t850 + t33 * t853,
-                t841 - t777 + t33 * t816,
+                t680,
+                -(minus_gproximal_wy_leg4 * t692 + t696),
+                -(minus_gproximal_wy_leg4 * t713 + t717),
+                t655 - t680,
+                minus_gproximal_wy_leg4 * t728 + t733,
+                t738,
+                -t745,
+                t89 * (-6.936717523440031),
+                -t663,
+                t29 * t756 + t765 - t767,
+                t29 * t779 + t40 * t782 + t32 * t787,
+                t29 * t805 - t40 * t785 + t32 * t809,
+                t40 * t778 - t827 + t767,
+                t40 * t835 - t29 * t786 + t32 * t838,
+                t827 - t765 + t32 * t804,
                 -(9.81 * t5),
-                -(9.81 * t87),
+                -(9.81 * t46),
                 -(9.81 * t9),
             ],
             [
-                -t345, -(gproximal_wz_leg1 * t346), -t353, -t345,
-                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -t341, -t345, -t349, -t341, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t371, gproximal_wz_leg1 * t378 + t383,
-                t404 - gproximal_wz_leg1 * t402, t371 - t345, gproximal_wz_leg1 * t418 + t420, t427,
-                gproximal_wz_leg1 * t429 + t432, 0.0, t353, -t452, gproximal_wz_leg2 * t453, -t460,
-                -t452, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -t367, gproximal_wz_leg1 * t373 + t378,
+                t399 - gproximal_wz_leg1 * t397, t367 - t341, gproximal_wz_leg1 * t413 + t415, t422,
+                minus_s_distal_leg1 * t345 + t426, 0.0, t349, -t446, t450, -t454, -t446,
+                -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t478, gproximal_wz_leg2 * t485 - t492,
-                -(gproximal_wz_leg2 * t509 + t514), -(t452 + t478), gproximal_wz_leg2 * t525 - t529,
-                -t535, t542 - gproximal_wz_leg2 * t536, 0.0, t460, t559,
-                minus_gproximal_wz_leg3 * t560, t567, t559,
+                gproximal_wz_leg2, t472, gproximal_wz_leg2 * t478 - t485,
+                -(gproximal_wz_leg2 * t502 + t507), -(t446 + t472), gproximal_wz_leg2 * t518 - t522,
+                -t528, t534 - minus_s_distal_leg2 * t450, 0.0, t454, t551, t555, t559, t551,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t585,
-                t589 - minus_gproximal_wz_leg3 * t596,
-                t604 - minus_gproximal_wz_leg3 * t617,
-                t559 - t585,
-                -(minus_gproximal_wz_leg3 * t632 + t634),
-                t641,
-                minus_gproximal_wz_leg3 * t643 + t646,
+                t577,
+                t581 - minus_gproximal_wz_leg3 * t587,
+                t595 - minus_gproximal_wz_leg3 * t608,
+                t551 - t577,
+                -(minus_gproximal_wz_leg3 * t623 + t625),
+                t632,
+                s_distal_leg3 * t555 + t636,
                 0.0,
-                -t567,
-                t666,
-                -(minus_gproximal_wz_leg4 * t667),
-                t674,
-                t666,
+                -t559,
+                t656,
+                -(minus_gproximal_wz_leg4 * t657),
+                t664,
+                t656,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t692,
-                -(minus_gproximal_wz_leg4 * t703 + t707),
-                -(minus_gproximal_wz_leg4 * t724 + t728),
-                t666 - t692,
-                minus_gproximal_wz_leg4 * t739 + t744,
-                t749,
-                t758 - t757,
+                t682,
+                -(minus_gproximal_wz_leg4 * t692 + t696),
+                -(minus_gproximal_wz_leg4 * t713 + t717),
+                t656 - t682,
+                minus_gproximal_wz_leg4 * t728 + t733,
+                t738,
+                t746 - t745,
                 0.0,
-                -t674,
-                t11 * t768 + t782 - t784,
-                t11 * t791 + t42 * t794 + t14 * t799,
-                t11 * t817 + t42 * t820 + t14 * t823,
-                t42 * t790 - t845 + t784,
-                t11 * t848 + t42 * t850 + t14 * t853,
-                t845 - t782 + t14 * t816,
+                -t664,
+                t11 * t756 + t770 - t772,
+                t11 * t779 + t42 * t782 + t13 * t787,
+                t11 * t805 - t42 * t785 + t13 * t809,
+                t42 * t778 - t831 + t772,
+                t42 * t835 - t11 * t786 + t13 * t838,
+                t831 - t770 + t13 * t804,
                 0.0,
                 0.0,
                 0.0,
@@ -5134,7 +5131,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 697 operations (260 additions, 433 multiplications, 4 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 557 intermediates.
+    /// 681 operations (257 additions, 411 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 541 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5143,12 +5140,12 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let t0 = 2.0 * pose[2];
+        let t0 = pose[2] + pose[2];
         let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
+        let t3 = pose[3] + pose[3];
         let t4 = pose[3] * t3;
         let t5 = 1.0 - t1 - t4;
-        let t7 = 2.0 * pose[1];
+        let t7 = pose[1] + pose[1];
         let t8 = pose[2] * t7;
         let t9 = pose[0] * t3;
         let t10 = t8 + t9;
@@ -5162,7 +5159,8 @@ impl Spherical4Rrr {
         let t27 = pose[3] * t0;
         let t28 = pose[0] * t7;
         let t29 = t27 - t28;
-        let t33 = 1.0 - pose[1] * t7;
+        let t32 = pose[1] * t7;
+        let t33 = 1.0 - t32;
         let t34 = t33 - t1;
         let t36 = t25 * twist[0] + t29 * twist[1] + t34 * twist[2];
         let t37 = t24 * t36;
@@ -5180,51 +5178,52 @@ impl Spherical4Rrr {
         let t65 = t64 - t37;
         let t67 = t46 * t36;
         let t68 = t17 + t67;
-        let t71 = t24 * t24;
-        let t72 = t46 * t46;
-        let t73 = t71 - t72;
-        let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
-        let t91 = t90 + t47;
-        let t93 = t36 * t36;
-        let t94 = t93 - t71;
-        let t97 = t17 - t67;
-        let t111 = t5 * t67;
-        let t115 = t10 * t67;
-        let t119 = t15 * t67;
-        let t122 = t72 - t93;
-        let t124 = t90 - t47;
-        let t127 = t64 + t37;
-        let t155 = t5 - t25;
-        let t156 = t15 - t34;
-        let minus_s_distal_leg1 = 0.5 * (t155 + t156);
-        let t160 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t160, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t160);
+        let t71 = t24 + t36;
+        let t72 = t24 - t36;
+        let t73 = t71 * t72;
+        let t74 = t46 + t36;
+        let t75 = t36 - t46;
+        let t76 = t74 * t75;
+        let t77 = t73 + t76;
+        let t94 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
+        let t95 = t94 + t47;
+        let t99 = t17 - t67;
+        let t113 = t5 * t67;
+        let t117 = t10 * t67;
+        let t121 = t15 * t67;
+        let t125 = t94 - t47;
+        let t128 = t64 + t37;
+        let t156 = t5 - t25;
+        let t157 = t15 - t34;
+        let minus_s_distal_leg1 = 0.5 * (t156 + t157);
+        let t161 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t161, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t161);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t162 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t162 * (t155 - minus_s_distal_leg1);
-        let t165 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t167 = 0.7071067811865475 * (t165 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t167 * t162;
-        let s_proximal_leg1 = t162 * (0.7071067811865475 * (t10 - t29));
-        let t173 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t177 = 0.7071067811865475 * (t165 + c_distal_leg1);
+        let t163 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t163 * (t156 - minus_s_distal_leg1);
+        let t166 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t168 = 0.7071067811865475 * (t166 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t168 * t163;
+        let s_proximal_leg1 = 0.7071067811865475 * (t10 - t29) / c_distal_leg1;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t186 = minus_s_distal_leg1 * t162;
-        let t191 = t167 * twist[0] + t173 * twist[1] - t177 * twist[2];
-        let t192 = t186 * t191;
-        let t193 = rate_distal_leg1 * t192;
-        let rate_wrist_leg1 = t192 + 0.7071067811865475 * (t24 - t36);
-        let t199 = t167 * acceleration[0] + t173 * acceleration[1]
-            - t177 * acceleration[2] - (t193 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t162 * t199;
-        let minus_gproximal_wy_leg1 = t173 * t162;
-        let gproximal_wz_leg1 = t177 * t162;
-        let t206 = t41 - t29;
+        let t179 = minus_s_distal_leg1 * t163;
+        let t181 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t185 = 0.7071067811865475 * (t166 + c_distal_leg1);
+        let t187 = t168 * twist[0] + t181 * twist[1] - t185 * twist[2];
+        let t188 = t179 * t187;
+        let t189 = rate_distal_leg1 * t188;
+        let rate_wrist_leg1 = t188 + 0.7071067811865475 * t72;
+        let t198 = t168 * acceleration[0] + t181 * acceleration[1]
+            - t185 * acceleration[2] - rate_distal_leg1 * rate_wrist_leg1;
+        let t199 = t198 - t189;
+        let minus_rate_dot_proximal_leg1 = t163 * t199;
+        let minus_gproximal_wy_leg1 = t181 * t163;
+        let gproximal_wz_leg1 = t185 * t163;
         let t207 = t44 - t34;
-        let minus_s_distal_leg2 = 0.5 * (t206 + t207);
+        let minus_s_distal_leg2 = 0.5 * (t41 - t29 + t207);
         let t211 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t211, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t211);
@@ -5233,1181 +5232,201 @@ impl Spherical4Rrr {
         let minus_s_proximal_leg2 = t213 * (0.7071067811865475 * (t19 - t25));
         let t217 = minus_s_distal_leg2 * minus_s_proximal_leg2;
         let minus_gproximal_wx_leg2 = t217 * t213;
-        let c_proximal_leg2 = t213 * (t206 - minus_s_distal_leg2);
-        let t222 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t224 = 0.7071067811865475 * (t222 - c_distal_leg2);
-        let t228 = 0.7071067811865475 * (t222 + c_distal_leg2);
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
+        let c_proximal_leg2 = t213 * (minus_s_distal_leg2 - t207);
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t237 = minus_s_distal_leg2 * t213;
-        let t242 = t217 * twist[0] + t224 * twist[1] - t228 * twist[2];
-        let t243 = t237 * t242;
-        let t244 = rate_distal_leg2 * t243;
-        let rate_wrist_leg2 = t243 - 0.7071067811865475 * (t36 - t46);
-        let t250 = t217 * acceleration[0] + t224 * acceleration[1]
-            - t228 * acceleration[2] - (t244 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t213 * t250;
-        let minus_gproximal_wy_leg2 = t224 * t213;
-        let gproximal_wz_leg2 = t228 * t213;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t34);
-        let t260 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t260, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t260);
+        let t227 = minus_s_distal_leg2 * t213;
+        let t229 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t231 = 0.7071067811865475 * (t229 - c_distal_leg2);
+        let t235 = 0.7071067811865475 * (t229 + c_distal_leg2);
+        let t237 = t217 * twist[0] + t231 * twist[1] - t235 * twist[2];
+        let t238 = t227 * t237;
+        let t239 = rate_distal_leg2 * t238;
+        let rate_wrist_leg2 = t238 - 0.7071067811865475 * t75;
+        let t248 = t217 * acceleration[0] + t231 * acceleration[1]
+            - t235 * acceleration[2] - rate_distal_leg2 * rate_wrist_leg2;
+        let t249 = t248 - t239;
+        let minus_rate_dot_proximal_leg2 = t213 * t249;
+        let minus_gproximal_wy_leg2 = t231 * t213;
+        let gproximal_wz_leg2 = t235 * t213;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t32 - t4);
+        let t258 = t15 + t34;
+        let t261 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t261, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t261);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t262 = 1.0 / c_distal_leg3;
-        let t263 = t15 + t34;
-        let c_proximal_leg3 = t262 * (t263 - s_distal_leg3);
-        let t266 = s_distal_leg3 * c_proximal_leg3;
-        let t268 = 0.7071067811865475 * (t266 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t268 * t262;
-        let s_proximal_leg3 = t262 * (0.7071067811865475 * (t10 + t29));
-        let t274 = s_distal_leg3 * s_proximal_leg3;
-        let t278 = 0.7071067811865475 * (t266 - c_distal_leg3);
+        let c_proximal_leg3 = (t258 - s_distal_leg3) / c_distal_leg3;
+        let t264 = s_distal_leg3 * c_proximal_leg3;
+        let t266 = 0.7071067811865475 * (t264 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t266 / c_distal_leg3;
+        let s_proximal_leg3 = 0.7071067811865475 * (t10 + t29) / c_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t287 = s_distal_leg3 * t262;
-        let t292 = t268 * twist[0] + t274 * twist[1] + t278 * twist[2];
-        let t293 = t287 * t292;
-        let t294 = rate_distal_leg3 * t293;
-        let minus_rate_wrist_leg3 = t293 + 0.7071067811865475 * (t24 + t36);
-        let t300 = t268 * acceleration[0] + t274 * acceleration[1]
-            + t278 * acceleration[2] + t294 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t262 * t300;
-        let minus_gproximal_wy_leg3 = t274 * t262;
-        let minus_gproximal_wz_leg3 = t278 * t262;
-        let minus_s_distal_leg4 = minus_s_distal_leg2 + t29 - t44;
-        let t310 = 1.0 - minus_s_distal_leg4 * minus_s_distal_leg4;
-        ::overact::guard::reach(t310, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t310);
+        let t277 = s_distal_leg3 / c_distal_leg3;
+        let t279 = s_distal_leg3 * s_proximal_leg3;
+        let t283 = 0.7071067811865475 * (t264 - c_distal_leg3);
+        let t285 = t266 * twist[0] + t279 * twist[1] + t283 * twist[2];
+        let t286 = t277 * t285;
+        let t287 = rate_distal_leg3 * t286;
+        let minus_rate_wrist_leg3 = t286 + 0.7071067811865475 * t71;
+        let t296 = t266 * acceleration[0] + t279 * acceleration[1]
+            + t283 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t297 = t287 + t296;
+        let minus_rate_dot_proximal_leg3 = t297 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t277;
+        let minus_gproximal_wz_leg3 = t283 / c_distal_leg3;
+        let s_distal_leg4 = t28 + t28 - minus_s_distal_leg2;
+        let t309 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t309, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t309);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t312 = 1.0 / c_distal_leg4;
-        let minus_s_proximal_leg4 = t312 * (0.7071067811865475 * (t19 + t25));
-        let t316 = minus_s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_minus_gproximal_wx_leg4 = t316 * t312;
-        let t319 = t44 + t34;
-        let c_proximal_leg4 = t312 * (t319 + minus_s_distal_leg4);
-        let t322 = minus_s_distal_leg4 * c_proximal_leg4;
-        let t324 = 0.7071067811865475 * (c_distal_leg4 - t322);
-        let t328 = 0.7071067811865475 * (t322 + c_distal_leg4);
+        let minus_s_proximal_leg4 = 0.7071067811865475 * (t19 + t25) / c_distal_leg4;
+        let t312 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t313 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t312 * t313;
+        let t315 = t44 + t34;
+        let c_proximal_leg4 = (t315 - s_distal_leg4) / c_distal_leg4;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t337 = minus_s_distal_leg4 * t312;
-        let t342 = t324 * twist[1] - t316 * twist[0] - t328 * twist[2];
-        let t343 = t337 * t342;
-        let t344 = rate_distal_leg4 * t343;
-        let minus_rate_wrist_leg4 = 0.7071067811865475 * (t46 + t36) - t343;
-        let t350 = t324 * acceleration[1] - t316 * acceleration[0]
-            - t328 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4 - t344;
-        let minus_rate_dot_proximal_leg4 = t312 * t350;
-        let minus_gproximal_wy_leg4 = t324 * t312;
-        let minus_minus_gproximal_wz_leg4 = t328 * t312;
-        let t357 = 6.936717523440031 * s_proximal_leg1;
-        let t361 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t365 = 6.936717523440031 * s_proximal_leg3;
-        let t369 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t373 = 6.936717523440031 * c_proximal_leg1;
-        let t377 = 6.936717523440031 * c_proximal_leg2;
-        let t381 = 6.936717523440031 * c_proximal_leg3;
-        let t385 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t162 * t191;
-        let minus_rate_proximal_leg2 = t213 * t242;
-        let minus_rate_proximal_leg3 = t262 * t292;
-        let minus_rate_proximal_leg4 = t312 * t342;
-        let t418 = t193 + t199 + t193;
-        let t419 = c_distal_leg1 * t418;
-        let t421 = t191 * t192;
-        let t422 = minus_gdistal_wx_leg1 * t421;
-        let t430 = t244 + t250 + t244;
-        let t431 = c_distal_leg2 * t430;
-        let t433 = t242 * t243;
-        let t437 = gdistal_wy_leg2 * t433;
-        let t441 = t292 * t293;
-        let t442 = gdistal_wx_leg3 * t441;
-        let t444 = t300 - t294 - t294;
-        let t445 = c_distal_leg3 * t444;
-        let t453 = t342 * t343;
-        let t456 = t350 + t344 + t344;
-        let t457 = c_distal_leg4 * t456;
-        let t461 = minus_gdistal_wy_leg4 * t453;
-        let t465 = t191 * rate_distal_leg1;
-        let t466 = t186 * t199;
-        let t471 = c_distal_leg1 * (t465 - (t466 - t465)) - minus_s_distal_leg1 * t418;
-        let t473 = t191 * t191;
-        let t474 = t192 * t192;
-        let t475 = t473 - t474;
-        let t476 = minus_gdistal_wx_leg1 * t475;
-        let t483 = t242 * rate_distal_leg2;
-        let t484 = t237 * t250;
-        let t489 = c_distal_leg2 * (t483 - (t484 - t483)) - minus_s_distal_leg2 * t430;
-        let t491 = t242 * t242;
-        let t492 = t243 * t243;
-        let t493 = t491 - t492;
-        let t496 = gdistal_wy_leg2 * t493;
-        let t501 = t292 * t292;
-        let t502 = t293 * t293;
-        let t503 = t501 - t502;
-        let t504 = gdistal_wx_leg3 * t503;
-        let t505 = t292 * rate_distal_leg3;
-        let t506 = t287 * t300;
-        let t511 = c_distal_leg3 * (t505 + t506 + t505) + s_distal_leg3 * t444;
-        let t519 = t342 * t342;
-        let t520 = t343 * t343;
-        let t521 = t519 - t520;
-        let t523 = t342 * rate_distal_leg4;
-        let t524 = t337 * t350;
-        let t529 = c_distal_leg4 * (t523 + t523 - t524) - minus_s_distal_leg4 * t456;
-        let t533 = minus_gdistal_wy_leg4 * t521;
+        let t324 = s_distal_leg4 * t313;
+        let t326 = s_distal_leg4 * c_proximal_leg4;
+        let t328 = 0.7071067811865475 * (t326 + c_distal_leg4);
+        let t332 = 0.7071067811865475 * (t326 - c_distal_leg4);
+        let t334 = t312 * twist[0] + t328 * twist[1] + t332 * twist[2];
+        let t335 = t324 * t334;
+        let t336 = rate_distal_leg4 * t335;
+        let minus_rate_wrist_leg4 = t335 + 0.7071067811865475 * t74;
+        let t345 = t312 * acceleration[0] + t328 * acceleration[1]
+            + t332 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t346 = t336 + t345;
+        let minus_rate_dot_proximal_leg4 = t313 * t346;
+        let minus_gproximal_wy_leg4 = t328 * t313;
+        let minus_gproximal_wz_leg4 = t332 * t313;
+        let t353 = 6.936717523440031 * s_proximal_leg1;
+        let t354 = minus_gproximal_wx_leg1 * t353;
+        let t355 = minus_gproximal_wy_leg1 * t353;
+        let t356 = gproximal_wz_leg1 * t353;
+        let t357 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t358 = minus_gproximal_wx_leg2 * t357;
+        let t359 = minus_gproximal_wy_leg2 * t357;
+        let t360 = gproximal_wz_leg2 * t357;
+        let t361 = 6.936717523440031 * s_proximal_leg3;
+        let t362 = minus_gproximal_wx_leg3 * t361;
+        let t363 = minus_gproximal_wy_leg3 * t361;
+        let t364 = minus_gproximal_wz_leg3 * t361;
+        let t365 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t366 = minus_gproximal_wx_leg4 * t365;
+        let t367 = minus_gproximal_wy_leg4 * t365;
+        let t368 = minus_gproximal_wz_leg4 * t365;
+        let t369 = 6.936717523440031 * c_proximal_leg1;
+        let t373 = 6.936717523440031 * c_proximal_leg2;
+        let t377 = 6.936717523440031 * c_proximal_leg3;
+        let t381 = 6.936717523440031 * c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t163 * t187;
+        let minus_rate_proximal_leg2 = t213 * t237;
+        let minus_rate_proximal_leg3 = t285 / c_distal_leg3;
+        let minus_rate_proximal_leg4 = t313 * t334;
+        let t413 = t189 + t198;
+        let t415 = t187 * t188;
+        let t416 = minus_gdistal_wx_leg1 * t415;
+        let t418 = minus_s_distal_leg1 * t413;
+        let t424 = t239 + t248;
+        let t426 = t237 * t238;
+        let t430 = gdistal_wy_leg2 * t426;
+        let t434 = t285 * t286;
+        let t435 = gdistal_wx_leg3 * t434;
+        let t436 = t296 - t287;
+        let t444 = t334 * t335;
+        let t446 = t345 - t336;
+        let t450 = minus_gdistal_wy_leg4 * t444;
+        let t454 = t187 * rate_distal_leg1;
+        let t455 = t179 * t199;
+        let t459 = c_distal_leg1 * (t454 - (t455 - t454)) - t418;
+        let t461 = t187 * t187;
+        let t462 = t188 * t188;
+        let t463 = t461 - t462;
+        let t464 = minus_gdistal_wx_leg1 * t463;
+        let t471 = t237 * rate_distal_leg2;
+        let t472 = t227 * t249;
+        let t477 = c_distal_leg2 * (t471 - (t472 - t471)) - minus_s_distal_leg2 * t424;
+        let t479 = t237 * t237;
+        let t480 = t238 * t238;
+        let t481 = t479 - t480;
+        let t484 = gdistal_wy_leg2 * t481;
+        let t489 = t285 * t285;
+        let t490 = t286 * t286;
+        let t491 = t489 - t490;
+        let t492 = gdistal_wx_leg3 * t491;
+        let t493 = t285 * rate_distal_leg3;
+        let t494 = t277 * t297;
+        let t499 = c_distal_leg3 * (t493 + t494 + t493) + s_distal_leg3 * t436;
+        let t507 = t334 * t334;
+        let t508 = t335 * t335;
+        let t509 = t507 - t508;
+        let t511 = t334 * rate_distal_leg4;
+        let t512 = t324 * t346;
+        let t517 = c_distal_leg4 * (t511 + t512 + t511) + s_distal_leg4 * t446;
+        let t521 = minus_gdistal_wy_leg4 * t509;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t191 * rate_wrist_leg1;
-        let t546 = rate_distal_leg1 * rate_distal_leg1;
-        let t549 = c_distal_leg1 * (t421 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t546 - t473);
-        let t551 = minus_gdistal_wx_leg1 * t199;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t187 * rate_wrist_leg1;
+        let t534 = rate_distal_leg1 * rate_distal_leg1;
+        let t537 = c_distal_leg1 * (t415 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t534 - t461);
+        let t539 = minus_gdistal_wx_leg1 * t199;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t242 * rate_wrist_leg2;
-        let t567 = rate_distal_leg2 * rate_distal_leg2;
-        let t570 = c_distal_leg2 * (t433 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t567 - t491);
-        let t575 = gdistal_wy_leg2 * t250;
-        let t579 = gdistal_wx_leg3 * t300;
-        let t580 = rate_distal_leg3 * rate_distal_leg3;
+            + t237 * rate_wrist_leg2;
+        let t555 = rate_distal_leg2 * rate_distal_leg2;
+        let t558 = c_distal_leg2 * (t426 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t555 - t479);
+        let t563 = gdistal_wy_leg2 * t249;
+        let t567 = gdistal_wx_leg3 * t297;
+        let t568 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t292 * minus_rate_wrist_leg3;
-        let t592 = s_distal_leg3 * (t580 - t501)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t441);
-        let t601 = rate_distal_leg4 * rate_distal_leg4;
+            - t285 * minus_rate_wrist_leg3;
+        let t580 = s_distal_leg3 * (t568 - t489)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t434);
+        let t589 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t342 * minus_rate_wrist_leg4;
-        let t613 = minus_s_distal_leg4 * (t601 - t519)
-            + c_distal_leg4 * (rate_dot_distal_leg4 + t453);
-        let t617 = minus_gdistal_wy_leg4 * t350;
-        let t625 = minus_s_distal_leg1 * (t421 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t474 - t546);
-        let t627 = minus_gdistal_wx_leg1 * t466;
-        let t638 = minus_s_distal_leg2 * (t433 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t492 - t567);
-        let t642 = gdistal_wy_leg2 * t484;
-        let t651 = s_distal_leg3 * (t441 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t502 - t580);
-        let t653 = gdistal_wx_leg3 * t506;
-        let t664 = minus_s_distal_leg4 * (rate_dot_distal_leg4 - t453)
-            + c_distal_leg4 * (t520 - t601);
-        let t668 = minus_gdistal_wy_leg4 * t524;
-        let t673 = 6.936717523440031 * t173;
-        let t675 = t156 * (-6.936717523440031);
-        let t676 = minus_gdistal_wx_leg1 * t675;
-        let t683 = 6.936717523440031 * t217;
-        let t689 = 0.7071067811865475 * t207 * t361;
-        let t693 = 6.936717523440031 * t274;
-        let t695 = t263 * 6.936717523440031;
-        let t696 = gdistal_wx_leg3 * t695;
-        let t704 = 6.936717523440031 * t316;
-        let t708 = t369 * (0.7071067811865475 * t319);
+            - minus_gdistal_wy_leg4 * acceleration[2] - t334 * minus_rate_wrist_leg4;
+        let t601 = s_distal_leg4 * (t589 - t507)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t444);
+        let t605 = minus_gdistal_wy_leg4 * t346;
+        let t613 = minus_s_distal_leg1 * (t415 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t462 - t534);
+        let t615 = minus_gdistal_wx_leg1 * t455;
+        let t626 = minus_s_distal_leg2 * (t426 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t480 - t555);
+        let t630 = gdistal_wy_leg2 * t472;
+        let t639 = s_distal_leg3 * (t434 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t490 - t568);
+        let t641 = gdistal_wx_leg3 * t494;
+        let t652 = s_distal_leg4 * (t444 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t508 - t589);
+        let t656 = minus_gdistal_wy_leg4 * t512;
+        let t662 = t157 * (-6.936717523440031);
+        let t663 = minus_gdistal_wx_leg1 * t662;
+        let t675 = 0.7071067811865475 * t207 * t357;
+        let t680 = t258 * 6.936717523440031;
+        let t681 = gdistal_wx_leg3 * t680;
+        let t692 = t365 * (0.7071067811865475 * t315);
         Ok([
             [
-                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
-                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
-                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
+                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t77,
+                t5 * t95 - t19 * t73 + t25 * t99, t19 * t64 - t113 + t48,
+                t19 * t125 - t5 * t76 + t25 * t128, t113 - t38 + t25 * t94, 9.81 * t10, 9.81 * t41,
                 9.81 * t29, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
-                -(minus_minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4),
-                minus_gproximal_wx_leg1 * t357, -(minus_gproximal_wx_leg2 * t361),
-                minus_gproximal_wx_leg3 * t365, minus_minus_gproximal_wx_leg4 * t369,
-                minus_gproximal_wx_leg1 * t373, minus_gproximal_wx_leg2 * t377,
-                minus_gproximal_wx_leg3 * t381, -(minus_minus_gproximal_wx_leg4 * t385),
-                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
-                minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
-                minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
-                -(minus_minus_gproximal_wx_leg4 * minus_rate_proximal_leg4),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg1,
-                    minus_rate_proximal_leg1,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg2,
-                    minus_rate_proximal_leg2,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                -::overact::math::signed(
-                    minus_minus_gproximal_wx_leg4,
-                    minus_rate_proximal_leg4,
-                ),
-                -minus_gproximal_wx_leg1,
-                -minus_gproximal_wx_leg2,
-                -minus_gproximal_wx_leg3,
-                minus_minus_gproximal_wx_leg4,
-                minus_gproximal_wx_leg1 * t419 + t422,
-                minus_gproximal_wx_leg2 * t431 + c_proximal_leg2 * t433,
-                t442 + minus_gproximal_wx_leg3 * t445,
-                -(c_proximal_leg4 * t453 + minus_minus_gproximal_wx_leg4 * t457),
-                -(minus_gproximal_wx_leg1 * t471 + t476),
-                -(minus_gproximal_wx_leg2 * t489 + c_proximal_leg2 * t493),
-                t504 - minus_gproximal_wx_leg3 * t511,
-                c_proximal_leg4 * t521 + minus_minus_gproximal_wx_leg4 * t529,
-                minus_gproximal_wx_leg1 * t549 - t551,
-                minus_gproximal_wx_leg2 * t570 - c_proximal_leg2 * t250,
-                t579 - minus_gproximal_wx_leg3 * t592,
-                c_proximal_leg4 * t350 - minus_minus_gproximal_wx_leg4 * t613,
-                -(minus_gproximal_wx_leg1 * t625 + t627),
-                -(minus_gproximal_wx_leg2 * t638 + c_proximal_leg2 * t484),
-                -(minus_gproximal_wx_leg3 * t651 + t653),
-                -(minus_minus_gproximal_wx_leg4 * t664 - c_proximal_leg4 * t524),
-                -(minus_gproximal_wx_leg1 * t673 + t676),
-                minus_gproximal_wx_leg2 * t683 + t207 * t377,
-                minus_gproximal_wx_leg3 * t693 + t696,
-                t319 * t385 - minus_minus_gproximal_wx_leg4 * t704,
-            ],
-            [
-                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
-                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
-                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
-                -(9.81 * t19), -(9.81 * t25),
-                minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
-                minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
-                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wy_leg1 * t357, -(minus_gproximal_wy_leg2 * t361),
-                minus_gproximal_wy_leg3 * t365, -(minus_gproximal_wy_leg4 * t369),
-                minus_gproximal_wy_leg1 * t373, minus_gproximal_wy_leg2 * t377,
-                minus_gproximal_wy_leg3 * t381, minus_gproximal_wy_leg4 * t385,
-                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
-                minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
-                minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg1,
-                    minus_rate_proximal_leg1,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg2,
-                    minus_rate_proximal_leg2,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg4,
-                    minus_rate_proximal_leg4,
-                ),
-                -minus_gproximal_wy_leg1,
-                -minus_gproximal_wy_leg2,
-                -minus_gproximal_wy_leg3,
-                -minus_gproximal_wy_leg4,
-                minus_gproximal_wy_leg1 * t419 - c_proximal_leg1 * t421,
-                minus_gproximal_wy_leg2 * t431 - t437,
-                -(c_proximal_leg3 * t441 - minus_gproximal_wy_leg3 * t445),
-                minus_gproximal_wy_leg4 * t457 + t461,
-                c_proximal_leg1 * t475 - minus_gproximal_wy_leg1 * t471,
-                t496 - minus_gproximal_wy_leg2 * t489,
-                -(minus_gproximal_wy_leg3 * t511 + c_proximal_leg3 * t503),
-                -(minus_gproximal_wy_leg4 * t529 + t533),
-                minus_gproximal_wy_leg1 * t549 + c_proximal_leg1 * t199,
-                minus_gproximal_wy_leg2 * t570 + t575,
-                -(minus_gproximal_wy_leg3 * t592 + c_proximal_leg3 * t300),
-                -(t617 - minus_gproximal_wy_leg4 * t613),
-                c_proximal_leg1 * t466 - minus_gproximal_wy_leg1 * t625,
-                t642 - minus_gproximal_wy_leg2 * t638,
-                c_proximal_leg3 * t506 - minus_gproximal_wy_leg3 * t651,
-                minus_gproximal_wy_leg4 * t664 - t668,
-                c_proximal_leg1 * t675 - minus_gproximal_wy_leg1 * t673,
-                minus_gproximal_wy_leg2 * t683 - t689,
-                minus_gproximal_wy_leg3 * t693 - c_proximal_leg3 * t695,
-                minus_gproximal_wy_leg4 * t704 - t708,
-            ],
-            [
-                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
-                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
-                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
-                -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
-                -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
-                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
-                -(minus_minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4),
-                -(gproximal_wz_leg1 * t357), gproximal_wz_leg2 * t361,
-                minus_gproximal_wz_leg3 * t365, minus_minus_gproximal_wz_leg4 * t369,
-                -(gproximal_wz_leg1 * t373), -(gproximal_wz_leg2 * t377),
-                minus_gproximal_wz_leg3 * t381, -(minus_minus_gproximal_wz_leg4 * t385),
-                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
-                -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
-                minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
-                -(minus_minus_gproximal_wz_leg4 * minus_rate_proximal_leg4),
-                -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                -::overact::math::signed(
-                    minus_minus_gproximal_wz_leg4,
-                    minus_rate_proximal_leg4,
-                ),
-                gproximal_wz_leg1,
-                gproximal_wz_leg2,
-                -minus_gproximal_wz_leg3,
-                minus_minus_gproximal_wz_leg4,
-                -(gproximal_wz_leg1 * t419 + t422),
-                t437 - gproximal_wz_leg2 * t431,
-                t442 + minus_gproximal_wz_leg3 * t445,
-                -(minus_minus_gproximal_wz_leg4 * t457 - t461),
-                gproximal_wz_leg1 * t471 + t476,
-                gproximal_wz_leg2 * t489 - t496,
-                t504 - minus_gproximal_wz_leg3 * t511,
-                -(t533 - minus_minus_gproximal_wz_leg4 * t529),
-                t551 - gproximal_wz_leg1 * t549,
-                -(gproximal_wz_leg2 * t570 + t575),
-                t579 - minus_gproximal_wz_leg3 * t592,
-                -(minus_minus_gproximal_wz_leg4 * t613 + t617),
-                gproximal_wz_leg1 * t625 + t627,
-                gproximal_wz_leg2 * t638 - t642,
-                -(minus_gproximal_wz_leg3 * t651 + t653),
-                -(t668 + minus_minus_gproximal_wz_leg4 * t664),
-                gproximal_wz_leg1 * t673 + t676,
-                t689 - gproximal_wz_leg2 * t683,
-                minus_gproximal_wz_leg3 * t693 + t696,
-                -(t708 + minus_minus_gproximal_wz_leg4 * t704),
-            ],
-        ])
-    }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
-    ///
-    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
-    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
-    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
-    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
-    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
-    ///
-    /// Output: 3 x 53.
-    /// Columns: `BASE_PARAMETERS`.
-    ///
-    /// 687 operations (248 additions, 435 multiplications, 4 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 559 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
-    pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let [(c_distal_leg1, minus_s_distal_leg1),
-        (minus_s_proximal_leg1, minus_c_proximal_leg1),
-        (minus_s_proximal_leg2, minus_c_proximal_leg2),
-        (c_distal_leg2, minus_s_distal_leg2), (c_distal_leg3, minus_s_distal_leg3),
-        (minus_s_proximal_leg3, minus_c_proximal_leg3),
-        (minus_s_proximal_leg4, minus_c_proximal_leg4),
-        (c_distal_leg4, minus_s_distal_leg4)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[3], joints[4], joints[7], joints[6], joints[9], joints[10],
-        ]);
-        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
-        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
-        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
-        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t7 = 2.0 * pose[1];
-        let t8 = pose[2] * t7;
-        let t9 = pose[0] * t3;
-        let t10 = t8 + t9;
-        let t13 = pose[3] * t7;
-        let t14 = pose[0] * t0;
-        let t15 = t13 - t14;
-        let t17 = t5 * acceleration[0] + t10 * acceleration[1] + t15 * acceleration[2];
-        let t19 = t8 - t9;
-        let t24 = t5 * twist[0] + t10 * twist[1] + t15 * twist[2];
-        let t25 = t13 + t14;
-        let t27 = pose[3] * t0;
-        let t28 = pose[0] * t7;
-        let t29 = t27 - t28;
-        let t33 = 1.0 - pose[1] * t7;
-        let t34 = t33 - t1;
-        let t36 = t25 * twist[0] + t29 * twist[1] + t34 * twist[2];
-        let t37 = t24 * t36;
-        let t38 = t19 * t37;
-        let t41 = t33 - t4;
-        let t44 = t27 + t28;
-        let t46 = t19 * twist[0] + t41 * twist[1] + t44 * twist[2];
-        let t47 = t24 * t46;
-        let t48 = t25 * t47;
-        let t51 = t41 * t37;
-        let t53 = t29 * t47;
-        let t56 = t44 * t37;
-        let t58 = t34 * t47;
-        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
-        let t65 = t64 - t37;
-        let t67 = t46 * t36;
-        let t68 = t17 + t67;
-        let t71 = t24 * t24;
-        let t72 = t46 * t46;
-        let t73 = t71 - t72;
-        let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
-        let t91 = t90 + t47;
-        let t93 = t36 * t36;
-        let t94 = t93 - t71;
-        let t97 = t17 - t67;
-        let t111 = t5 * t67;
-        let t115 = t10 * t67;
-        let t119 = t15 * t67;
-        let t122 = t72 - t93;
-        let t124 = t90 - t47;
-        let t127 = t64 + t37;
-        let t159 = 0.7071067811865476 * minus_c_proximal_leg1;
-        let t160 = c_distal_leg1 * t159;
-        let t161 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t162 = t160 + t161;
-        let t163 = 1.0 / minus_s_distal_leg1;
-        let gproximal_wx_leg1 = t162 * t163;
-        let t165 = t160 - t161;
-        let t168 = minus_s_proximal_leg1 * c_distal_leg1;
-        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
-        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
-            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t178 = c_distal_leg1 * t163;
-        let t183 = t165 * twist[2] - (t162 * twist[0] + t168 * twist[1]);
-        let t184 = t178 * t183;
-        let t185 = rate_distal_leg1 * t184;
-        let t186 = 0.7071067811865476 * c_distal_leg1;
-        let t187 = minus_s_distal_leg1 * t159;
-        let t193 = t187 + t186;
-        let minus_rate_wrist_leg1 = t184 + (t186 - t187) * twist[0]
-            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t193 * twist[2];
-        let t199 = t165 * acceleration[2]
-            - (t162 * acceleration[0] + t168 * acceleration[1]) + t185
-            + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let minus_rate_dot_proximal_leg1 = t163 * t199;
-        let gproximal_wy_leg1 = t168 * t163;
-        let minus_gproximal_wz_leg1 = t165 * t163;
-        let t210 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t211 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t210 * t211;
-        let t214 = 0.7071067811865476 * minus_c_proximal_leg2;
-        let t215 = c_distal_leg2 * t214;
-        let t216 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t217 = t215 + t216;
-        let t220 = t215 - t216;
-        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
-            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t229 = c_distal_leg2 * t211;
-        let t234 = t210 * twist[0] - t217 * twist[1] + t220 * twist[2];
-        let t235 = t229 * t234;
-        let t236 = rate_distal_leg2 * t235;
-        let t239 = 0.7071067811865476 * c_distal_leg2;
-        let t240 = minus_s_distal_leg2 * t214;
-        let t244 = t240 + t239;
-        let minus_rate_wrist_leg2 = t235
-            + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
-            + (t239 - t240) * twist[1] + t244 * twist[2];
-        let t250 = t210 * acceleration[0] - t217 * acceleration[1]
-            + t220 * acceleration[2] + t236 + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let minus_rate_dot_proximal_leg2 = t211 * t250;
-        let gproximal_wy_leg2 = t217 * t211;
-        let minus_gproximal_wz_leg2 = t220 * t211;
-        let t261 = 0.7071067811865476 * minus_c_proximal_leg3;
-        let t262 = c_distal_leg3 * t261;
-        let t263 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t264 = t262 + t263;
-        let t265 = 1.0 / minus_s_distal_leg3;
-        let minus_gproximal_wx_leg3 = t264 * t265;
-        let t268 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t271 = t262 - t263;
-        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
-            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t280 = c_distal_leg3 * t265;
-        let t285 = t264 * twist[0] + t268 * twist[1] + t271 * twist[2];
-        let t286 = t280 * t285;
-        let t287 = rate_distal_leg3 * t286;
-        let t288 = minus_s_distal_leg3 * t261;
-        let t289 = 0.7071067811865476 * c_distal_leg3;
-        let t295 = t288 + t289;
-        let minus_rate_wrist_leg3 = t286 + (t288 - t289) * twist[0]
-            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t295 * twist[2];
-        let t301 = t264 * acceleration[0] + t268 * acceleration[1]
-            + t271 * acceleration[2] + t287 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t265 * t301;
-        let minus_gproximal_wy_leg3 = t268 * t265;
-        let minus_gproximal_wz_leg3 = t271 * t265;
-        let t312 = minus_s_proximal_leg4 * c_distal_leg4;
-        let t313 = 1.0 / minus_s_distal_leg4;
-        let gproximal_wx_leg4 = t312 * t313;
-        let t315 = 0.7071067811865476 * minus_c_proximal_leg4;
-        let t316 = c_distal_leg4 * t315;
-        let t317 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t318 = t316 + t317;
-        let t322 = t316 - t317;
-        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
-        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
-            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t331 = c_distal_leg4 * t313;
-        let t336 = t318 * twist[1] - t312 * twist[0] + t322 * twist[2];
-        let t337 = t331 * t336;
-        let t338 = rate_distal_leg4 * t337;
-        let t339 = minus_s_distal_leg4 * t315;
-        let t340 = 0.7071067811865476 * c_distal_leg4;
-        let t346 = t339 + t340;
-        let minus_rate_wrist_leg4 = t337 + (t339 - t340) * twist[1]
-            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t346 * twist[2];
-        let t352 = t318 * acceleration[1] - t312 * acceleration[0]
-            + t322 * acceleration[2] + t338 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t313 * t352;
-        let minus_gproximal_wy_leg4 = t318 * t313;
-        let minus_gproximal_wz_leg4 = t322 * t313;
-        let t359 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t363 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t367 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t371 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t375 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t379 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t383 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t387 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t163 * t183;
-        let minus_rate_proximal_leg2 = t211 * t234;
-        let minus_rate_proximal_leg3 = t265 * t285;
-        let minus_rate_proximal_leg4 = t313 * t336;
-        let t420 = t199 - t185 - t185;
-        let t421 = minus_s_distal_leg1 * t420;
-        let t423 = t183 * t184;
-        let t424 = minus_gdistal_wx_leg1 * t423;
-        let t432 = t250 - t236 - t236;
-        let t433 = minus_s_distal_leg2 * t432;
-        let t435 = t234 * t235;
-        let t439 = minus_gdistal_wy_leg2 * t435;
-        let t443 = t285 * t286;
-        let t444 = gdistal_wx_leg3 * t443;
-        let t446 = t301 - t287 - t287;
-        let t447 = minus_s_distal_leg3 * t446;
-        let t456 = t352 - t338 - t338;
-        let t457 = minus_s_distal_leg4 * t456;
-        let t459 = t336 * t337;
-        let t462 = gdistal_wy_leg4 * t459;
-        let t467 = t183 * rate_distal_leg1;
-        let t468 = t178 * t199;
-        let t473 = minus_s_distal_leg1 * (t467 + t468 + t467) + c_distal_leg1 * t420;
-        let t475 = t183 * t183;
-        let t476 = t184 * t184;
-        let t477 = t475 - t476;
-        let t478 = minus_gdistal_wx_leg1 * t477;
-        let t485 = t234 * rate_distal_leg2;
-        let t486 = t229 * t250;
-        let t491 = minus_s_distal_leg2 * (t485 + t486 + t485) + c_distal_leg2 * t432;
-        let t493 = t234 * t234;
-        let t494 = t235 * t235;
-        let t495 = t493 - t494;
-        let t499 = minus_gdistal_wy_leg2 * t495;
-        let t503 = t285 * t285;
-        let t504 = t286 * t286;
-        let t505 = t503 - t504;
-        let t506 = gdistal_wx_leg3 * t505;
-        let t507 = t285 * rate_distal_leg3;
-        let t508 = t280 * t301;
-        let t513 = minus_s_distal_leg3 * (t507 + t508 + t507) + c_distal_leg3 * t446;
-        let t521 = t336 * rate_distal_leg4;
-        let t522 = t331 * t352;
-        let t527 = minus_s_distal_leg4 * (t521 + t522 + t521) + c_distal_leg4 * t456;
-        let t529 = t336 * t336;
-        let t530 = t337 * t337;
-        let t531 = t529 - t530;
-        let t534 = gdistal_wy_leg4 * t531;
-        let t539 = rate_distal_leg1 * rate_distal_leg1;
-        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
-            - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] - t183 * minus_rate_wrist_leg1;
-        let t551 = c_distal_leg1 * (t539 - t475)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t423);
-        let t553 = minus_gdistal_wx_leg1 * t199;
-        let t560 = rate_distal_leg2 * rate_distal_leg2;
-        let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
-            - (minus_c_proximal_leg2 * acceleration[0]
-                + minus_gdistal_wy_leg2 * acceleration[1])
-            - t234 * minus_rate_wrist_leg2;
-        let t572 = c_distal_leg2 * (t560 - t493)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t435);
-        let t577 = minus_gdistal_wy_leg2 * t250;
-        let t581 = gdistal_wx_leg3 * t301;
-        let t582 = rate_distal_leg3 * rate_distal_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
-            - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t285 * minus_rate_wrist_leg3;
-        let t594 = c_distal_leg3 * (t582 - t503)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t443);
-        let t602 = rate_distal_leg4 * rate_distal_leg4;
-        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
-            + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t336 * minus_rate_wrist_leg4;
-        let t614 = c_distal_leg4 * (t602 - t529)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t459);
-        let t618 = gdistal_wy_leg4 * t352;
-        let t627 = c_distal_leg1 * (t423 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t476 - t539);
-        let t629 = minus_gdistal_wx_leg1 * t468;
-        let t641 = c_distal_leg2 * (t435 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t494 - t560);
-        let t645 = minus_gdistal_wy_leg2 * t486;
-        let t653 = c_distal_leg3 * (t443 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t504 - t582);
-        let t655 = gdistal_wx_leg3 * t508;
-        let t666 = c_distal_leg4 * (t459 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t530 - t602);
-        let t671 = gdistal_wy_leg4 * t522;
-        let t675 = c_distal_leg1 * t359;
-        let t677 = 9.81 * t193;
-        let t678 = minus_gdistal_wx_leg1 * t677;
-        let t685 = c_distal_leg2 * t363;
-        let t687 = 9.81 * t244;
-        let t691 = minus_gdistal_wy_leg2 * t687;
-        let t695 = c_distal_leg3 * t367;
-        let t697 = 9.81 * t295;
-        let t698 = gdistal_wx_leg3 * t697;
-        let t705 = 9.81 * t346;
-        let t707 = c_distal_leg4 * t371;
-        let t711 = gdistal_wy_leg4 * t705;
-        Ok([
-            [
-                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
-                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
-                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
-                9.81 * t29, -(gproximal_wx_leg1 * minus_rate_dot_proximal_leg1),
-                minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
-                minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
-                -(gproximal_wx_leg4 * minus_rate_dot_proximal_leg4), -(gproximal_wx_leg1 * t359),
-                minus_gproximal_wx_leg2 * t363, minus_gproximal_wx_leg3 * t367,
-                -(gproximal_wx_leg4 * t371), -(gproximal_wx_leg1 * t375),
-                minus_gproximal_wx_leg2 * t379, minus_gproximal_wx_leg3 * t383,
-                -(gproximal_wx_leg4 * t387), -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
-                minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
-                minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
-                -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
-                -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg2,
-                    minus_rate_proximal_leg2,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wx_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
-                gproximal_wx_leg1,
-                -minus_gproximal_wx_leg2,
-                -minus_gproximal_wx_leg3,
-                gproximal_wx_leg4,
-                -(gproximal_wx_leg1 * t421 + t424),
-                -(minus_c_proximal_leg2 * t435 - minus_gproximal_wx_leg2 * t433),
-                t444 + minus_gproximal_wx_leg3 * t447,
-                minus_c_proximal_leg4 * t459 - gproximal_wx_leg4 * t457,
-                gproximal_wx_leg1 * t473 - t478,
-                -(minus_gproximal_wx_leg2 * t491 + minus_c_proximal_leg2 * t495),
-                t506 - minus_gproximal_wx_leg3 * t513,
-                gproximal_wx_leg4 * t527 + minus_c_proximal_leg4 * t531,
-                gproximal_wx_leg1 * t551 - t553,
-                -(minus_gproximal_wx_leg2 * t572 + minus_c_proximal_leg2 * t250),
-                t581 - minus_gproximal_wx_leg3 * t594,
-                gproximal_wx_leg4 * t614 + minus_c_proximal_leg4 * t352,
-                gproximal_wx_leg1 * t627 + t629,
-                minus_c_proximal_leg2 * t486 - minus_gproximal_wx_leg2 * t641,
-                -(minus_gproximal_wx_leg3 * t653 + t655),
-                gproximal_wx_leg4 * t666 - minus_c_proximal_leg4 * t522,
-                -(gproximal_wx_leg1 * t675 + t678),
-                minus_gproximal_wx_leg2 * t685 - minus_c_proximal_leg2 * t687,
-                minus_gproximal_wx_leg3 * t695 + t698,
-                minus_c_proximal_leg4 * t705 - gproximal_wx_leg4 * t707,
-            ],
-            [
-                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
-                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
-                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
-                -(9.81 * t19), -(9.81 * t25), -(gproximal_wy_leg1 * minus_rate_dot_proximal_leg1),
-                -(gproximal_wy_leg2 * minus_rate_dot_proximal_leg2),
-                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wy_leg1 * t359),
-                -(gproximal_wy_leg2 * t363), minus_gproximal_wy_leg3 * t367,
-                minus_gproximal_wy_leg4 * t371, -(gproximal_wy_leg1 * t375),
-                -(gproximal_wy_leg2 * t379), minus_gproximal_wy_leg3 * t383,
-                minus_gproximal_wy_leg4 * t387, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
-                -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
-                minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
-                -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
-                -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wy_leg4,
-                    minus_rate_proximal_leg4,
-                ),
-                gproximal_wy_leg1,
-                gproximal_wy_leg2,
-                -minus_gproximal_wy_leg3,
-                -minus_gproximal_wy_leg4,
-                minus_c_proximal_leg1 * t423 - gproximal_wy_leg1 * t421,
-                -(gproximal_wy_leg2 * t433 + t439),
-                -(minus_c_proximal_leg3 * t443 - minus_gproximal_wy_leg3 * t447),
-                t462 + minus_gproximal_wy_leg4 * t457,
-                gproximal_wy_leg1 * t473 + minus_c_proximal_leg1 * t477,
-                gproximal_wy_leg2 * t491 - t499,
-                -(minus_gproximal_wy_leg3 * t513 + minus_c_proximal_leg3 * t505),
-                t534 - minus_gproximal_wy_leg4 * t527,
-                gproximal_wy_leg1 * t551 + minus_c_proximal_leg1 * t199,
-                gproximal_wy_leg2 * t572 - t577,
-                -(minus_gproximal_wy_leg3 * t594 + minus_c_proximal_leg3 * t301),
-                t618 - minus_gproximal_wy_leg4 * t614,
-                gproximal_wy_leg1 * t627 - minus_c_proximal_leg1 * t468,
-                gproximal_wy_leg2 * t641 + t645,
-                minus_c_proximal_leg3 * t508 - minus_gproximal_wy_leg3 * t653,
-                -(minus_gproximal_wy_leg4 * t666 + t671),
-                minus_c_proximal_leg1 * t677 - gproximal_wy_leg1 * t675,
-                -(gproximal_wy_leg2 * t685 + t691),
-                minus_gproximal_wy_leg3 * t695 - minus_c_proximal_leg3 * t697,
-                minus_gproximal_wy_leg4 * t707 + t711,
-            ],
-            [
-                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
-                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
-                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
-                minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1,
-                minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2,
-                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wz_leg1 * t359, minus_gproximal_wz_leg2 * t363,
-                minus_gproximal_wz_leg3 * t367, minus_gproximal_wz_leg4 * t371,
-                minus_gproximal_wz_leg1 * t375, minus_gproximal_wz_leg2 * t379,
-                minus_gproximal_wz_leg3 * t383, minus_gproximal_wz_leg4 * t387,
-                minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
-                minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
-                minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
-                minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg1,
-                    minus_rate_proximal_leg1,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg2,
-                    minus_rate_proximal_leg2,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg3,
-                    minus_rate_proximal_leg3,
-                ),
-                ::overact::math::signed(
-                    minus_gproximal_wz_leg4,
-                    minus_rate_proximal_leg4,
-                ),
-                -minus_gproximal_wz_leg1,
-                -minus_gproximal_wz_leg2,
-                -minus_gproximal_wz_leg3,
-                -minus_gproximal_wz_leg4,
-                t424 + minus_gproximal_wz_leg1 * t421,
-                t439 + minus_gproximal_wz_leg2 * t433,
-                t444 + minus_gproximal_wz_leg3 * t447,
-                t462 + minus_gproximal_wz_leg4 * t457,
-                t478 - minus_gproximal_wz_leg1 * t473,
-                t499 - minus_gproximal_wz_leg2 * t491,
-                t506 - minus_gproximal_wz_leg3 * t513,
-                t534 - minus_gproximal_wz_leg4 * t527,
-                t553 - minus_gproximal_wz_leg1 * t551,
-                t577 - minus_gproximal_wz_leg2 * t572,
-                t581 - minus_gproximal_wz_leg3 * t594,
-                t618 - minus_gproximal_wz_leg4 * t614,
-                -(minus_gproximal_wz_leg1 * t627 + t629),
-                -(minus_gproximal_wz_leg2 * t641 + t645),
-                -(minus_gproximal_wz_leg3 * t653 + t655),
-                -(minus_gproximal_wz_leg4 * t666 + t671),
-                minus_gproximal_wz_leg1 * t675 + t678,
-                minus_gproximal_wz_leg2 * t685 + t691,
-                minus_gproximal_wz_leg3 * t695 + t698,
-                minus_gproximal_wz_leg4 * t707 + t711,
-            ],
-        ])
-    }
-    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
-    ///
-    /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
-    /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
-    /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
-    /// - `actuators`: q, positions of the actuated joints (m, rad)
-    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
-    ///
-    /// Output: 3 x 53.
-    /// Columns: `BASE_PARAMETERS`.
-    ///
-    /// 829 operations (316 additions, 506 multiplications, 7 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 689 intermediates.
-    ///
-    /// # Errors
-    /// A pose out of reach, or a singular configuration.
-    pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 2.0 * pose[2];
-        let t1 = pose[2] * t0;
-        let t3 = 2.0 * pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t6 = 2.0 * pose[1];
-        let t7 = pose[2] * t6;
-        let t8 = pose[0] * t3;
-        let t9 = t7 + t8;
-        let t10 = pose[3] * t6;
-        let t11 = pose[0] * t0;
-        let t12 = t10 + t11;
-        let t13 = t5 - t12;
-        let t14 = t10 - t11;
-        let t16 = 1.0 - pose[1] * t6;
-        let t17 = t16 - t1;
-        let t18 = t14 - t17;
-        let minus_s_distal_leg1 = 0.5 * (t13 + t18);
-        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t22, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t22);
-        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t24 = 1.0 / c_distal_leg1;
-        let t25 = pose[3] * t0;
-        let t26 = pose[0] * t6;
-        let t27 = t25 - t26;
-        let s_proximal_leg1 = t24 * (0.7071067811865475 * (t9 - t27));
-        let t31 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t31 * t24;
-        let t34 = t16 - t4;
-        let t35 = t34 - t27;
-        let t36 = t25 + t26;
-        let t37 = t36 - t17;
-        let minus_s_distal_leg2 = 0.5 * (t35 + t37);
-        let t41 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t41, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t41);
-        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t43 = 1.0 / c_distal_leg2;
-        let c_proximal_leg2 = t43 * (t35 - minus_s_distal_leg2);
-        let t46 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t48 = 0.7071067811865475 * (t46 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t48 * t43;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t17);
-        let t55 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t55, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t55);
-        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t57 = 1.0 / c_distal_leg3;
-        let s_proximal_leg3 = t57 * (0.7071067811865475 * (t9 + t27));
-        let t61 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t61 * t57;
-        let s_distal_leg4 = minus_s_distal_leg2 + t17 - t34;
-        let t68 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t68, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t68);
-        ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t70 = 1.0 / c_distal_leg4;
-        let t71 = t36 + t17;
-        let c_proximal_leg4 = t70 * (t71 - s_distal_leg4);
-        let t74 = s_distal_leg4 * c_proximal_leg4;
-        let t76 = 0.7071067811865475 * (t74 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t76 * t70;
-        let c_proximal_leg1 = t24 * (t13 - minus_s_distal_leg1);
-        let t82 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t84 = 0.7071067811865475 * (t82 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t84 * t24;
-        let t87 = t7 - t8;
-        let minus_s_proximal_leg2 = t43 * (0.7071067811865475 * (t87 - t12));
-        let t91 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t91 * t43;
-        let t95 = t14 + t17;
-        let c_proximal_leg3 = t57 * (t95 - s_distal_leg3);
-        let t98 = s_distal_leg3 * c_proximal_leg3;
-        let t100 = 0.7071067811865475 * (t98 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t100 * t57;
-        let minus_s_proximal_leg4 = t70 * (0.7071067811865475 * (t87 + t12));
-        let t107 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t107 * t70;
-        let t110 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t117 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
-            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
-            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t117, 0.9999999999999998, "actuators")?;
-        let t118 = 1.0 / t117;
-        let t119 = t110 * t118;
-        let t121 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t110 * t119;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t121, 0.9999999999999998, "actuators")?;
-        let t122 = 1.0 / t121;
-        let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t130 = minus_gproximal_wx_leg1 * actuator_velocities[0]
-            + minus_gproximal_wx_leg2 * actuator_velocities[1]
-            + minus_gproximal_wx_leg3 * actuator_velocities[2]
-            + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t140 = t130 * t119
-            - (minus_gproximal_wy_leg1 * actuator_velocities[0]
-                + minus_gproximal_wy_leg2 * actuator_velocities[1]
-                + minus_gproximal_wy_leg3 * actuator_velocities[2]
-                + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t143 = 0.7071067811865475 * (t98 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t143 * t57;
-        let t147 = 0.7071067811865475 * (t82 + c_distal_leg1);
-        let gproximal_wz_leg1 = t147 * t24;
-        let t151 = 0.7071067811865475 * (t46 + c_distal_leg2);
-        let gproximal_wz_leg2 = t151 * t43;
-        let t157 = 0.7071067811865475 * (t74 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t157 * t70;
-        let t167 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
-            - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
-                + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t168 = t167 * t118;
-        let t170 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
-            - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
-                + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t110 * t168;
-        let t171 = t170 * t122;
-        let t182 = gproximal_wz_leg1 * gproximal_wz_leg1
-            + gproximal_wz_leg2 * gproximal_wz_leg2
-            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t167 * t168
-            - t170 * t171;
-        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t182, 1.9999999999999996, "actuators")?;
-        let t183 = 1.0 / t182;
-        let t194 = gproximal_wz_leg1 * actuator_velocities[0]
-            + gproximal_wz_leg2 * actuator_velocities[1]
-            - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t130 * t168
-            - t171 * t140;
-        let t195 = t183 * t194;
-        let t197 = t122 * t140 - t171 * t195;
-        let t201 = t130 * t118 + t119 * t197 + t168 * t195;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t201 + c_proximal_leg1 * t197
-            + minus_gdistal_wx_leg1 * t195;
-        let t211 = t31 * t197 - t84 * t201 - t147 * t195;
-        let minus_rate_proximal_leg1 = t24 * t211;
-        let t213 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
-        let t214 = rate_distal_leg1 * t213;
-        let t219 = t9 * t197 - t5 * t201 + t14 * t195;
-        let t224 = t27 * t197 - t12 * t201 + t17 * t195;
-        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * (t219 - t224) + t213;
-        let t229 = t214 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t24 * t229;
-        let t231 = actuator_accelerations[0] - rate_dot_proximal_leg1;
-        let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t201 + gdistal_wy_leg2 * t197
-            - gdistal_wy_leg2 * t195;
-        let t243 = t48 * t197 - t91 * t201 - t151 * t195;
-        let minus_rate_proximal_leg2 = t43 * t243;
-        let t245 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
-        let t246 = rate_distal_leg2 * t245;
-        let t251 = t34 * t197 - t87 * t201 + t36 * t195;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * (t224 - t251) - t245;
-        let t256 = t246 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t43 * t256;
-        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
-        let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t195
-            - (gdistal_wx_leg3 * t201 + c_proximal_leg3 * t197);
-        let t271 = t61 * t197 - t100 * t201 + t143 * t195;
-        let minus_rate_proximal_leg3 = t57 * t271;
-        let t273 = s_distal_leg3 * minus_rate_proximal_leg3;
-        let t274 = rate_distal_leg3 * t273;
-        let minus_rate_wrist_leg3 = t273 + 0.7071067811865475 * (t219 + t224);
-        let t279 = t274 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t57 * t279;
-        let t281 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t201
-            + minus_gdistal_wy_leg4 * t197 + minus_gdistal_wy_leg4 * t195;
-        let t294 = t76 * t197 - t107 * t201 + t157 * t195;
-        let minus_rate_proximal_leg4 = t70 * t294;
-        let t296 = s_distal_leg4 * minus_rate_proximal_leg4;
-        let t297 = minus_rate_distal_leg4 * t296;
-        let minus_rate_wrist_leg4 = t296 + 0.7071067811865475 * (t251 + t224);
-        let t302 = t297 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t70 * t302;
-        let t304 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t306 = minus_gproximal_wx_leg1 * t231 + minus_gproximal_wx_leg2 * t258
-            + minus_gproximal_wx_leg3 * t281 + minus_gproximal_wx_leg4 * t304;
-        let t315 = t119 * t306
-            - (minus_gproximal_wy_leg1 * t231 + minus_gproximal_wy_leg2 * t258
-                + minus_gproximal_wy_leg3 * t281 + minus_gproximal_wy_leg4 * t304);
-        let t327 = gproximal_wz_leg1 * t231 + gproximal_wz_leg2 * t258
-            - minus_gproximal_wz_leg3 * t281 - minus_gproximal_wz_leg4 * t304
-            + t168 * t306 - t171 * t315;
-        let t328 = t183 * t327;
-        let t330 = t122 * t315 - t171 * t328;
-        let t336 = t118 * t306 + t119 * t330 + t168 * t328;
-        let t340 = t9 * t330 - t5 * t336 + t14 * t328;
-        let t342 = t219 * t224;
-        let t343 = t87 * t342;
-        let t345 = t219 * t251;
-        let t346 = t12 * t345;
-        let t349 = t34 * t342;
-        let t351 = t27 * t345;
-        let t354 = t36 * t342;
-        let t356 = t17 * t345;
-        let t362 = t34 * t330 - t87 * t336 + t36 * t328;
-        let t363 = t362 - t342;
-        let t365 = t251 * t224;
-        let t366 = t340 + t365;
-        let t369 = t219 * t219;
-        let t370 = t251 * t251;
-        let t371 = t369 - t370;
-        let t388 = t27 * t330 - t12 * t336 + t17 * t328;
-        let t389 = t388 + t345;
-        let t391 = t224 * t224;
-        let t392 = t391 - t369;
-        let t395 = t340 - t365;
-        let t409 = t5 * t365;
-        let t413 = t9 * t365;
-        let t417 = t14 * t365;
-        let t420 = t370 - t391;
-        let t422 = t388 - t345;
-        let t425 = t362 + t342;
-        let t458 = t31 * t330 - t84 * t336 - t147 * t328 - t229;
-        let minus_rate_dot_proximal_leg1 = t24 * t458;
-        let t468 = t48 * t330 - t91 * t336 - t151 * t328 - t256;
-        let minus_rate_dot_proximal_leg2 = t43 * t468;
-        let t478 = t61 * t330 - t100 * t336 + t143 * t328 + t279;
-        let minus_rate_dot_proximal_leg3_2 = t57 * t478;
-        let t488 = t76 * t330 - t107 * t336 + t157 * t328 - t302;
-        let minus_rate_dot_proximal_leg4 = t70 * t488;
-        let t493 = 6.936717523440031 * s_proximal_leg1;
-        let t497 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t501 = 6.936717523440031 * s_proximal_leg3;
-        let t505 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t509 = 6.936717523440031 * c_proximal_leg1;
-        let t513 = 6.936717523440031 * c_proximal_leg2;
-        let t517 = 6.936717523440031 * c_proximal_leg3;
-        let t521 = 6.936717523440031 * c_proximal_leg4;
-        let t550 = t214 + t458 + t214;
-        let t551 = c_distal_leg1 * t550;
-        let t553 = t211 * t213;
-        let t554 = minus_gdistal_wx_leg1 * t553;
-        let t562 = t246 + t468 + t246;
-        let t563 = c_distal_leg2 * t562;
-        let t565 = t243 * t245;
-        let t569 = gdistal_wy_leg2 * t565;
-        let t573 = t271 * t273;
-        let t574 = gdistal_wx_leg3 * t573;
-        let t576 = t478 - t274 - t274;
-        let t577 = c_distal_leg3 * t576;
-        let t586 = t297 + t488 + t297;
-        let t587 = c_distal_leg4 * t586;
-        let t589 = t294 * t296;
-        let t593 = minus_gdistal_wy_leg4 * t589;
-        let t597 = t211 * rate_distal_leg1;
-        let t598 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t603 = c_distal_leg1 * (t597 - (t598 - t597)) - minus_s_distal_leg1 * t550;
-        let t605 = t211 * t211;
-        let t606 = t213 * t213;
-        let t607 = t605 - t606;
-        let t608 = minus_gdistal_wx_leg1 * t607;
-        let t615 = t243 * rate_distal_leg2;
-        let t616 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t621 = c_distal_leg2 * (t615 - (t616 - t615)) - minus_s_distal_leg2 * t562;
-        let t623 = t243 * t243;
-        let t624 = t245 * t245;
-        let t625 = t623 - t624;
-        let t628 = gdistal_wy_leg2 * t625;
-        let t633 = t271 * t271;
-        let t634 = t273 * t273;
-        let t635 = t633 - t634;
-        let t636 = gdistal_wx_leg3 * t635;
-        let t637 = t271 * rate_distal_leg3;
-        let t638 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t643 = c_distal_leg3 * (t637 + t638 + t637) + s_distal_leg3 * t576;
-        let t651 = t294 * t294;
-        let t652 = t296 * t296;
-        let t653 = t651 - t652;
-        let t656 = t294 * minus_rate_distal_leg4;
-        let t657 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t661 = s_distal_leg4 * t586 - c_distal_leg4 * (t656 + t656 - t657);
-        let t665 = minus_gdistal_wy_leg4 * t653;
-        let minus_minus_rate_dot_distal_leg1 = t211 * minus_minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t336 + c_proximal_leg1 * t330
-            + minus_gdistal_wx_leg1 * t328 + minus_minus_rate_dot_distal_leg1;
-        let t678 = rate_distal_leg1 * rate_distal_leg1;
-        let t681 = c_distal_leg1 * (t553 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t678 - t605);
-        let t683 = minus_gdistal_wx_leg1 * t458;
-        let minus_rate_dot_distal_leg2 = t243 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t336 + gdistal_wy_leg2 * t330
-            - gdistal_wy_leg2 * t328 - minus_rate_dot_distal_leg2;
-        let t699 = rate_distal_leg2 * rate_distal_leg2;
-        let t702 = c_distal_leg2 * (t565 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t699 - t623);
-        let t707 = gdistal_wy_leg2 * t468;
-        let t711 = gdistal_wx_leg3 * t478;
-        let t712 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t271 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t328
-            - (gdistal_wx_leg3 * t336 + c_proximal_leg3 * t330)
-            - minus_rate_dot_distal_leg3;
-        let t724 = s_distal_leg3 * (t712 - t633)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t573);
-        let minus_rate_dot_distal_leg4 = t294 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t336
-            + minus_gdistal_wy_leg4 * t330 + minus_gdistal_wy_leg4 * t328
-            + minus_rate_dot_distal_leg4;
-        let t742 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t745 = c_distal_leg4 * (t589 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t742 - t651);
-        let t749 = minus_gdistal_wy_leg4 * t488;
-        let t757 = minus_s_distal_leg1 * (t553 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t606 - t678);
-        let t759 = minus_gdistal_wx_leg1 * t598;
-        let t770 = minus_s_distal_leg2 * (t565 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t624 - t699);
-        let t774 = gdistal_wy_leg2 * t616;
-        let t783 = s_distal_leg3 * (t573 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t634 - t712);
-        let t785 = gdistal_wx_leg3 * t638;
-        let t796 = c_distal_leg4 * (t652 - t742)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t589);
-        let t801 = minus_gdistal_wy_leg4 * t657;
-        let t805 = 6.936717523440031 * t31;
-        let t807 = t18 * (-6.936717523440031);
-        let t808 = minus_gdistal_wx_leg1 * t807;
-        let t815 = 6.936717523440031 * t91;
-        let t821 = 0.7071067811865475 * t37 * t497;
-        let t825 = 6.936717523440031 * t61;
-        let t827 = t95 * 6.936717523440031;
-        let t828 = gdistal_wx_leg3 * t827;
-        let t836 = 6.936717523440031 * t107;
-        let t840 = t505 * (0.7071067811865475 * t71);
-        Ok([
-            [
-                t5 * t340 + t343 - t346, t5 * t363 + t87 * t366 + t12 * t371,
-                t5 * t389 + t87 * t392 + t12 * t395, t87 * t362 - t409 + t346,
-                t5 * t420 + t87 * t422 + t12 * t425, t409 - t343 + t12 * t388, 9.81 * t9,
-                9.81 * t34, 9.81 * t27, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
-                minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
-                minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wx_leg1 * t493, -(minus_gproximal_wx_leg2 * t497),
-                minus_gproximal_wx_leg3 * t501, -(minus_gproximal_wx_leg4 * t505),
-                minus_gproximal_wx_leg1 * t509, minus_gproximal_wx_leg2 * t513,
-                minus_gproximal_wx_leg3 * t517, minus_gproximal_wx_leg4 * t521,
+                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4, t354, -t358, t362, -t366,
+                minus_gproximal_wx_leg1 * t369, minus_gproximal_wx_leg2 * t373,
+                minus_gproximal_wx_leg3 * t377, minus_gproximal_wx_leg4 * t381,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
@@ -6432,40 +5451,38 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
                 -minus_gproximal_wx_leg4,
-                minus_gproximal_wx_leg1 * t551 + t554,
-                minus_gproximal_wx_leg2 * t563 + c_proximal_leg2 * t565,
-                t574 + minus_gproximal_wx_leg3 * t577,
-                minus_gproximal_wx_leg4 * t587 + c_proximal_leg4 * t589,
-                -(minus_gproximal_wx_leg1 * t603 + t608),
-                -(minus_gproximal_wx_leg2 * t621 + c_proximal_leg2 * t625),
-                t636 - minus_gproximal_wx_leg3 * t643,
-                c_proximal_leg4 * t653 - minus_gproximal_wx_leg4 * t661,
-                minus_gproximal_wx_leg1 * t681 - t683,
-                minus_gproximal_wx_leg2 * t702 - c_proximal_leg2 * t468,
-                t711 - minus_gproximal_wx_leg3 * t724,
-                c_proximal_leg4 * t488 - minus_gproximal_wx_leg4 * t745,
-                -(minus_gproximal_wx_leg1 * t757 + t759),
-                -(minus_gproximal_wx_leg2 * t770 + c_proximal_leg2 * t616),
-                -(minus_gproximal_wx_leg3 * t783 + t785),
-                minus_gproximal_wx_leg4 * t796 - c_proximal_leg4 * t657,
-                -(minus_gproximal_wx_leg1 * t805 + t808),
-                minus_gproximal_wx_leg2 * t815 + t37 * t513,
-                minus_gproximal_wx_leg3 * t825 + t828,
-                t71 * t521 - minus_gproximal_wx_leg4 * t836,
+                t168 * t413 + t416,
+                t217 * t424 + c_proximal_leg2 * t426,
+                t435 + t266 * t436,
+                c_proximal_leg4 * t444 + t312 * t446,
+                -(minus_gproximal_wx_leg1 * t459 + t464),
+                -(minus_gproximal_wx_leg2 * t477 + c_proximal_leg2 * t481),
+                t492 - minus_gproximal_wx_leg3 * t499,
+                c_proximal_leg4 * t509 - minus_gproximal_wx_leg4 * t517,
+                minus_gproximal_wx_leg1 * t537 - t539,
+                minus_gproximal_wx_leg2 * t558 - c_proximal_leg2 * t249,
+                t567 - minus_gproximal_wx_leg3 * t580,
+                c_proximal_leg4 * t346 - minus_gproximal_wx_leg4 * t601,
+                -(minus_gproximal_wx_leg1 * t613 + t615),
+                -(minus_gproximal_wx_leg2 * t626 + c_proximal_leg2 * t472),
+                -(minus_gproximal_wx_leg3 * t639 + t641),
+                -(minus_gproximal_wx_leg4 * t652 + c_proximal_leg4 * t512),
+                -(minus_s_distal_leg1 * t354 + t663),
+                minus_s_distal_leg2 * t358 + t207 * t373,
+                s_distal_leg3 * t362 + t681,
+                t315 * t381 - s_distal_leg4 * t366,
             ],
             [
-                t9 * t340 + t349 - t351, t9 * t363 + t34 * t366 + t27 * t371,
-                t9 * t389 + t34 * t392 + t27 * t395, t34 * t362 - t413 + t351,
-                t9 * t420 + t34 * t422 + t27 * t425, t413 - t349 + t27 * t388, -(9.81 * t5),
-                -(9.81 * t87), -(9.81 * t12),
+                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t77,
+                t10 * t95 - t41 * t73 + t29 * t99, t41 * t64 - t117 + t53,
+                t41 * t125 - t10 * t76 + t29 * t128, t117 - t51 + t29 * t94, -(9.81 * t5),
+                -(9.81 * t19), -(9.81 * t25),
                 minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
-                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4,
-                minus_gproximal_wy_leg1 * t493, -(minus_gproximal_wy_leg2 * t497),
-                minus_gproximal_wy_leg3 * t501, -(minus_gproximal_wy_leg4 * t505),
-                minus_gproximal_wy_leg1 * t509, minus_gproximal_wy_leg2 * t513,
-                minus_gproximal_wy_leg3 * t517, minus_gproximal_wy_leg4 * t521,
+                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, t355, -t359, t363, -t367,
+                minus_gproximal_wy_leg1 * t369, minus_gproximal_wy_leg2 * t373,
+                minus_gproximal_wy_leg3 * t377, minus_gproximal_wy_leg4 * t381,
                 minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
@@ -6490,39 +5507,38 @@ impl Spherical4Rrr {
                 -minus_gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                minus_gproximal_wy_leg1 * t551 - c_proximal_leg1 * t553,
-                minus_gproximal_wy_leg2 * t563 - t569,
-                -(c_proximal_leg3 * t573 - minus_gproximal_wy_leg3 * t577),
-                minus_gproximal_wy_leg4 * t587 - t593,
-                c_proximal_leg1 * t607 - minus_gproximal_wy_leg1 * t603,
-                t628 - minus_gproximal_wy_leg2 * t621,
-                -(minus_gproximal_wy_leg3 * t643 + c_proximal_leg3 * t635),
-                -(minus_gproximal_wy_leg4 * t661 + t665),
-                minus_gproximal_wy_leg1 * t681 + c_proximal_leg1 * t458,
-                minus_gproximal_wy_leg2 * t702 + t707,
-                -(minus_gproximal_wy_leg3 * t724 + c_proximal_leg3 * t478),
-                -(minus_gproximal_wy_leg4 * t745 + t749),
-                c_proximal_leg1 * t598 - minus_gproximal_wy_leg1 * t757,
-                t774 - minus_gproximal_wy_leg2 * t770,
-                c_proximal_leg3 * t638 - minus_gproximal_wy_leg3 * t783,
-                minus_gproximal_wy_leg4 * t796 + t801,
-                c_proximal_leg1 * t807 - minus_gproximal_wy_leg1 * t805,
-                minus_gproximal_wy_leg2 * t815 - t821,
-                minus_gproximal_wy_leg3 * t825 - c_proximal_leg3 * t827,
-                -(t840 + minus_gproximal_wy_leg4 * t836),
+                s_proximal_leg1 * t418 - c_proximal_leg1 * t415,
+                t231 * t424 - t430,
+                -(c_proximal_leg3 * t434 - t279 * t436),
+                -(t450 - t328 * t446),
+                c_proximal_leg1 * t463 - minus_gproximal_wy_leg1 * t459,
+                t484 - minus_gproximal_wy_leg2 * t477,
+                -(minus_gproximal_wy_leg3 * t499 + c_proximal_leg3 * t491),
+                -(minus_gproximal_wy_leg4 * t517 + t521),
+                minus_gproximal_wy_leg1 * t537 + c_proximal_leg1 * t199,
+                minus_gproximal_wy_leg2 * t558 + t563,
+                -(minus_gproximal_wy_leg3 * t580 + c_proximal_leg3 * t297),
+                -(minus_gproximal_wy_leg4 * t601 + t605),
+                c_proximal_leg1 * t455 - minus_gproximal_wy_leg1 * t613,
+                t630 - minus_gproximal_wy_leg2 * t626,
+                c_proximal_leg3 * t494 - minus_gproximal_wy_leg3 * t639,
+                t656 - minus_gproximal_wy_leg4 * t652,
+                c_proximal_leg1 * t662 - minus_s_distal_leg1 * t355,
+                minus_s_distal_leg2 * t359 - t675,
+                s_distal_leg3 * t363 - c_proximal_leg3 * t680,
+                -(t692 + s_distal_leg4 * t367),
             ],
             [
-                t14 * t340 + t354 - t356, t14 * t363 + t36 * t366 + t17 * t371,
-                t14 * t389 + t36 * t392 + t17 * t395, t36 * t362 - t417 + t356,
-                t14 * t420 + t36 * t422 + t17 * t425, t417 - t354 + t17 * t388, 0.0, 0.0, 0.0,
+                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t77,
+                t15 * t95 - t44 * t73 + t34 * t99, t44 * t64 - t121 + t58,
+                t44 * t125 - t15 * t76 + t34 * t128, t121 - t56 + t34 * t94, 0.0, 0.0, 0.0,
                 -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
-                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wz_leg1 * t493),
-                gproximal_wz_leg2 * t497, minus_gproximal_wz_leg3 * t501,
-                -(minus_gproximal_wz_leg4 * t505), -(gproximal_wz_leg1 * t509),
-                -(gproximal_wz_leg2 * t513), minus_gproximal_wz_leg3 * t517,
-                minus_gproximal_wz_leg4 * t521, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -t356, t360, t364, -t368,
+                -(gproximal_wz_leg1 * t369), -(gproximal_wz_leg2 * t373),
+                minus_gproximal_wz_leg3 * t377, minus_gproximal_wz_leg4 * t381,
+                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
@@ -6540,26 +5556,1008 @@ impl Spherical4Rrr {
                 gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
-                -(gproximal_wz_leg1 * t551 + t554),
-                t569 - gproximal_wz_leg2 * t563,
-                t574 + minus_gproximal_wz_leg3 * t577,
-                minus_gproximal_wz_leg4 * t587 - t593,
-                gproximal_wz_leg1 * t603 + t608,
-                gproximal_wz_leg2 * t621 - t628,
-                t636 - minus_gproximal_wz_leg3 * t643,
-                -(minus_gproximal_wz_leg4 * t661 + t665),
-                t683 - gproximal_wz_leg1 * t681,
-                -(gproximal_wz_leg2 * t702 + t707),
-                t711 - minus_gproximal_wz_leg3 * t724,
-                -(minus_gproximal_wz_leg4 * t745 + t749),
-                gproximal_wz_leg1 * t757 + t759,
-                gproximal_wz_leg2 * t770 - t774,
-                -(minus_gproximal_wz_leg3 * t783 + t785),
-                minus_gproximal_wz_leg4 * t796 + t801,
-                gproximal_wz_leg1 * t805 + t808,
-                t821 - gproximal_wz_leg2 * t815,
-                minus_gproximal_wz_leg3 * t825 + t828,
-                -(t840 + minus_gproximal_wz_leg4 * t836),
+                -(t185 * t413 + t416),
+                t430 - t235 * t424,
+                t435 + t283 * t436,
+                -(t450 - t332 * t446),
+                gproximal_wz_leg1 * t459 + t464,
+                gproximal_wz_leg2 * t477 - t484,
+                t492 - minus_gproximal_wz_leg3 * t499,
+                -(minus_gproximal_wz_leg4 * t517 + t521),
+                t539 - gproximal_wz_leg1 * t537,
+                -(gproximal_wz_leg2 * t558 + t563),
+                t567 - minus_gproximal_wz_leg3 * t580,
+                -(minus_gproximal_wz_leg4 * t601 + t605),
+                gproximal_wz_leg1 * t613 + t615,
+                gproximal_wz_leg2 * t626 - t630,
+                -(minus_gproximal_wz_leg3 * t639 + t641),
+                t656 - minus_gproximal_wz_leg4 * t652,
+                minus_s_distal_leg1 * t356 + t663,
+                t675 - minus_s_distal_leg2 * t360,
+                s_distal_leg3 * t364 + t681,
+                -(t692 + s_distal_leg4 * t368),
+            ],
+        ])
+    }
+    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    ///
+    /// From measured joint positions and the platform's motion; of the pose only the orientation is used.
+    /// - `pose`: x = `[qw, qx, qy, qz]` (m, rad), in the base frame
+    /// - `joints`: q_t, all joint positions, leg by leg (m, rad)
+    /// - `twist`: v = `[omega_x, omega_y, omega_z]` (m/s, rad/s), in the base frame
+    /// - `acceleration`: the derivative of `twist` (m/s², rad/s²)
+    ///
+    /// Output: 3 x 53.
+    /// Columns: `BASE_PARAMETERS`.
+    ///
+    /// 666 operations (247 additions, 403 multiplications, 16 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 538 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn idm_red_platform_base_from_joints(
+        pose: &[f64; 4],
+        joints: &[f64; 12],
+        twist: &[f64; 3],
+        acceleration: &[f64; 3],
+    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
+        (minus_s_proximal_leg2, minus_c_proximal_leg2),
+        (c_distal_leg2, minus_s_distal_leg2), (c_distal_leg3, minus_s_distal_leg3),
+        (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (minus_s_proximal_leg4, minus_c_proximal_leg4),
+        (c_distal_leg4, minus_s_distal_leg4)] = ::overact::math::sin_cos_all([
+            joints[0], joints[1], joints[3], joints[4], joints[7], joints[6], joints[9], joints[10],
+        ]);
+        ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
+        ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
+        ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
+        ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
+        let t0 = pose[2] + pose[2];
+        let t1 = pose[2] * t0;
+        let t3 = pose[3] + pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = 1.0 - t1 - t4;
+        let t7 = pose[1] + pose[1];
+        let t8 = pose[2] * t7;
+        let t9 = pose[0] * t3;
+        let t10 = t8 + t9;
+        let t13 = pose[3] * t7;
+        let t14 = pose[0] * t0;
+        let t15 = t13 - t14;
+        let t17 = t5 * acceleration[0] + t10 * acceleration[1] + t15 * acceleration[2];
+        let t19 = t8 - t9;
+        let t24 = t5 * twist[0] + t10 * twist[1] + t15 * twist[2];
+        let t25 = t13 + t14;
+        let t27 = pose[3] * t0;
+        let t28 = pose[0] * t7;
+        let t29 = t27 - t28;
+        let t33 = 1.0 - pose[1] * t7;
+        let t34 = t33 - t1;
+        let t36 = t25 * twist[0] + t29 * twist[1] + t34 * twist[2];
+        let t37 = t24 * t36;
+        let t38 = t19 * t37;
+        let t41 = t33 - t4;
+        let t44 = t27 + t28;
+        let t46 = t19 * twist[0] + t41 * twist[1] + t44 * twist[2];
+        let t47 = t24 * t46;
+        let t48 = t25 * t47;
+        let t51 = t41 * t37;
+        let t53 = t29 * t47;
+        let t56 = t44 * t37;
+        let t58 = t34 * t47;
+        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t65 = t64 - t37;
+        let t67 = t46 * t36;
+        let t68 = t17 + t67;
+        let t71 = t24 * t24;
+        let t72 = t46 * t46;
+        let t73 = t71 - t72;
+        let t90 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
+        let t91 = t90 + t47;
+        let t93 = t36 * t36;
+        let t94 = t93 - t71;
+        let t97 = t17 - t67;
+        let t111 = t5 * t67;
+        let t115 = t10 * t67;
+        let t119 = t15 * t67;
+        let t122 = t72 - t93;
+        let t124 = t90 - t47;
+        let t127 = t64 + t37;
+        let t159 = 0.7071067811865476 * c_distal_leg1;
+        let t160 = minus_c_proximal_leg1 * t159;
+        let t161 = 0.7071067811865476 * minus_s_distal_leg1;
+        let t162 = t160 + t161;
+        let gproximal_wx_leg1 = t162 / minus_s_distal_leg1;
+        let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
+        let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
+            - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
+        let t170 = c_distal_leg1 / minus_s_distal_leg1;
+        let t171 = t160 - t161;
+        let t174 = minus_s_proximal_leg1 * c_distal_leg1;
+        let t177 = t171 * twist[2] - (t162 * twist[0] + t174 * twist[1]);
+        let t178 = t170 * t177;
+        let t179 = rate_distal_leg1 * t178;
+        let t185 = minus_c_proximal_leg1 * t161;
+        let t191 = t185 + t159;
+        let minus_rate_wrist_leg1 = t178 + (t159 - t185) * twist[0]
+            - minus_s_proximal_leg1 * minus_s_distal_leg1 * twist[1] + t191 * twist[2];
+        let t196 = t171 * acceleration[2]
+            - (t162 * acceleration[0] + t174 * acceleration[1])
+            + rate_distal_leg1 * minus_rate_wrist_leg1;
+        let t197 = t179 + t196;
+        let minus_rate_dot_proximal_leg1 = t197 / minus_s_distal_leg1;
+        let gproximal_wy_leg1 = minus_s_proximal_leg1 * t170;
+        let minus_gproximal_wz_leg1 = t171 / minus_s_distal_leg1;
+        let t208 = minus_s_proximal_leg2 * c_distal_leg2;
+        let minus_gproximal_wx_leg2 = t208 / minus_s_distal_leg2;
+        let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
+        let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
+            - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
+        let t217 = 0.7071067811865476 * c_distal_leg2;
+        let t218 = minus_c_proximal_leg2 * t217;
+        let t219 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t220 = t218 + t219;
+        let t223 = t218 - t219;
+        let t225 = t208 * twist[0] - t220 * twist[1] + t223 * twist[2];
+        let minus_rate_proximal_leg2 = t225 / minus_s_distal_leg2;
+        let t227 = c_distal_leg2 * minus_rate_proximal_leg2;
+        let t228 = rate_distal_leg2 * t227;
+        let t236 = minus_c_proximal_leg2 * t219;
+        let t240 = t236 + t217;
+        let minus_rate_wrist_leg2 = t227
+            + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
+            + (t217 - t236) * twist[1] + t240 * twist[2];
+        let t245 = t208 * acceleration[0] - t220 * acceleration[1]
+            + t223 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let t246 = t228 + t245;
+        let minus_rate_dot_proximal_leg2 = t246 / minus_s_distal_leg2;
+        let gproximal_wy_leg2 = t220 / minus_s_distal_leg2;
+        let minus_gproximal_wz_leg2 = t223 / minus_s_distal_leg2;
+        let t255 = 1.0 / minus_s_distal_leg3;
+        let t256 = c_distal_leg3 * t255;
+        let t259 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t260 = minus_c_proximal_leg3 * t259;
+        let t261 = t256 * t260;
+        let t262 = t261 + t259;
+        let minus_gproximal_wx_leg3 = t262 * t255;
+        let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
+            - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t271 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t274 = t261 - t259;
+        let t276 = t262 * twist[0] + t271 * twist[1] + t274 * twist[2];
+        let t277 = t256 * t276;
+        let t278 = rate_distal_leg3 * t277;
+        let t284 = 0.7071067811865476 * c_distal_leg3;
+        let t290 = t260 + t284;
+        let minus_rate_wrist_leg3 = t277 + (t260 - t284) * twist[0]
+            + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t290 * twist[2];
+        let t295 = t262 * acceleration[0] + t271 * acceleration[1]
+            + t274 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t296 = t278 + t295;
+        let minus_rate_dot_proximal_leg3 = t255 * t296;
+        let minus_gproximal_wy_leg3 = t271 * t255;
+        let minus_gproximal_wz_leg3 = t274 * t255;
+        let t307 = minus_s_proximal_leg4 * c_distal_leg4;
+        let gproximal_wx_leg4 = t307 / minus_s_distal_leg4;
+        let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
+        let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
+            + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
+        let t315 = 0.7071067811865476 * c_distal_leg4;
+        let t316 = minus_c_proximal_leg4 * t315;
+        let t317 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t318 = t316 + t317;
+        let t322 = t316 - t317;
+        let t324 = t318 * twist[1] - t307 * twist[0] + t322 * twist[2];
+        let minus_rate_proximal_leg4 = t324 / minus_s_distal_leg4;
+        let t326 = c_distal_leg4 * minus_rate_proximal_leg4;
+        let t327 = rate_distal_leg4 * t326;
+        let t333 = minus_c_proximal_leg4 * t317;
+        let t339 = t333 + t315;
+        let minus_rate_wrist_leg4 = t326 + (t333 - t315) * twist[1]
+            - minus_s_proximal_leg4 * minus_s_distal_leg4 * twist[0] + t339 * twist[2];
+        let t344 = t318 * acceleration[1] - t307 * acceleration[0]
+            + t322 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t345 = t327 + t344;
+        let minus_rate_dot_proximal_leg4 = t345 / minus_s_distal_leg4;
+        let minus_gproximal_wy_leg4 = t318 / minus_s_distal_leg4;
+        let minus_gproximal_wz_leg4 = t322 / minus_s_distal_leg4;
+        let t352 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t353 = gproximal_wx_leg1 * t352;
+        let t354 = gproximal_wy_leg1 * t352;
+        let t355 = minus_gproximal_wz_leg1 * t352;
+        let t356 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t357 = minus_gproximal_wx_leg2 * t356;
+        let t358 = gproximal_wy_leg2 * t356;
+        let t359 = minus_gproximal_wz_leg2 * t356;
+        let t360 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t361 = minus_gproximal_wx_leg3 * t360;
+        let t362 = minus_gproximal_wy_leg3 * t360;
+        let t363 = minus_gproximal_wz_leg3 * t360;
+        let t364 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t365 = gproximal_wx_leg4 * t364;
+        let t366 = minus_gproximal_wy_leg4 * t364;
+        let t367 = minus_gproximal_wz_leg4 * t364;
+        let t368 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t372 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t376 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t380 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t177 / minus_s_distal_leg1;
+        let minus_rate_proximal_leg3 = t255 * t276;
+        let t410 = t196 - t179;
+        let t412 = t177 * t178;
+        let t413 = minus_gdistal_wx_leg1 * t412;
+        let t415 = c_distal_leg1 * t410;
+        let t421 = t245 - t228;
+        let t422 = c_distal_leg2 * t421;
+        let t424 = t225 * t227;
+        let t428 = minus_gdistal_wy_leg2 * t424;
+        let t432 = t276 * t277;
+        let t433 = gdistal_wx_leg3 * t432;
+        let t434 = t295 - t278;
+        let t442 = t344 - t327;
+        let t443 = c_distal_leg4 * t442;
+        let t445 = t324 * t326;
+        let t448 = gdistal_wy_leg4 * t445;
+        let t453 = t177 * rate_distal_leg1;
+        let t454 = t170 * t197;
+        let t458 = minus_s_distal_leg1 * (t453 + t454 + t453) + t415;
+        let t460 = t177 * t177;
+        let t461 = t178 * t178;
+        let t462 = t460 - t461;
+        let t463 = minus_gdistal_wx_leg1 * t462;
+        let t470 = t225 * rate_distal_leg2;
+        let t471 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t475 = minus_s_distal_leg2 * (t470 + t471 + t470) + t422;
+        let t477 = t225 * t225;
+        let t478 = t227 * t227;
+        let t479 = t477 - t478;
+        let t483 = minus_gdistal_wy_leg2 * t479;
+        let t487 = t276 * t276;
+        let t488 = t277 * t277;
+        let t489 = t487 - t488;
+        let t490 = gdistal_wx_leg3 * t489;
+        let t491 = t276 * rate_distal_leg3;
+        let t492 = t256 * t296;
+        let t497 = minus_s_distal_leg3 * (t491 + t492 + t491) + c_distal_leg3 * t434;
+        let t505 = t324 * rate_distal_leg4;
+        let t506 = c_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t510 = minus_s_distal_leg4 * (t505 + t506 + t505) + t443;
+        let t512 = t324 * t324;
+        let t513 = t326 * t326;
+        let t514 = t512 - t513;
+        let t517 = gdistal_wy_leg4 * t514;
+        let t522 = rate_distal_leg1 * rate_distal_leg1;
+        let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
+            - minus_gdistal_wx_leg1 * acceleration[0]
+            + minus_gdistal_wx_leg1 * acceleration[2] - t177 * minus_rate_wrist_leg1;
+        let t534 = c_distal_leg1 * (t522 - t460)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t412);
+        let t536 = minus_gdistal_wx_leg1 * t197;
+        let t543 = rate_distal_leg2 * rate_distal_leg2;
+        let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
+            - (minus_c_proximal_leg2 * acceleration[0]
+                + minus_gdistal_wy_leg2 * acceleration[1])
+            - t225 * minus_rate_wrist_leg2;
+        let t555 = c_distal_leg2 * (t543 - t477)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t424);
+        let t560 = minus_gdistal_wy_leg2 * t246;
+        let t564 = gdistal_wx_leg3 * t296;
+        let t565 = rate_distal_leg3 * rate_distal_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
+            - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
+            - t276 * minus_rate_wrist_leg3;
+        let t577 = c_distal_leg3 * (t565 - t487)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t432);
+        let t585 = rate_distal_leg4 * rate_distal_leg4;
+        let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
+            + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
+            - t324 * minus_rate_wrist_leg4;
+        let t597 = c_distal_leg4 * (t585 - t512)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t445);
+        let t601 = gdistal_wy_leg4 * t345;
+        let t610 = c_distal_leg1 * (t412 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t461 - t522);
+        let t612 = minus_gdistal_wx_leg1 * t454;
+        let t624 = c_distal_leg2 * (t424 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t478 - t543);
+        let t628 = minus_gdistal_wy_leg2 * t471;
+        let t636 = c_distal_leg3 * (t432 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t488 - t565);
+        let t638 = gdistal_wx_leg3 * t492;
+        let t649 = c_distal_leg4 * (t445 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t513 - t585);
+        let t654 = gdistal_wy_leg4 * t506;
+        let t659 = 9.81 * t191;
+        let t660 = minus_gdistal_wx_leg1 * t659;
+        let t672 = t240 * t356;
+        let t677 = 9.81 * t290;
+        let t678 = gdistal_wx_leg3 * t677;
+        let t690 = t339 * t364;
+        Ok([
+            [
+                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
+                t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
+                t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90, 9.81 * t10, 9.81 * t41,
+                9.81 * t29, -(gproximal_wx_leg1 * minus_rate_dot_proximal_leg1),
+                minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
+                minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
+                -(gproximal_wx_leg4 * minus_rate_dot_proximal_leg4), -t353, t357, t361, -t365,
+                -(gproximal_wx_leg1 * t368), minus_gproximal_wx_leg2 * t372,
+                minus_gproximal_wx_leg3 * t376, -(gproximal_wx_leg4 * t380),
+                -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
+                minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
+                minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
+                -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
+                -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg2,
+                    minus_rate_proximal_leg2,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
+                gproximal_wx_leg1,
+                -minus_gproximal_wx_leg2,
+                -minus_gproximal_wx_leg3,
+                gproximal_wx_leg4,
+                -(t162 * t410 + t413),
+                -(minus_c_proximal_leg2 * t424 - minus_s_proximal_leg2 * t422),
+                t433 + t262 * t434,
+                minus_c_proximal_leg4 * t445 - minus_s_proximal_leg4 * t443,
+                gproximal_wx_leg1 * t458 - t463,
+                -(minus_gproximal_wx_leg2 * t475 + minus_c_proximal_leg2 * t479),
+                t490 - minus_gproximal_wx_leg3 * t497,
+                gproximal_wx_leg4 * t510 + minus_c_proximal_leg4 * t514,
+                gproximal_wx_leg1 * t534 - t536,
+                -(minus_gproximal_wx_leg2 * t555 + minus_c_proximal_leg2 * t246),
+                t564 - minus_gproximal_wx_leg3 * t577,
+                gproximal_wx_leg4 * t597 + minus_c_proximal_leg4 * t345,
+                gproximal_wx_leg1 * t610 + t612,
+                minus_c_proximal_leg2 * t471 - minus_gproximal_wx_leg2 * t624,
+                -(minus_gproximal_wx_leg3 * t636 + t638),
+                gproximal_wx_leg4 * t649 - minus_c_proximal_leg4 * t506,
+                -(c_distal_leg1 * t353 + t660),
+                c_distal_leg2 * t357 - minus_c_proximal_leg2 * (9.81 * t240),
+                c_distal_leg3 * t361 + t678,
+                minus_c_proximal_leg4 * (9.81 * t339) - c_distal_leg4 * t365,
+            ],
+            [
+                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
+                t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
+                t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90, -(9.81 * t5),
+                -(9.81 * t19), -(9.81 * t25), -(gproximal_wy_leg1 * minus_rate_dot_proximal_leg1),
+                -(gproximal_wy_leg2 * minus_rate_dot_proximal_leg2),
+                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, -t354, -t358, t362, t366,
+                -(gproximal_wy_leg1 * t368), -(gproximal_wy_leg2 * t372),
+                minus_gproximal_wy_leg3 * t376, minus_gproximal_wy_leg4 * t380,
+                -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
+                -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
+                minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
+                minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
+                -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
+                -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg4,
+                    minus_rate_proximal_leg4,
+                ),
+                gproximal_wy_leg1,
+                gproximal_wy_leg2,
+                -minus_gproximal_wy_leg3,
+                -minus_gproximal_wy_leg4,
+                minus_c_proximal_leg1 * t412 - minus_s_proximal_leg1 * t415,
+                -(t220 * t421 + t428),
+                -(minus_c_proximal_leg3 * t432 - t271 * t434),
+                t448 + t318 * t442,
+                gproximal_wy_leg1 * t458 + minus_c_proximal_leg1 * t462,
+                gproximal_wy_leg2 * t475 - t483,
+                -(minus_gproximal_wy_leg3 * t497 + minus_c_proximal_leg3 * t489),
+                t517 - minus_gproximal_wy_leg4 * t510,
+                gproximal_wy_leg1 * t534 + minus_c_proximal_leg1 * t197,
+                gproximal_wy_leg2 * t555 - t560,
+                -(minus_gproximal_wy_leg3 * t577 + minus_c_proximal_leg3 * t296),
+                t601 - minus_gproximal_wy_leg4 * t597,
+                gproximal_wy_leg1 * t610 - minus_c_proximal_leg1 * t454,
+                gproximal_wy_leg2 * t624 + t628,
+                minus_c_proximal_leg3 * t492 - minus_gproximal_wy_leg3 * t636,
+                -(minus_gproximal_wy_leg4 * t649 + t654),
+                minus_c_proximal_leg1 * t659 - c_distal_leg1 * t354,
+                -(c_distal_leg2 * t358 + t672),
+                c_distal_leg3 * t362 - minus_c_proximal_leg3 * t677,
+                c_distal_leg4 * t366 + t690,
+            ],
+            [
+                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t73,
+                t15 * t91 + t44 * t94 + t34 * t97, t44 * t64 - t119 + t58,
+                t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90, 0.0, 0.0, 0.0,
+                minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1,
+                minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2,
+                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, t355, t359, t363, t367,
+                minus_gproximal_wz_leg1 * t368, minus_gproximal_wz_leg2 * t372,
+                minus_gproximal_wz_leg3 * t376, minus_gproximal_wz_leg4 * t380,
+                minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
+                minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
+                minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg1,
+                    minus_rate_proximal_leg1,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg2,
+                    minus_rate_proximal_leg2,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg4,
+                    minus_rate_proximal_leg4,
+                ),
+                -minus_gproximal_wz_leg1,
+                -minus_gproximal_wz_leg2,
+                -minus_gproximal_wz_leg3,
+                -minus_gproximal_wz_leg4,
+                t413 + t171 * t410,
+                t428 + t223 * t421,
+                t433 + t274 * t434,
+                t448 + t322 * t442,
+                t463 - minus_gproximal_wz_leg1 * t458,
+                t483 - minus_gproximal_wz_leg2 * t475,
+                t490 - minus_gproximal_wz_leg3 * t497,
+                t517 - minus_gproximal_wz_leg4 * t510,
+                t536 - minus_gproximal_wz_leg1 * t534,
+                t560 - minus_gproximal_wz_leg2 * t555,
+                t564 - minus_gproximal_wz_leg3 * t577,
+                t601 - minus_gproximal_wz_leg4 * t597,
+                -(minus_gproximal_wz_leg1 * t610 + t612),
+                -(minus_gproximal_wz_leg2 * t624 + t628),
+                -(minus_gproximal_wz_leg3 * t636 + t638),
+                -(minus_gproximal_wz_leg4 * t649 + t654),
+                c_distal_leg1 * t355 + t660,
+                c_distal_leg2 * t359 + t672,
+                c_distal_leg3 * t363 + t678,
+                c_distal_leg4 * t367 + t690,
+            ],
+        ])
+    }
+    /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
+    ///
+    /// From the actuators' motion: forward kinematics from the pose `start`, then least squares.
+    /// - `actuator_velocities`: velocities of the actuated joints (m/s, rad/s)
+    /// - `actuator_accelerations`: accelerations of the actuated joints (m/s², rad/s²)
+    /// - `actuators`: q, positions of the actuated joints (m, rad)
+    /// - `start`: a pose near the wanted one, in its assembly mode (m, rad)
+    ///
+    /// Output: 3 x 53.
+    /// Columns: `BASE_PARAMETERS`.
+    ///
+    /// 815 operations (316 additions, 486 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 675 intermediates.
+    ///
+    /// # Errors
+    /// A pose out of reach, or a singular configuration.
+    pub fn idm_red_platform_base_from_actuators(
+        actuators: &[f64; 4],
+        actuator_velocities: &[f64; 4],
+        actuator_accelerations: &[f64; 4],
+        start: &[f64; 4],
+    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        let pose = &Self::pose_from_actuators(actuators, start)?;
+        let t0 = pose[2] + pose[2];
+        let t1 = pose[2] * t0;
+        let t2 = 1.0 - t1;
+        let t3 = pose[3] + pose[3];
+        let t4 = pose[3] * t3;
+        let t5 = t2 - t4;
+        let t6 = pose[1] + pose[1];
+        let t7 = pose[2] * t6;
+        let t8 = pose[0] * t3;
+        let t9 = t7 + t8;
+        let t10 = pose[3] * t6;
+        let t11 = pose[0] * t0;
+        let t12 = t10 + t11;
+        let t14 = t10 - t11;
+        let t15 = pose[1] * t6;
+        let t16 = t2 - t15;
+        let t17 = t14 - t16;
+        let minus_s_distal_leg1 = 0.5 * (t5 - t12 + t17);
+        let t21 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t21, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
+        let t23 = 1.0 / c_distal_leg1;
+        let t24 = pose[3] * t0;
+        let t25 = pose[0] * t6;
+        let t26 = t24 - t25;
+        let s_proximal_leg1 = t23 * (0.7071067811865475 * (t9 - t26));
+        let t30 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t30 * t23;
+        let t33 = t4 - t1;
+        let t34 = t16 - t33;
+        let t35 = t34 - t26;
+        let t36 = t24 + t25;
+        let t37 = t36 - t16;
+        let minus_s_distal_leg2 = 0.5 * (t35 + t37);
+        let t41 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t41, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t41);
+        ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
+        let t43 = 1.0 / c_distal_leg2;
+        let c_proximal_leg2 = t43 * (t35 - minus_s_distal_leg2);
+        let t46 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t48 = 0.7071067811865475 * (t46 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t48 * t43;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t15 - t4);
+        let t57 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t57, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t57);
+        ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
+        let s_proximal_leg3 = 0.7071067811865475 * (t9 + t26) / c_distal_leg3;
+        let t60 = s_distal_leg3 * s_proximal_leg3;
+        let t61 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = t60 * t61;
+        let s_distal_leg4 = minus_s_distal_leg2 + t33;
+        let t67 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t67, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t67);
+        ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
+        let t69 = 1.0 / c_distal_leg4;
+        let t70 = t36 + t16;
+        let c_proximal_leg4 = t69 * (t70 - s_distal_leg4);
+        let t73 = s_distal_leg4 * c_proximal_leg4;
+        let t75 = 0.7071067811865475 * (t73 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t75 * t69;
+        let c_proximal_leg1 = t23 * (minus_s_distal_leg1 - t17);
+        let t81 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t83 = 0.7071067811865475 * (t81 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t83 * t23;
+        let t86 = t7 - t8;
+        let minus_s_proximal_leg2 = t43 * (0.7071067811865475 * (t86 - t12));
+        let t90 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t90 * t43;
+        let t94 = t14 + t16;
+        let c_proximal_leg3 = (t94 - s_distal_leg3) / c_distal_leg3;
+        let t97 = s_distal_leg3 * c_proximal_leg3;
+        let t99 = 0.7071067811865475 * (t97 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t99 * t61;
+        let minus_s_proximal_leg4 = t69 * (0.7071067811865475 * (t86 + t12));
+        let t106 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t106 * t69;
+        let t109 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
+        let t116 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+            + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+            + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
+        ::overact::guard::platform(t116, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t116, 0.9999999999999998, "actuators")?;
+        let t117 = t109 / t116;
+        let t119 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t109 * t117;
+        ::overact::guard::platform(t119, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t119, 0.9999999999999998, "actuators")?;
+        let t120 = 1.0 / t119;
+        let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
+        let t128 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+            + minus_gproximal_wx_leg2 * actuator_velocities[1]
+            + minus_gproximal_wx_leg3 * actuator_velocities[2]
+            + minus_gproximal_wx_leg4 * actuator_velocities[3];
+        let t138 = t128 * t117
+            - (minus_gproximal_wy_leg1 * actuator_velocities[0]
+                + minus_gproximal_wy_leg2 * actuator_velocities[1]
+                + minus_gproximal_wy_leg3 * actuator_velocities[2]
+                + minus_gproximal_wy_leg4 * actuator_velocities[3]);
+        let t141 = 0.7071067811865475 * (t97 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t141 * t61;
+        let t145 = 0.7071067811865475 * (t81 + c_distal_leg1);
+        let gproximal_wz_leg1 = t145 * t23;
+        let t149 = 0.7071067811865475 * (t46 + c_distal_leg2);
+        let gproximal_wz_leg2 = t149 * t43;
+        let t155 = 0.7071067811865475 * (t73 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t155 * t69;
+        let t165 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
+                + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
+            + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
+        let t166 = t165 / t116;
+        let t168 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+            - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
+                + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t109 * t166;
+        let t169 = t168 * t120;
+        let t180 = gproximal_wz_leg1 * actuator_velocities[0]
+            + gproximal_wz_leg2 * actuator_velocities[1]
+            - minus_gproximal_wz_leg3 * actuator_velocities[2]
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t128 * t166
+            - t169 * t138;
+        let t191 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + gproximal_wz_leg2 * gproximal_wz_leg2
+            + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t165 * t166
+            - t168 * t169;
+        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
+        let t192 = t180 / t191;
+        let t194 = t120 * t138 - t169 * t192;
+        let t198 = t128 / t116 + t117 * t194 + t166 * t192;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t198 + c_proximal_leg1 * t194
+            + minus_gdistal_wx_leg1 * t192;
+        let t208 = t30 * t194 - t83 * t198 - t145 * t192;
+        let minus_rate_proximal_leg1 = t23 * t208;
+        let t210 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t211 = rate_distal_leg1 * t210;
+        let t216 = t9 * t194 - t5 * t198 + t14 * t192;
+        let t221 = t26 * t194 - t12 * t198 + t16 * t192;
+        let t222 = t216 - t221;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t222 + t210;
+        let t226 = t211 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t23 * t226;
+        let t228 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+        let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t198 + gdistal_wy_leg2 * t194
+            - gdistal_wy_leg2 * t192;
+        let t240 = t48 * t194 - t90 * t198 - t149 * t192;
+        let minus_rate_proximal_leg2 = t43 * t240;
+        let t242 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t243 = rate_distal_leg2 * t242;
+        let t248 = t34 * t194 - t86 * t198 + t36 * t192;
+        let t249 = t221 - t248;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * t249 - t242;
+        let t253 = t243 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t43 * t253;
+        let t255 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t192
+            - (gdistal_wx_leg3 * t198 + c_proximal_leg3 * t194);
+        let t268 = t60 * t194 - t99 * t198 + t141 * t192;
+        let minus_rate_proximal_leg3 = t61 * t268;
+        let t270 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t271 = rate_distal_leg3 * t270;
+        let t272 = t216 + t221;
+        let minus_rate_wrist_leg3 = t270 + 0.7071067811865475 * t272;
+        let t276 = t271 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t61 * t276;
+        let t278 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t198
+            + minus_gdistal_wy_leg4 * t194 + minus_gdistal_wy_leg4 * t192;
+        let t291 = t75 * t194 - t106 * t198 + t155 * t192;
+        let minus_rate_proximal_leg4 = t69 * t291;
+        let t293 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t294 = minus_rate_distal_leg4 * t293;
+        let t295 = t248 + t221;
+        let minus_rate_wrist_leg4 = t293 + 0.7071067811865475 * t295;
+        let t299 = t294 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t69 * t299;
+        let t301 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t303 = minus_gproximal_wx_leg1 * t228 + minus_gproximal_wx_leg2 * t255
+            + minus_gproximal_wx_leg3 * t278 + minus_gproximal_wx_leg4 * t301;
+        let t312 = t117 * t303
+            - (minus_gproximal_wy_leg1 * t228 + minus_gproximal_wy_leg2 * t255
+                + minus_gproximal_wy_leg3 * t278 + minus_gproximal_wy_leg4 * t301);
+        let t324 = gproximal_wz_leg1 * t228 + gproximal_wz_leg2 * t255
+            - minus_gproximal_wz_leg3 * t278 - minus_gproximal_wz_leg4 * t301
+            + t166 * t303 - t169 * t312;
+        let t325 = t324 / t191;
+        let t327 = t120 * t312 - t169 * t325;
+        let t333 = t303 / t116 + t117 * t327 + t166 * t325;
+        let t337 = t9 * t327 - t5 * t333 + t14 * t325;
+        let t339 = t216 * t221;
+        let t340 = t86 * t339;
+        let t342 = t216 * t248;
+        let t343 = t12 * t342;
+        let t346 = t34 * t339;
+        let t348 = t26 * t342;
+        let t351 = t36 * t339;
+        let t353 = t16 * t342;
+        let t359 = t34 * t327 - t86 * t333 + t36 * t325;
+        let t360 = t359 - t339;
+        let t362 = t248 * t221;
+        let t363 = t337 + t362;
+        let t366 = t272 * t222;
+        let t367 = t295 * t249;
+        let t368 = t366 + t367;
+        let t385 = t26 * t327 - t12 * t333 + t16 * t325;
+        let t386 = t385 + t342;
+        let t390 = t337 - t362;
+        let t404 = t5 * t362;
+        let t408 = t9 * t362;
+        let t412 = t14 * t362;
+        let t416 = t385 - t342;
+        let t419 = t359 + t339;
+        let t452 = t30 * t327 - t83 * t333 - t145 * t325 - t226;
+        let minus_rate_dot_proximal_leg1 = t23 * t452;
+        let t462 = t48 * t327 - t90 * t333 - t149 * t325 - t253;
+        let minus_rate_dot_proximal_leg2 = t43 * t462;
+        let t472 = t60 * t327 - t99 * t333 + t141 * t325 + t276;
+        let minus_rate_dot_proximal_leg3_2 = t61 * t472;
+        let t482 = t75 * t327 - t106 * t333 + t155 * t325 - t299;
+        let minus_rate_dot_proximal_leg4 = t69 * t482;
+        let t487 = 6.936717523440031 * s_proximal_leg1;
+        let t488 = minus_gproximal_wx_leg1 * t487;
+        let t489 = minus_gproximal_wy_leg1 * t487;
+        let t490 = gproximal_wz_leg1 * t487;
+        let t491 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t492 = minus_gproximal_wx_leg2 * t491;
+        let t493 = minus_gproximal_wy_leg2 * t491;
+        let t494 = gproximal_wz_leg2 * t491;
+        let t495 = 6.936717523440031 * s_proximal_leg3;
+        let t496 = minus_gproximal_wx_leg3 * t495;
+        let t497 = minus_gproximal_wy_leg3 * t495;
+        let t498 = minus_gproximal_wz_leg3 * t495;
+        let t499 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t500 = minus_gproximal_wx_leg4 * t499;
+        let t501 = minus_gproximal_wy_leg4 * t499;
+        let t502 = minus_gproximal_wz_leg4 * t499;
+        let t503 = 6.936717523440031 * c_proximal_leg1;
+        let t507 = 6.936717523440031 * c_proximal_leg2;
+        let t511 = 6.936717523440031 * c_proximal_leg3;
+        let t515 = 6.936717523440031 * c_proximal_leg4;
+        let t544 = t211 + t452 + t211;
+        let t546 = t208 * t210;
+        let t547 = minus_gdistal_wx_leg1 * t546;
+        let t549 = minus_s_distal_leg1 * t544;
+        let t556 = t243 + t462 + t243;
+        let t557 = minus_s_distal_leg2 * t556;
+        let t559 = t240 * t242;
+        let t563 = gdistal_wy_leg2 * t559;
+        let t567 = t268 * t270;
+        let t568 = gdistal_wx_leg3 * t567;
+        let t570 = t472 - t271 - t271;
+        let t573 = s_distal_leg3 * t570;
+        let t580 = t294 + t482 + t294;
+        let t582 = t291 * t293;
+        let t586 = minus_gdistal_wy_leg4 * t582;
+        let t590 = t208 * rate_distal_leg1;
+        let t591 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t595 = c_distal_leg1 * (t590 - (t591 - t590)) - t549;
+        let t597 = t208 * t208;
+        let t598 = t210 * t210;
+        let t599 = t597 - t598;
+        let t600 = minus_gdistal_wx_leg1 * t599;
+        let t607 = t240 * rate_distal_leg2;
+        let t608 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t612 = c_distal_leg2 * (t607 - (t608 - t607)) - t557;
+        let t614 = t240 * t240;
+        let t615 = t242 * t242;
+        let t616 = t614 - t615;
+        let t619 = gdistal_wy_leg2 * t616;
+        let t624 = t268 * t268;
+        let t625 = t270 * t270;
+        let t626 = t624 - t625;
+        let t627 = gdistal_wx_leg3 * t626;
+        let t628 = t268 * rate_distal_leg3;
+        let t629 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t633 = c_distal_leg3 * (t628 + t629 + t628) + t573;
+        let t641 = t291 * t291;
+        let t642 = t293 * t293;
+        let t643 = t641 - t642;
+        let t646 = t291 * minus_rate_distal_leg4;
+        let t647 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t651 = s_distal_leg4 * t580 - c_distal_leg4 * (t646 + t646 - t647);
+        let t655 = minus_gdistal_wy_leg4 * t643;
+        let minus_minus_rate_dot_distal_leg1 = t208 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t333 + c_proximal_leg1 * t327
+            + minus_gdistal_wx_leg1 * t325 + minus_minus_rate_dot_distal_leg1;
+        let t668 = rate_distal_leg1 * rate_distal_leg1;
+        let t671 = c_distal_leg1 * (t546 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t668 - t597);
+        let t673 = minus_gdistal_wx_leg1 * t452;
+        let minus_rate_dot_distal_leg2 = t240 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t333 + gdistal_wy_leg2 * t327
+            - gdistal_wy_leg2 * t325 - minus_rate_dot_distal_leg2;
+        let t689 = rate_distal_leg2 * rate_distal_leg2;
+        let t692 = c_distal_leg2 * (t559 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t689 - t614);
+        let t697 = gdistal_wy_leg2 * t462;
+        let t701 = gdistal_wx_leg3 * t472;
+        let t702 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t268 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t325
+            - (gdistal_wx_leg3 * t333 + c_proximal_leg3 * t327)
+            - minus_rate_dot_distal_leg3;
+        let t714 = s_distal_leg3 * (t702 - t624)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t567);
+        let minus_rate_dot_distal_leg4 = t291 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t333
+            + minus_gdistal_wy_leg4 * t327 + minus_gdistal_wy_leg4 * t325
+            + minus_rate_dot_distal_leg4;
+        let t732 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t735 = c_distal_leg4 * (t582 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t732 - t641);
+        let t739 = minus_gdistal_wy_leg4 * t482;
+        let t747 = minus_s_distal_leg1 * (t546 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t598 - t668);
+        let t749 = minus_gdistal_wx_leg1 * t591;
+        let t760 = minus_s_distal_leg2 * (t559 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t615 - t689);
+        let t764 = gdistal_wy_leg2 * t608;
+        let t773 = s_distal_leg3 * (t567 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t625 - t702);
+        let t775 = gdistal_wx_leg3 * t629;
+        let t786 = c_distal_leg4 * (t642 - t732)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t582);
+        let t791 = minus_gdistal_wy_leg4 * t647;
+        let t796 = t17 * (-6.936717523440031);
+        let t797 = minus_gdistal_wx_leg1 * t796;
+        let t809 = 0.7071067811865475 * t37 * t491;
+        let t814 = t94 * 6.936717523440031;
+        let t815 = gdistal_wx_leg3 * t814;
+        let t826 = t499 * (0.7071067811865475 * t70);
+        Ok([
+            [
+                t5 * t337 + t340 - t343, t5 * t360 + t86 * t363 + t12 * t368,
+                t5 * t386 - t86 * t366 + t12 * t390, t86 * t359 - t404 + t343,
+                t86 * t416 - t5 * t367 + t12 * t419, t404 - t340 + t12 * t385, 9.81 * t9,
+                9.81 * t34, 9.81 * t26, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
+                minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
+                minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2,
+                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4, t488, -t492, t496, -t500,
+                minus_gproximal_wx_leg1 * t503, minus_gproximal_wx_leg2 * t507,
+                minus_gproximal_wx_leg3 * t511, minus_gproximal_wx_leg4 * t515,
+                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
+                minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
+                minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg1,
+                    minus_rate_proximal_leg1,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg2,
+                    minus_rate_proximal_leg2,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wx_leg4,
+                    minus_rate_proximal_leg4,
+                ),
+                -minus_gproximal_wx_leg1,
+                -minus_gproximal_wx_leg2,
+                -minus_gproximal_wx_leg3,
+                -minus_gproximal_wx_leg4,
+                t83 * t544 + t547,
+                minus_s_proximal_leg2 * t557 + c_proximal_leg2 * t559,
+                t568 + t99 * t570,
+                t106 * t580 + c_proximal_leg4 * t582,
+                -(minus_gproximal_wx_leg1 * t595 + t600),
+                -(minus_gproximal_wx_leg2 * t612 + c_proximal_leg2 * t616),
+                t627 - minus_gproximal_wx_leg3 * t633,
+                c_proximal_leg4 * t643 - minus_gproximal_wx_leg4 * t651,
+                minus_gproximal_wx_leg1 * t671 - t673,
+                minus_gproximal_wx_leg2 * t692 - c_proximal_leg2 * t462,
+                t701 - minus_gproximal_wx_leg3 * t714,
+                c_proximal_leg4 * t482 - minus_gproximal_wx_leg4 * t735,
+                -(minus_gproximal_wx_leg1 * t747 + t749),
+                -(minus_gproximal_wx_leg2 * t760 + c_proximal_leg2 * t608),
+                -(minus_gproximal_wx_leg3 * t773 + t775),
+                minus_gproximal_wx_leg4 * t786 - c_proximal_leg4 * t647,
+                -(minus_s_distal_leg1 * t488 + t797),
+                minus_s_distal_leg2 * t492 + t37 * t507,
+                s_distal_leg3 * t496 + t815,
+                t70 * t515 - s_distal_leg4 * t500,
+            ],
+            [
+                t9 * t337 + t346 - t348, t9 * t360 + t34 * t363 + t26 * t368,
+                t9 * t386 - t34 * t366 + t26 * t390, t34 * t359 - t408 + t348,
+                t34 * t416 - t9 * t367 + t26 * t419, t408 - t346 + t26 * t385, -(9.81 * t5),
+                -(9.81 * t86), -(9.81 * t12),
+                minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
+                minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
+                minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2,
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, t489, -t493, t497, -t501,
+                minus_gproximal_wy_leg1 * t503, minus_gproximal_wy_leg2 * t507,
+                minus_gproximal_wy_leg3 * t511, minus_gproximal_wy_leg4 * t515,
+                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
+                minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
+                minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg1,
+                    minus_rate_proximal_leg1,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg2,
+                    minus_rate_proximal_leg2,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wy_leg4,
+                    minus_rate_proximal_leg4,
+                ),
+                -minus_gproximal_wy_leg1,
+                -minus_gproximal_wy_leg2,
+                -minus_gproximal_wy_leg3,
+                -minus_gproximal_wy_leg4,
+                s_proximal_leg1 * t549 - c_proximal_leg1 * t546,
+                t48 * t556 - t563,
+                -(c_proximal_leg3 * t567 - s_proximal_leg3 * t573),
+                t75 * t580 - t586,
+                c_proximal_leg1 * t599 - minus_gproximal_wy_leg1 * t595,
+                t619 - minus_gproximal_wy_leg2 * t612,
+                -(minus_gproximal_wy_leg3 * t633 + c_proximal_leg3 * t626),
+                -(minus_gproximal_wy_leg4 * t651 + t655),
+                minus_gproximal_wy_leg1 * t671 + c_proximal_leg1 * t452,
+                minus_gproximal_wy_leg2 * t692 + t697,
+                -(minus_gproximal_wy_leg3 * t714 + c_proximal_leg3 * t472),
+                -(minus_gproximal_wy_leg4 * t735 + t739),
+                c_proximal_leg1 * t591 - minus_gproximal_wy_leg1 * t747,
+                t764 - minus_gproximal_wy_leg2 * t760,
+                c_proximal_leg3 * t629 - minus_gproximal_wy_leg3 * t773,
+                minus_gproximal_wy_leg4 * t786 + t791,
+                c_proximal_leg1 * t796 - minus_s_distal_leg1 * t489,
+                minus_s_distal_leg2 * t493 - t809,
+                s_distal_leg3 * t497 - c_proximal_leg3 * t814,
+                -(t826 + s_distal_leg4 * t501),
+            ],
+            [
+                t14 * t337 + t351 - t353, t14 * t360 + t36 * t363 + t16 * t368,
+                t14 * t386 - t36 * t366 + t16 * t390, t36 * t359 - t412 + t353,
+                t36 * t416 - t14 * t367 + t16 * t419, t412 - t351 + t16 * t385, 0.0, 0.0, 0.0,
+                -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
+                -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
+                minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2,
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -t490, t494, t498, -t502,
+                -(gproximal_wz_leg1 * t503), -(gproximal_wz_leg2 * t507),
+                minus_gproximal_wz_leg3 * t511, minus_gproximal_wz_leg4 * t515,
+                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
+                minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
+                -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
+                -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg3,
+                    minus_rate_proximal_leg3,
+                ),
+                ::overact::math::signed(
+                    minus_gproximal_wz_leg4,
+                    minus_rate_proximal_leg4,
+                ),
+                gproximal_wz_leg1,
+                gproximal_wz_leg2,
+                -minus_gproximal_wz_leg3,
+                -minus_gproximal_wz_leg4,
+                -(t145 * t544 + t547),
+                t563 - t149 * t556,
+                t568 + t141 * t570,
+                t155 * t580 - t586,
+                gproximal_wz_leg1 * t595 + t600,
+                gproximal_wz_leg2 * t612 - t619,
+                t627 - minus_gproximal_wz_leg3 * t633,
+                -(minus_gproximal_wz_leg4 * t651 + t655),
+                t673 - gproximal_wz_leg1 * t671,
+                -(gproximal_wz_leg2 * t692 + t697),
+                t701 - minus_gproximal_wz_leg3 * t714,
+                -(minus_gproximal_wz_leg4 * t735 + t739),
+                gproximal_wz_leg1 * t747 + t749,
+                gproximal_wz_leg2 * t760 - t764,
+                -(minus_gproximal_wz_leg3 * t773 + t775),
+                minus_gproximal_wz_leg4 * t786 + t791,
+                minus_s_distal_leg1 * t490 + t797,
+                t809 - minus_s_distal_leg2 * t494,
+                s_distal_leg3 * t498 + t815,
+                -(t826 + s_distal_leg4 * t502),
             ],
         ])
     }

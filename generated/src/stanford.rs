@@ -341,7 +341,7 @@ impl Stanford {
     /// Output: 6 x 75.
     /// Columns: `PARAMETERS`.
     ///
-    /// 580 operations (251 additions, 329 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 463 intermediates.
+    /// 575 operations (250 additions, 325 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 458 intermediates.
     #[must_use]
     pub fn idm_red_platform(
         joints: &[f64; 6],
@@ -351,262 +351,260 @@ impl Stanford {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
-        let t3 = s2_arm * joint_velocities[0];
+        let t3 = c2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = c2_arm * joint_accelerations[0];
-        let t6 = t4 - t5;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
         let t7 = t4 + t6;
-        let t8 = c2_arm * t7;
-        let t9 = joint_accelerations[0] + t8;
-        let t10 = c2_arm * joint_velocities[0];
-        let t11 = t3 * t10;
-        let t12 = joint_velocities[1] * t10;
-        let t13 = s2_arm * joint_accelerations[0];
-        let t14 = t13 + t12;
+        let t8 = s2_arm * t7;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t12 - t13;
         let t15 = t12 + t14;
-        let t18 = c2_arm * t15 - s2_arm * t7;
+        let t17 = c2_arm * t7 - s2_arm * t15;
+        let t18 = t9 * t9;
         let t19 = t3 * t3;
-        let t20 = t10 * t10;
-        let t21 = t19 - t20;
-        let t22 = t11 + joint_accelerations[1];
-        let t23 = s2_arm * t22;
-        let t24 = joint_velocities[1] * joint_velocities[1];
-        let t27 = t23 + c2_arm * (t24 - t19);
-        let t28 = t11 - joint_accelerations[1];
+        let t20 = t18 - t19;
+        let t21 = t10 + joint_accelerations[1];
+        let t22 = s2_arm * t21;
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t26 = t22 + c2_arm * (t23 - t18);
+        let t27 = t8 - joint_accelerations[0];
+        let t28 = t10 - joint_accelerations[1];
         let t29 = c2_arm * t28;
-        let t32 = t29 - s2_arm * (t20 - t24);
-        let t36 = 0.1524 * t13 - 9.81 * c2_arm;
-        let t40 = 0.1524 * t5 + 9.81 * s2_arm;
-        let t44 = 0.1524 * c2_arm;
-        let t45 = t20 + t24;
-        let t47 = s2_arm * joints[2];
-        let t53 = joint_velocities[0] * joint_velocities[0];
-        let t56 = joint_velocities[2] + joint_velocities[2];
-        let t58 = joints[2] * t15 - 0.1524 * t53 + t3 * t56;
-        let t62 = t19 + t24;
-        let t65 = joint_accelerations[2] - (t36 + joints[2] * t62);
+        let t32 = t29 - s2_arm * (t19 - t23);
+        let t36 = 0.1524 * t5 - 9.81 * c2_arm;
+        let t40 = 0.1524 * t13 + 9.81 * s2_arm;
+        let t41 = joint_accelerations[0] * 0.1524;
+        let t45 = 0.1524 * c2_arm;
+        let t46 = t19 + t23;
+        let t48 = s2_arm * joints[2];
+        let t54 = joint_velocities[0] * joint_velocities[0];
+        let t57 = joint_velocities[2] + joint_velocities[2];
+        let t59 = joints[2] * t7 - 0.1524 * t54 + t9 * t57;
+        let t63 = t18 + t23;
+        let t66 = joint_accelerations[2] - (t36 + joints[2] * t63);
         let t72 = joints[2] * t28;
-        let t74 = joint_velocities[1] * t56 - (t40 + t72);
-        let t76 = s2_arm * t65 + c2_arm * t74;
+        let t74 = joint_velocities[1] * t57 - (t40 + t72);
+        let t76 = s2_arm * t66 + c2_arm * t74;
         let t82 = 0.1524 * s2_arm;
-        let t86 = 0.1524 * t29 + t15 * t47 + t82 * t62 + s2_arm * t58;
+        let t86 = 0.1524 * t29 + t7 * t48 + t82 * t63 + s2_arm * t59;
         let t87 = t74 - t72;
-        let t90 = t58 * t47 - 0.1524 * t76;
+        let t90 = t59 * t48 - 0.1524 * t76;
         let t91 = joints[2] * t74;
-        let t95 = s2_arm * c4_arm;
-        let t98 = s4_arm * t3 + c4_arm * joint_velocities[1];
-        let t99 = t10 + joint_velocities[3];
+        let t95 = s2_arm * s4_arm;
+        let t98 = s4_arm * joint_velocities[1] - c4_arm * t9;
+        let t99 = t3 + joint_velocities[3];
         let t100 = t98 * t99;
         let t101 = t95 * t100;
-        let t102 = s2_arm * s4_arm;
-        let t108 = s4_arm * joint_velocities[1] - c4_arm * t3;
-        let t110 = s4_arm * t14 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t108;
-        let t113 = t108 * t98;
-        let t115 = t101 + t102 * t110 + c2_arm * t113;
-        let t116 = t9 - t115;
-        let t117 = t3 * t99;
-        let t118 = t108 * t99;
-        let t119 = t118 - t110;
-        let t121 = t117 + c4_arm * t119;
-        let t122 = t121 - t28;
-        let t125 = t108 * t108;
-        let t126 = t98 * t98;
-        let t127 = t125 - t126;
-        let t134 = s4_arm * joint_accelerations[1] - c4_arm * t14
-            + joint_velocities[3] * t98;
-        let t135 = t100 + t134;
-        let t139 = t99 * t99;
-        let t140 = t139 - t125;
-        let t142 = joint_accelerations[3] - t6;
+        let t102 = s2_arm * c4_arm;
+        let t108 = s4_arm * t9 + c4_arm * joint_velocities[1];
+        let t110 = s4_arm * joint_accelerations[1] - c4_arm * t6
+            + joint_velocities[3] * t108;
+        let t113 = t98 * t108;
+        let t115 = t101 - t102 * t110 - c2_arm * t113;
+        let t116 = t9 * t99;
+        let t117 = t108 * t99;
+        let t118 = t117 + t110;
+        let t119 = s4_arm * t118;
+        let t120 = t119 - t116;
+        let t121 = t28 + t120;
+        let t124 = t108 * t108;
+        let t125 = t99 * t99;
+        let t126 = t124 + t125;
+        let t127 = t126 - t63;
+        let t128 = t124 - t125;
+        let t129 = t127 + t128;
+        let t137 = s4_arm * t6 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t98;
+        let t138 = t100 - t137;
+        let t142 = joint_accelerations[3] - t14;
         let t143 = t113 + t142;
-        let t146 = t100 - t134;
-        let t152 = t118 + t110;
-        let t154 = t126 - t139;
+        let t146 = t117 - t110;
+        let t153 = t100 + t137;
         let t156 = t113 - t142;
-        let t166 = c2_arm * t142 - (t101 + t102 * t118);
-        let t169 = s4_arm * t44 + c4_arm * t47;
-        let t173 = s4_arm * t47 - c4_arm * t44;
-        let t174 = t126 + t139;
-        let t181 = c4_arm * t58 - s4_arm * t74;
-        let t186 = joints[2] * c4_arm;
-        let t188 = joints[2] * s4_arm;
-        let t194 = t125 + t139;
-        let t202 = c4_arm * t74 + s4_arm * t58;
-        let t205 = t173 * t156 - t169 * t194 - t82 * t135 - (t95 * t65 + c2_arm * t202);
-        let t210 = t186 * t156 + t188 * t194 + s4_arm * t65;
-        let t216 = t95 * s5_arm - c2_arm * c5_arm;
-        let t219 = c5_arm * t108 - s5_arm * t99;
-        let t220 = t98 + joint_velocities[4];
-        let t221 = t219 * t220;
-        let t222 = t216 * t221;
-        let t225 = t95 * c5_arm + c2_arm * s5_arm;
-        let t231 = s5_arm * t108 + c5_arm * t99;
-        let t233 = c5_arm * t134 - s5_arm * t142 - joint_velocities[4] * t231;
-        let t236 = t219 * t231;
-        let t238 = t222 - t225 * t233 + t102 * t236;
-        let t239 = s4_arm * c5_arm;
-        let t241 = s4_arm * s5_arm;
-        let t242 = t241 * t221;
-        let t245 = t233 * t239 - t242 + c4_arm * t236;
-        let t246 = t108 * t220;
-        let t251 = s5_arm * t134 + c5_arm * t142 + joint_velocities[4] * t219;
-        let t252 = t221 + t251;
-        let t254 = c5_arm * t252 - t246;
-        let t255 = t156 + t254;
-        let t257 = t231 * t220;
-        let t258 = t233 - t257;
-        let t261 = t219 * t219;
-        let t262 = t231 * t231;
-        let t263 = t261 - t262;
-        let t273 = t220 * t220;
-        let t274 = t273 - t261;
-        let t276 = t110 + joint_accelerations[4];
-        let t277 = t276 - t236;
-        let t280 = t257 + t233;
-        let t295 = t236 + t276;
-        let t297 = t262 - t273;
-        let t300 = t221 - t251;
-        let t314 = t225 * t257 - t222 + t102 * t276;
-        let t318 = t242 - t239 * t257 + c4_arm * t276;
-        let t321 = c5_arm * t82 - s5_arm * t173;
-        let t325 = c5_arm * t173 + s5_arm * t82;
-        let t326 = t262 + t273;
-        let t334 = s5_arm * t202 + c5_arm * t65;
-        let t341 = c5_arm * t186;
-        let t343 = s5_arm * t186;
-        let t355 = t261 + t273;
-        let t362 = c5_arm * t202 - s5_arm * t65;
-        let t365 = t169 * t258 - (t325 * t295 + t321 * t355)
-            - (t225 * t181 + t102 * t362);
-        let t374 = t343 * t355 - t341 * t295 - t188 * t258 + t181 * t239 - c4_arm * t362;
-        let t377 = s5_arm * t295 + c5_arm * t355;
-        let t378 = s5_arm * t181;
-        let t384 = t102 * s6_arm - t225 * c6_arm;
-        let t390 = c6_arm * t220 - s6_arm * t219;
-        let t392 = c6_arm * t233 + s6_arm * t276 + joint_velocities[5] * t390;
-        let t396 = t225 * s6_arm + t102 * c6_arm;
-        let t399 = c6_arm * t219 + s6_arm * t220;
-        let t400 = t231 + joint_velocities[5];
-        let t401 = t399 * t400;
-        let t402 = t396 * t401;
-        let t404 = t399 * t390;
-        let t406 = t384 * t392 + t402 + t216 * t404;
-        let t409 = c6_arm * t239 + c4_arm * s6_arm;
-        let t413 = c4_arm * c6_arm - s6_arm * t239;
-        let t414 = t413 * t401;
-        let t417 = t392 * t409 + t414 - t241 * t404;
-        let t418 = s5_arm * s6_arm;
-        let t419 = t418 * t401;
-        let t420 = s5_arm * c6_arm;
-        let t424 = t419 - t392 * t420 - c5_arm * t404;
-        let t425 = t219 * t400;
-        let t430 = c6_arm * t276 - s6_arm * t233 - joint_velocities[5] * t399;
-        let t431 = t401 - t430;
-        let t433 = t425 - c6_arm * t431;
-        let t434 = t295 - t433;
-        let t435 = t390 * t400;
-        let t436 = t435 + t392;
-        let t440 = t399 * t399;
-        let t441 = t390 * t390;
-        let t442 = t440 - t441;
-        let t457 = t251 + joint_accelerations[5];
-        let t458 = t404 + t457;
-        let t460 = t400 * t400;
-        let t461 = t460 - t440;
-        let t464 = t435 - t392;
-        let t486 = t441 - t460;
-        let t488 = t404 - t457;
-        let t491 = t401 + t430;
-        let t521 = c6_arm * t169 - s6_arm * t325;
-        let t525 = c6_arm * t325 + s6_arm * t169;
-        let t526 = t441 + t460;
-        let t534 = c6_arm * t181 - s6_arm * t362;
-        let t541 = c6_arm * t341 - s6_arm * t188;
-        let t545 = s6_arm * t341 + c6_arm * t188;
-        let t563 = t440 + t460;
-        let t571 = c6_arm * t362 + s6_arm * t181;
+        let t166 = c2_arm * t142 - (t102 * t117 + t101);
+        let t169 = s4_arm * t45 + c4_arm * t48;
+        let t173 = s4_arm * t48 - c4_arm * t45;
+        let t180 = c4_arm * t59 - s4_arm * t74;
+        let t185 = joints[2] * c4_arm;
+        let t187 = joints[2] * s4_arm;
+        let t193 = t63 - t128;
+        let t201 = c4_arm * t74 + s4_arm * t59;
+        let t204 = t173 * t156 - t169 * t193 - t82 * t118 - (t102 * t66 + c2_arm * t201);
+        let t209 = t185 * t156 + t187 * t193 + s4_arm * t66;
+        let t215 = t102 * s5_arm - c2_arm * c5_arm;
+        let t218 = c5_arm * t98 - s5_arm * t99;
+        let t219 = t108 + joint_velocities[4];
+        let t220 = t218 * t219;
+        let t221 = t215 * t220;
+        let t224 = t102 * c5_arm + c2_arm * s5_arm;
+        let t230 = s5_arm * t98 + c5_arm * t99;
+        let t232 = c5_arm * t110 - s5_arm * t142 - joint_velocities[4] * t230;
+        let t235 = t218 * t230;
+        let t237 = t221 - t224 * t232 + t95 * t235;
+        let t238 = s4_arm * c5_arm;
+        let t240 = s4_arm * s5_arm;
+        let t241 = t240 * t220;
+        let t244 = t232 * t238 - t241 + c4_arm * t235;
+        let t245 = t98 * t219;
+        let t246 = t230 * t219;
+        let t247 = t232 - t246;
+        let t248 = s5_arm * t247;
+        let t249 = t245 + t248;
+        let t254 = s5_arm * t110 + c5_arm * t142 + joint_velocities[4] * t218;
+        let t255 = t220 + t254;
+        let t259 = t219 * t219;
+        let t260 = t218 * t218;
+        let t261 = t259 - t260;
+        let t262 = t193 + t261;
+        let t263 = t260 + t259;
+        let t264 = t263 - t262;
+        let t268 = t249 - t156;
+        let t276 = t137 + joint_accelerations[4];
+        let t277 = t276 - t235;
+        let t280 = t246 + t232;
+        let t294 = t235 + t276;
+        let t296 = t193 - t263;
+        let t299 = t220 - t254;
+        let t313 = t224 * t246 - t221 + t95 * t276;
+        let t317 = t241 - t238 * t246 + c4_arm * t276;
+        let t320 = c5_arm * t82 - s5_arm * t173;
+        let t324 = c5_arm * t173 + s5_arm * t82;
+        let t332 = s5_arm * t201 + c5_arm * t66;
+        let t339 = c5_arm * t185;
+        let t341 = s5_arm * t185;
+        let t359 = c5_arm * t201 - s5_arm * t66;
+        let t362 = t169 * t247 - (t324 * t294 + t320 * t263)
+            - (t224 * t180 + t95 * t359);
+        let t371 = t341 * t263 - t339 * t294 - t187 * t247 + t180 * t238 - c4_arm * t359;
+        let t374 = s5_arm * t294 + c5_arm * t263;
+        let t375 = s5_arm * t180;
+        let t381 = t95 * s6_arm - t224 * c6_arm;
+        let t387 = c6_arm * t219 - s6_arm * t218;
+        let t389 = c6_arm * t232 + s6_arm * t276 + joint_velocities[5] * t387;
+        let t393 = t224 * s6_arm + t95 * c6_arm;
+        let t396 = c6_arm * t218 + s6_arm * t219;
+        let t397 = t230 + joint_velocities[5];
+        let t398 = t396 * t397;
+        let t399 = t393 * t398;
+        let t401 = t396 * t387;
+        let t403 = t381 * t389 + t399 + t215 * t401;
+        let t406 = c6_arm * t238 + c4_arm * s6_arm;
+        let t410 = c4_arm * c6_arm - s6_arm * t238;
+        let t411 = t410 * t398;
+        let t414 = t389 * t406 + t411 - t240 * t401;
+        let t415 = s5_arm * s6_arm;
+        let t416 = t415 * t398;
+        let t417 = s5_arm * c6_arm;
+        let t421 = t416 - t389 * t417 - c5_arm * t401;
+        let t422 = t218 * t397;
+        let t423 = t387 * t397;
+        let t424 = t423 + t389;
+        let t426 = t422 + s6_arm * t424;
+        let t432 = c6_arm * t276 - s6_arm * t232 - joint_velocities[5] * t396;
+        let t433 = t398 - t432;
+        let t436 = t387 * t387;
+        let t437 = t397 * t397;
+        let t438 = t436 + t437;
+        let t439 = t438 - t263;
+        let t440 = t436 - t437;
+        let t441 = t439 + t440;
+        let t449 = t294 - t426;
+        let t457 = t254 + joint_accelerations[5];
+        let t458 = t401 + t457;
+        let t462 = t423 - t389;
+        let t484 = t401 - t457;
+        let t487 = t398 + t432;
+        let t517 = c6_arm * t169 - s6_arm * t324;
+        let t521 = c6_arm * t324 + s6_arm * t169;
+        let t529 = c6_arm * t180 - s6_arm * t359;
+        let t536 = c6_arm * t339 - s6_arm * t187;
+        let t540 = s6_arm * t339 + c6_arm * t187;
+        let t558 = t438 - t441;
+        let t566 = c6_arm * t359 + s6_arm * t180;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t9, t18, -t27, -t8, t32, 0.0,
-                0.1524 * t27, -(0.1524 * t32), 0.3048 * joint_accelerations[0],
-                0.02322576 * joint_accelerations[0], 0.0, 0.0, 0.0, 0.0, t9, -t27, -t18, 0.0, -t32,
-                -t8, t44 * t45 - t7 * t47 + 0.1524 * t23 + c2_arm * t58,
-                joint_accelerations[0] * 0.1524 - t53 * t47 - t76, t86, t90, 0.0, 0.0, 0.0, 0.0,
-                t116, s2_arm * (t122 + t121) + c2_arm * t127,
-                t102 * t140 - t95 * t143 - c2_arm * t146, t115,
-                c2_arm * t152 - (t95 * t154 + t102 * t156), t166,
-                t169 * t143 - t173 * t174 - t82 * t119 + c2_arm * t181 - t102 * t65, t205, t86, t90,
-                0.0, 0.0, 0.0, 0.0, t238, t225 * t252 + t216 * t258 + t102 * t263,
-                t216 * t274 - t225 * t277 + t102 * t280, -(t238 - (t116 + t166)),
-                t216 * t295 - t225 * t297 + t102 * t300, t314,
-                t321 * t277 - t325 * t326 + t169 * t252 - (t216 * t181 + t102 * t334), t365, t205,
-                t90, 0.0, 0.0, 0.0, 0.0, t406, t396 * t436 - t384 * t431 - t216 * t442,
-                t384 * t458 + t396 * t461 + t216 * t464, t238 + t314 - t406,
-                t384 * t486 - t396 * t488 - t216 * t491, t384 * t435 - t402 - t216 * t457,
-                t521 * t458 - t525 * t526 - t321 * t431 - (t396 * t334 + t216 * t534),
-                t525 * t488 - t521 * t563 - t321 * t436 + t384 * t334 + t216 * t571, -t365, t90,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t8, t17, -t26, -t27, t32, 0.0,
+                0.1524 * t26, -(0.1524 * t32), t41 + t41, 0.1524 * t41, 0.0, 0.0, 0.0, 0.0, t8,
+                -t26, -t17, 0.0, -t32, -t27, t45 * t46 - t15 * t48 + 0.1524 * t22 + c2_arm * t59,
+                t41 - t54 * t48 - t76, t86, t90, 0.0, 0.0, 0.0, 0.0, t115,
+                s2_arm * (t120 + t121) - c2_arm * t129, t95 * t127 - t102 * t143 - c2_arm * t146,
+                t8 - t115, c2_arm * t153 - (t102 * t128 + t95 * t156), t166,
+                t169 * t143 - t173 * t126 - t82 * t138 + c2_arm * t180 - t95 * t66, t204, t86, t90,
+                0.0, 0.0, 0.0, 0.0, t237, t224 * t255 + t215 * t247 + t95 * t264,
+                t215 * t261 - t224 * t277 + t95 * t280, t166 + t115 - t237,
+                t215 * t294 - t224 * t296 + t95 * t299, t313,
+                t320 * t277 - t324 * t262 + t169 * t255 - (t215 * t180 + t95 * t332), t362, t204,
+                t90, 0.0, 0.0, 0.0, 0.0, t403, t393 * t424 - t381 * t433 + t215 * t441,
+                t381 * t458 + t393 * t439 + t215 * t462, t313 + t237 - t403,
+                t381 * t440 - t393 * t484 - t215 * t487, t381 * t423 - t399 - t215 * t457,
+                t517 * t458 - t521 * t438 - t320 * t433 - (t393 * t332 + t215 * t529),
+                t521 * t484 - t517 * t558 - t320 * t424 + t381 * t332 + t215 * t566, -t362, t90,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t21, -t13, t11, -t5, joint_accelerations[1], t36,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t10, t20, -t5, t10, -t13, joint_accelerations[1], t36,
                 t40, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t11, -t13, -t21,
-                joint_accelerations[1], t5, t11, -(joints[2] * t45 + t65), -(joints[2] * t5), t87,
-                t91, 0.0, 0.0, 0.0, 0.0, t122, c4_arm * t135 - s4_arm * t119,
-                s4_arm * t143 + c4_arm * t140, -t121, s4_arm * t154 - c4_arm * t156, t117,
-                -(t186 * t174 + t188 * t143 + c4_arm * t65), t210, t87, t91, 0.0, 0.0, 0.0, 0.0,
-                t245, c4_arm * t263 - s4_arm * (t255 + t254),
-                t239 * t277 - t241 * t274 + c4_arm * t280, t122 + t117 - t245,
-                t239 * t297 - t241 * t295 + c4_arm * t300, t318,
-                t181 * t241 - c4_arm * t334 - (t341 * t326 + t343 * t277 + t188 * t252), t374, t210,
-                t91, 0.0, 0.0, 0.0, 0.0, t417, t413 * t436 - t409 * t431 + t241 * t442,
-                t409 * t458 + t413 * t461 - t241 * t464, t245 + t318 - t417,
-                t409 * t486 - t413 * t488 + t241 * t491, t409 * t435 - t414 + t241 * t457,
-                t343 * t431 - (t541 * t526 + t545 * t458) + t241 * t534 - t334 * t413,
-                t541 * t488 + t545 * t563 + t343 * t436 + t334 * t409 - t241 * t571, -t374, t91,
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t10, -t5, -t20,
+                joint_accelerations[1], t13, t10, -(joints[2] * t46 + t66), -(joints[2] * t13), t87,
+                t91, 0.0, 0.0, 0.0, 0.0, t120, c4_arm * t118 - s4_arm * t138,
+                s4_arm * t143 + c4_arm * t127, -t121, s4_arm * t128 - c4_arm * t156, t116,
+                -(t185 * t126 + t187 * t143 + c4_arm * t66), t209, t87, t91, 0.0, 0.0, 0.0, 0.0,
+                t244, c4_arm * t264 - s4_arm * (t249 + t268),
+                t238 * t277 - t240 * t261 + c4_arm * t280, t119 - t244,
+                t238 * t296 - t240 * t294 + c4_arm * t299, t317,
+                t180 * t240 - c4_arm * t332 - (t339 * t262 + t341 * t277 + t187 * t255), t371, t209,
+                t91, 0.0, 0.0, 0.0, 0.0, t414, t410 * t424 - t406 * t433 - t240 * t441,
+                t406 * t458 + t410 * t439 - t240 * t462, t317 + t244 - t414,
+                t406 * t440 - t410 * t484 + t240 * t487, t406 * t423 - t411 + t240 * t457,
+                t341 * t433 - (t536 * t438 + t540 * t458) + t240 * t529 - t332 * t410,
+                t536 * t484 + t540 * t558 + t341 * t424 + t332 * t406 - t240 * t566, -t371, t91,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t22, -t13, -t62, t65,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t21, -t5, -t63, t66,
                 joint_accelerations[2], joint_velocities[2],
-                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t119,
-                t135, -t62, t65, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                s5_arm * t326 - c5_arm * t277, t377, t135, t65, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, t420 * t526 + t418 * t458 + c5_arm * t431,
-                c5_arm * t436 - (t420 * t488 + t418 * t563), -t377, t65, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t138,
+                t118, -t63, t66, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                s5_arm * t262 - c5_arm * t277, t374, t118, t66, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, t417 * t438 + t415 * t458 + c5_arm * t433,
+                c5_arm * t424 - (t417 * t484 + t415 * t558), -t374, t66, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t113, t127, -t146, t113, t152, t142, t181, -t202, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, -t255,
-                s5_arm * t252 - c5_arm * t258, -(s5_arm * t277 + c5_arm * t274), t254,
-                -(s5_arm * t297 + c5_arm * t295), t246, c5_arm * t181, -t378, -t202, 0.0, 0.0, 0.0,
-                0.0, 0.0, t424, s5_arm * (t434 - t433) + c5_arm * t442,
-                t418 * t461 - t420 * t458 - c5_arm * t464, -(t424 + t255 - t246),
-                c5_arm * t491 - (t420 * t486 + t418 * t488), c5_arm * t457 - (t420 * t435 + t419),
-                c5_arm * t534 - t334 * t418, -(t334 * t420 + c5_arm * t571), t378, 0.0, 0.0, 0.0,
+                -t113, -t129, -t146, t113, t153, t142, t180, -t201, 0.0, 0.0,
+                joint_accelerations[3], joint_velocities[3],
+                ::overact::math::sign(joint_velocities[3]), 1.0, -t249,
+                s5_arm * t255 - c5_arm * t247, -(s5_arm * t277 + c5_arm * t261), t268,
+                -(s5_arm * t296 + c5_arm * t294), t245, c5_arm * t180, -t375, -t201, 0.0, 0.0, 0.0,
+                0.0, 0.0, t421, s5_arm * (t426 - t449) - c5_arm * t441,
+                t415 * t439 - t417 * t458 - c5_arm * t462, -(t248 + t421),
+                c5_arm * t487 - (t417 * t440 + t415 * t484), c5_arm * t457 - (t417 * t423 + t416),
+                c5_arm * t529 - t332 * t415, -(t332 * t417 + c5_arm * t566), t375, 0.0, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t236, t263, t280,
-                -t236, t300, t276, -t334, -t362, 0.0, 0.0, joint_accelerations[4],
-                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t434,
-                c6_arm * t436 - s6_arm * t431, s6_arm * t458 + c6_arm * t461, t433,
-                s6_arm * t486 - c6_arm * t488, -t425, -(c6_arm * t334), s6_arm * t334, t362, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t235, t264, t280,
+                -t235, t299, t276, -t332, -t359, 0.0, 0.0, joint_accelerations[4],
+                joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0, t426,
+                c6_arm * t424 - s6_arm * t433, s6_arm * t458 + c6_arm * t439, t449,
+                s6_arm * t440 - c6_arm * t484, -t422, -(c6_arm * t332), s6_arm * t332, t359, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t404, t442, -t464, t404, t491,
-                t457, t534, -t571, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t401, -t441, -t462, t401, t487,
+                t457, t529, -t566, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0,
             ],
         ]
@@ -621,7 +619,7 @@ impl Stanford {
     /// Output: 6 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 566 operations (236 additions, 330 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 461 intermediates.
+    /// 564 operations (236 additions, 328 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 459 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -642,220 +640,220 @@ impl Stanford {
         let t17 = c2_arm * t16;
         let t18 = t14 * t14;
         let t19 = joint_velocities[1] * joint_velocities[1];
-        let t22 = t17 - s2_arm * (t18 - t19);
+        let t20 = t18 - t19;
+        let t22 = t17 - s2_arm * t20;
         let t23 = t15 + joint_accelerations[1];
         let t24 = s2_arm * t23;
-        let t25 = t8 * t8;
-        let t28 = t24 + c2_arm * (t19 - t25);
-        let t29 = s2_arm * joint_accelerations[0];
-        let t33 = 0.1524 * t10 + 9.81 * s2_arm;
-        let t34 = joint_velocities[1] * t14;
-        let t35 = t29 + t34;
-        let t36 = t34 + t35;
-        let t44 = 0.1524 * t29 - 9.81 * c2_arm;
-        let t46 = joint_velocities[0] * joint_velocities[0];
-        let t49 = joint_velocities[2] + joint_velocities[2];
-        let t51 = joints[2] * t36 - 0.1524 * t46 + t8 * t49;
-        let t52 = s2_arm * joints[2];
-        let t54 = 0.1524 * s2_arm;
-        let t55 = t25 + t19;
-        let t58 = joint_accelerations[2] - (t44 + joints[2] * t55);
-        let t60 = 0.1524 * c2_arm;
-        let t62 = joints[2] * t16;
-        let t64 = joint_velocities[1] * t49 - (t33 + t62);
-        let t66 = t54 * t58 + t60 * t64;
-        let t77 = joint_accelerations[3] - t11;
-        let t81 = s2_arm * c4_arm;
-        let t84 = s4_arm * t8 + c4_arm * joint_velocities[1];
-        let t85 = t14 + joint_velocities[3];
-        let t86 = t84 * t85;
-        let t88 = s2_arm * s4_arm;
-        let t91 = s4_arm * joint_velocities[1] - c4_arm * t8;
-        let t92 = t91 * t85;
-        let t93 = t88 * t92;
-        let t96 = t8 * t85;
-        let t101 = s4_arm * joint_accelerations[1] - c4_arm * t35
-            + joint_velocities[3] * t84;
-        let t104 = t91 * t84;
-        let t107 = t86 + t101;
-        let t120 = s4_arm * t35 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t91;
-        let t121 = t92 - t120;
-        let t125 = t91 * t91;
-        let t126 = t84 * t84;
-        let t127 = t125 - t126;
-        let t133 = t85 * t85;
-        let t134 = t133 - t125;
-        let t136 = t104 + t77;
-        let t139 = t86 - t101;
-        let t145 = t92 + t120;
-        let t147 = t126 - t133;
-        let t149 = t104 - t77;
-        let t160 = t81 * c5_arm + c2_arm * s5_arm;
-        let t163 = s5_arm * t91 + c5_arm * t85;
-        let t164 = t84 + joint_velocities[4];
+        let t29 = s4_arm * joint_velocities[1] - c4_arm * t8;
+        let t30 = t29 * t29;
+        let t33 = s4_arm * t8 + c4_arm * joint_velocities[1];
+        let t34 = t33 * t33;
+        let t35 = t30 + t34;
+        let t36 = t18 + t19;
+        let t37 = t35 - t36;
+        let t40 = t24 - c2_arm * (t20 + t37);
+        let t41 = s2_arm * joint_accelerations[0];
+        let t45 = 0.1524 * t10 + 9.81 * s2_arm;
+        let t46 = joint_velocities[1] * t14;
+        let t47 = t41 + t46;
+        let t48 = t46 + t47;
+        let t55 = 0.1524 * t41 - 9.81 * c2_arm;
+        let t57 = joint_velocities[0] * joint_velocities[0];
+        let t60 = joint_velocities[2] + joint_velocities[2];
+        let t62 = joints[2] * t48 - 0.1524 * t57 + t8 * t60;
+        let t63 = s2_arm * joints[2];
+        let t65 = 0.1524 * s2_arm;
+        let t68 = joint_accelerations[2] - (t55 + joints[2] * t35);
+        let t70 = 0.1524 * c2_arm;
+        let t72 = joints[2] * t16;
+        let t74 = joint_velocities[1] * t60 - (t45 + t72);
+        let t76 = t65 * t68 + t70 * t74;
+        let t87 = joint_accelerations[3] - t11;
+        let t89 = s2_arm * c4_arm;
+        let t90 = t14 + joint_velocities[3];
+        let t91 = t33 * t90;
+        let t93 = s2_arm * s4_arm;
+        let t94 = t29 * t90;
+        let t95 = t93 * t94;
+        let t98 = t8 * t90;
+        let t103 = s4_arm * joint_accelerations[1] - c4_arm * t47
+            + joint_velocities[3] * t33;
+        let t106 = t29 * t33;
+        let t109 = t91 + t103;
+        let t122 = s4_arm * t47 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t29;
+        let t123 = t94 - t122;
+        let t127 = t30 - t34;
+        let t133 = t90 * t90;
+        let t134 = t133 - t30;
+        let t136 = t106 + t87;
+        let t139 = t91 - t103;
+        let t145 = t94 + t122;
+        let t147 = t34 - t133;
+        let t149 = t106 - t87;
+        let t160 = t89 * c5_arm + c2_arm * s5_arm;
+        let t163 = s5_arm * t29 + c5_arm * t90;
+        let t164 = t33 + joint_velocities[4];
         let t165 = t163 * t164;
-        let t169 = t81 * s5_arm - c2_arm * c5_arm;
-        let t172 = c5_arm * t91 - s5_arm * t85;
+        let t169 = t89 * s5_arm - c2_arm * c5_arm;
+        let t172 = c5_arm * t29 - s5_arm * t90;
         let t173 = t172 * t164;
         let t174 = t169 * t173;
-        let t176 = t120 + joint_accelerations[4];
+        let t176 = t122 + joint_accelerations[4];
         let t179 = s4_arm * s5_arm;
         let t180 = t179 * t173;
         let t181 = s4_arm * c5_arm;
-        let t186 = t91 * t164;
-        let t187 = t18 + t19;
-        let t201 = c5_arm * t101 - s5_arm * t77 - joint_velocities[4] * t163;
-        let t204 = t172 * t163;
-        let t211 = t201 - t165;
-        let t216 = s4_arm * t52 - c4_arm * t60;
-        let t220 = s4_arm * t60 + c4_arm * t52;
-        let t221 = t125 + t133;
-        let t229 = c4_arm * t64 + s4_arm * t51;
-        let t233 = joints[2] * c4_arm;
-        let t235 = joints[2] * s4_arm;
-        let t244 = s5_arm * t101 + c5_arm * t77 + joint_velocities[4] * t172;
-        let t245 = t173 + t244;
-        let t249 = t172 * t172;
-        let t250 = t163 * t163;
-        let t251 = t249 - t250;
-        let t262 = t164 * t164;
-        let t263 = t262 - t249;
-        let t265 = t176 - t204;
-        let t268 = t165 + t201;
-        let t279 = t204 + t176;
-        let t281 = t250 - t262;
-        let t284 = t173 - t244;
-        let t299 = t88 * s6_arm - t160 * c6_arm;
-        let t302 = c6_arm * t164 - s6_arm * t172;
-        let t303 = t163 + joint_velocities[5];
-        let t304 = t302 * t303;
-        let t308 = t160 * s6_arm + t88 * c6_arm;
-        let t311 = c6_arm * t172 + s6_arm * t164;
-        let t312 = t311 * t303;
-        let t313 = t308 * t312;
-        let t315 = t244 + joint_accelerations[5];
-        let t320 = c6_arm * t181 + c4_arm * s6_arm;
-        let t324 = c4_arm * c6_arm - s6_arm * t181;
-        let t325 = t324 * t312;
-        let t330 = s5_arm * c6_arm;
-        let t332 = s5_arm * s6_arm;
-        let t333 = t332 * t312;
-        let t336 = t172 * t303;
-        let t338 = t126 + t133;
-        let t345 = c4_arm * t51 - s4_arm * t64;
-        let t358 = c5_arm * t216 + s5_arm * t54;
-        let t362 = c5_arm * t54 - s5_arm * t216;
-        let t363 = t249 + t262;
-        let t370 = c5_arm * t229 - s5_arm * t58;
-        let t374 = s5_arm * t233;
-        let t376 = c5_arm * t233;
-        let t393 = c6_arm * t201 + s6_arm * t176 + joint_velocities[5] * t302;
-        let t396 = t311 * t302;
-        let t407 = t304 + t393;
-        let t410 = t396 + t315;
-        let t412 = t303 * t303;
-        let t413 = t311 * t311;
-        let t414 = t412 - t413;
-        let t417 = t304 - t393;
-        let t433 = t302 * t302;
-        let t434 = t433 - t412;
-        let t436 = t396 - t315;
-        let t443 = c6_arm * t176 - s6_arm * t201 - joint_velocities[5] * t311;
-        let t444 = t312 + t443;
-        let t461 = t312 - t443;
-        let t464 = t413 - t433;
-        let t481 = t250 + t262;
-        let t489 = s5_arm * t229 + c5_arm * t58;
-        let t508 = c6_arm * t220 - s6_arm * t358;
-        let t512 = c6_arm * t358 + s6_arm * t220;
-        let t513 = t433 + t412;
-        let t521 = c6_arm * t345 - s6_arm * t370;
-        let t528 = c6_arm * t376 - s6_arm * t235;
-        let t532 = s6_arm * t376 + c6_arm * t235;
-        let t550 = t413 + t412;
-        let t558 = c6_arm * t370 + s6_arm * t345;
+        let t186 = t29 * t164;
+        let t200 = c5_arm * t103 - s5_arm * t87 - joint_velocities[4] * t163;
+        let t203 = t172 * t163;
+        let t210 = t200 - t165;
+        let t215 = s4_arm * t63 - c4_arm * t70;
+        let t219 = s4_arm * t70 + c4_arm * t63;
+        let t220 = t30 + t133;
+        let t228 = c4_arm * t74 + s4_arm * t62;
+        let t232 = joints[2] * c4_arm;
+        let t234 = joints[2] * s4_arm;
+        let t243 = s5_arm * t103 + c5_arm * t87 + joint_velocities[4] * t172;
+        let t244 = t173 + t243;
+        let t248 = t163 * t163;
+        let t249 = t164 * t164;
+        let t250 = t248 + t249;
+        let t251 = t250 - t220;
+        let t252 = t248 - t249;
+        let t253 = t251 + t252;
+        let t265 = t176 - t203;
+        let t268 = t165 + t200;
+        let t279 = t203 + t176;
+        let t283 = t173 - t243;
+        let t298 = t93 * s6_arm - t160 * c6_arm;
+        let t301 = c6_arm * t164 - s6_arm * t172;
+        let t302 = t163 + joint_velocities[5];
+        let t303 = t301 * t302;
+        let t307 = t160 * s6_arm + t93 * c6_arm;
+        let t310 = c6_arm * t172 + s6_arm * t164;
+        let t311 = t310 * t302;
+        let t312 = t307 * t311;
+        let t314 = t243 + joint_accelerations[5];
+        let t319 = c6_arm * t181 + c4_arm * s6_arm;
+        let t323 = c4_arm * c6_arm - s6_arm * t181;
+        let t324 = t323 * t311;
+        let t329 = s5_arm * c6_arm;
+        let t331 = s5_arm * s6_arm;
+        let t332 = t331 * t311;
+        let t335 = t172 * t302;
+        let t337 = t34 + t133;
+        let t344 = c4_arm * t62 - s4_arm * t74;
+        let t357 = c5_arm * t215 + s5_arm * t65;
+        let t361 = c5_arm * t65 - s5_arm * t215;
+        let t362 = t220 - t252;
+        let t369 = c5_arm * t228 - s5_arm * t68;
+        let t373 = s5_arm * t232;
+        let t375 = c5_arm * t232;
+        let t392 = c6_arm * t200 + s6_arm * t176 + joint_velocities[5] * t301;
+        let t395 = t310 * t301;
+        let t406 = t303 + t392;
+        let t409 = t395 + t314;
+        let t411 = t302 * t302;
+        let t412 = t310 * t310;
+        let t413 = t411 - t412;
+        let t416 = t303 - t392;
+        let t432 = t301 * t301;
+        let t433 = t432 - t411;
+        let t435 = t395 - t314;
+        let t442 = c6_arm * t176 - s6_arm * t200 - joint_velocities[5] * t310;
+        let t443 = t311 + t442;
+        let t460 = t311 - t442;
+        let t463 = t412 - t432;
+        let t487 = s5_arm * t228 + c5_arm * t68;
+        let t506 = c6_arm * t219 - s6_arm * t357;
+        let t510 = c6_arm * t357 + s6_arm * t219;
+        let t511 = t432 + t411;
+        let t519 = c6_arm * t344 - s6_arm * t369;
+        let t526 = c6_arm * t375 - s6_arm * t234;
+        let t530 = s6_arm * t375 + c6_arm * t234;
+        let t548 = t412 + t411;
+        let t556 = c6_arm * t369 + s6_arm * t344;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(c2_arm * t12),
-                t22, -t28, -(0.1524 * t22), c2_arm * t36 - s2_arm * t12, 0.1524 * t28,
-                t51 * t52 - t66, 0.1524 * t17 + t36 * t52 + t54 * t55 + s2_arm * t51,
-                c2_arm * t77 - (t81 * t86 + t93), t93 - t81 * t101 - c2_arm * t104,
-                joint_accelerations[0] * 0.1524 - t46 * t52 - 6.561679790026247 * t66,
-                t81 * t121 + t88 * t107 + c2_arm * t127, t88 * t134 - t81 * t136 - c2_arm * t139,
-                c2_arm * t145 - (t81 * t147 + t88 * t149), t160 * t165 - t174 + t88 * t176,
-                t60 * t187 - t12 * t52 + 0.1524 * t24 + c2_arm * t51,
-                t174 - t160 * t201 + t88 * t204,
-                t216 * t149 - t220 * t221 - t54 * t107 - (t81 * t58 + c2_arm * t229),
-                t160 * t245 + t169 * t211 + t88 * t251, t169 * t263 - t160 * t265 + t88 * t268,
-                t169 * t279 - t160 * t281 + t88 * t284, t299 * t304 - t313 - t169 * t315,
-                t220 * t136 - t216 * t338 - t54 * t121 + c2_arm * t345 - t88 * t58,
-                t220 * t211 - (t358 * t279 + t362 * t363) - (t160 * t345 + t88 * t370),
-                t299 * t393 + t313 + t169 * t396, t299 * t410 + t308 * t414 + t169 * t417,
-                t299 * t434 - t308 * t436 - t169 * t444, t308 * t407 - t299 * t461 - t169 * t464,
-                t362 * t265 - t358 * t481 + t220 * t245 - (t169 * t345 + t88 * t489),
-                t508 * t410 - t512 * t513 - t362 * t461 - (t308 * t489 + t169 * t521),
-                t512 * t436 - t508 * t550 - t362 * t407 + t299 * t489 + t169 * t558,
+                t22, -t40, -(0.1524 * t22), c2_arm * t48 - s2_arm * t12, 0.1524 * t40,
+                t62 * t63 - t76, 0.1524 * t17 + t48 * t63 + t65 * t35 + s2_arm * t62,
+                c2_arm * t87 - (t89 * t91 + t95), t95 - t89 * t103 - c2_arm * t106,
+                joint_accelerations[0] * 0.1524 - t57 * t63 - 6.561679790026247 * t76,
+                t89 * t123 + t93 * t109 + c2_arm * t127, t93 * t134 - t89 * t136 - c2_arm * t139,
+                c2_arm * t145 - (t89 * t147 + t93 * t149), t160 * t165 - t174 + t93 * t176,
+                t70 * t36 - t12 * t63 + 0.1524 * t24 + c2_arm * t62,
+                t174 - t160 * t200 + t93 * t203,
+                t215 * t149 - t219 * t220 - t65 * t109 - (t89 * t68 + c2_arm * t228),
+                t160 * t244 + t169 * t210 - t93 * t253, t169 * t251 - t160 * t265 + t93 * t268,
+                t169 * t279 - t160 * t252 + t93 * t283, t298 * t303 - t312 - t169 * t314,
+                t219 * t136 - t215 * t337 - t65 * t123 + c2_arm * t344 - t93 * t68,
+                t219 * t210 - (t357 * t279 + t361 * t362) - (t160 * t344 + t93 * t369),
+                t298 * t392 + t312 + t169 * t395, t298 * t409 + t307 * t413 + t169 * t416,
+                t298 * t433 - t307 * t435 - t169 * t443, t307 * t406 - t298 * t460 - t169 * t463,
+                t361 * t265 - t357 * t250 + t219 * t244 - (t169 * t344 + t93 * t487),
+                t506 * t409 - t510 * t511 - t361 * t460 - (t307 * t487 + t169 * t519),
+                t510 * t435 - t506 * t548 - t361 * t406 + t298 * t487 + t169 * t556,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t15, -t10, -t29, t33, t25 - t18, t44,
-                joints[2] * t64, t64 - t62, t96, s4_arm * t107 - t96, -(joints[2] * t10),
-                c4_arm * t107 - s4_arm * t121, s4_arm * t136 + c4_arm * t134,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t15, -t10, -t41, t45, t37, t55,
+                joints[2] * t74, t74 - t72, t98, s4_arm * t109 - t98, -(joints[2] * t10),
+                c4_arm * t109 - s4_arm * t123, s4_arm * t136 + c4_arm * t134,
                 s4_arm * t147 - c4_arm * t149, t180 - t181 * t165 + c4_arm * t176,
-                -(joints[2] * t187 + t58), t201 * t181 - t180 + c4_arm * t204,
-                t233 * t149 + t235 * t221 + s4_arm * t58,
-                c4_arm * t251 - (t181 * t245 + t179 * t211),
-                t181 * t265 - t179 * t263 + c4_arm * t268,
-                t181 * t281 - t179 * t279 + c4_arm * t284, t320 * t304 - t325 + t179 * t315,
-                -(t233 * t338 + t235 * t136 + c4_arm * t58),
-                t374 * t363 - t376 * t279 - t235 * t211 + t345 * t181 - c4_arm * t370,
-                t393 * t320 + t325 - t179 * t396, t320 * t410 + t324 * t414 - t179 * t417,
-                t320 * t434 - t324 * t436 + t179 * t444, t324 * t407 - t320 * t461 + t179 * t464,
-                t345 * t179 - c4_arm * t489 - (t376 * t481 + t374 * t265 + t235 * t245),
-                t374 * t461 - (t528 * t513 + t532 * t410) + t179 * t521 - t489 * t324,
-                t528 * t436 + t532 * t550 + t374 * t407 + t489 * t320 - t179 * t558,
+                -(joints[2] * t36 + t68), t200 * t181 - t180 + c4_arm * t203,
+                t232 * t149 + t234 * t220 + s4_arm * t68,
+                -(c4_arm * t253 + t181 * t244 + t179 * t210),
+                t181 * t265 - t179 * t251 + c4_arm * t268,
+                t181 * t252 - t179 * t279 + c4_arm * t283, t319 * t303 - t324 + t179 * t314,
+                -(t232 * t337 + t234 * t136 + c4_arm * t68),
+                t373 * t362 - t375 * t279 - t234 * t210 + t344 * t181 - c4_arm * t369,
+                t392 * t319 + t324 - t179 * t395, t319 * t409 + t323 * t413 - t179 * t416,
+                t319 * t433 - t323 * t435 + t179 * t443, t323 * t406 - t319 * t460 + t179 * t463,
+                t344 * t179 - c4_arm * t487 - (t375 * t250 + t373 * t265 + t234 * t244),
+                t373 * t460 - (t526 * t511 + t530 * t409) + t179 * t519 - t487 * t323,
+                t526 * t435 + t530 * t548 + t373 * t406 + t487 * t319 - t179 * t556,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t58, -t55, 0.0, 0.0, -t29,
-                0.0, 0.0, 0.0, 0.0, -t23, 0.0, t107, 0.0, 0.0, 0.0, 0.0, t121,
-                s5_arm * t279 + c5_arm * t363, 0.0, 0.0, 0.0, 0.0, s5_arm * t481 - c5_arm * t265,
-                t330 * t513 + t332 * t410 + c5_arm * t461,
-                c5_arm * t407 - (t330 * t436 + t332 * t550),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t68, -t35, 0.0, 0.0, -t41,
+                0.0, 0.0, 0.0, 0.0, -t23, 0.0, t109, 0.0, 0.0, 0.0, 0.0, t123,
+                s5_arm * t279 + c5_arm * t362, 0.0, 0.0, 0.0, 0.0, s5_arm * t250 - c5_arm * t265,
+                t329 * t511 + t331 * t409 + c5_arm * t460,
+                c5_arm * t406 - (t329 * t435 + t331 * t548),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
                 joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t77, -t104, 0.0,
-                t127, -t139, t145, t186, 0.0, -(t186 + s5_arm * t211), -t229,
-                s5_arm * t245 - c5_arm * t211, -(s5_arm * t265 + c5_arm * t263),
-                -(s5_arm * t281 + c5_arm * t279), c5_arm * t315 - (t330 * t304 + t333), t345,
-                -(s5_arm * t345), t333 - t393 * t330 - c5_arm * t396,
-                t332 * t414 - t330 * t410 - c5_arm * t417,
-                c5_arm * t444 - (t330 * t434 + t332 * t436),
-                t330 * t461 + t332 * t407 + c5_arm * t464, c5_arm * t345,
-                c5_arm * t521 - t489 * t332, -(t489 * t330 + c5_arm * t558),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t87, -t106, 0.0,
+                t127, -t139, t145, t186, 0.0, -(t186 + s5_arm * t210), -t228,
+                s5_arm * t244 - c5_arm * t210, -(s5_arm * t265 + c5_arm * t251),
+                -(s5_arm * t252 + c5_arm * t279), c5_arm * t314 - (t329 * t303 + t332), t344,
+                -(s5_arm * t344), t332 - t392 * t329 - c5_arm * t395,
+                t331 * t413 - t329 * t409 - c5_arm * t416,
+                c5_arm * t443 - (t329 * t433 + t331 * t435),
+                t329 * t460 + t331 * t406 + c5_arm * t463, c5_arm * t344,
+                c5_arm * t519 - t487 * t331, -(t487 * t329 + c5_arm * t556),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 joint_accelerations[4], joint_velocities[4],
                 ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176, 0.0, t204, 0.0, t251,
-                t268, t284, -t336, 0.0, -t370, t336 + s6_arm * t407, s6_arm * t410 + c6_arm * t414,
-                s6_arm * t434 - c6_arm * t436, c6_arm * t407 - s6_arm * t461, -t489,
-                -(c6_arm * t489), s6_arm * t489,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176, 0.0, t203, 0.0, -t253,
+                t268, t283, -t335, 0.0, -t369, t335 + s6_arm * t406, s6_arm * t409 + c6_arm * t413,
+                s6_arm * t433 - c6_arm * t435, c6_arm * t406 - s6_arm * t460, -t487,
+                -(c6_arm * t487), s6_arm * t487,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t315, 0.0,
-                0.0, -t396, -t417, t444, t464, 0.0, t521, -t558,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t314, 0.0,
+                0.0, -t395, -t416, t443, t463, 0.0, t519, -t556,
             ],
         ]
     }

@@ -959,7 +959,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 239 operations (87 additions, 146 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 200 intermediates.
+    /// 235 operations (84 additions, 145 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 198 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1004,107 +1004,109 @@ impl ThreeLegPoint {
         let t63 = 4.166666666666667 * t49;
         let t65 = 4.166666666666667 * t28;
         let t74 = rate_1_leg1 + minus_rate_2_leg1;
-        let t78 = pose[0] + 0.3031088913245535;
-        let t81 = 0.5 * (pose[1] + 0.175);
-        let t82 = 0.8660254037844386 * t78 + t81;
-        let t84 = t0 + pose[1] * 0.8660254037844386;
-        let t85 = pose[0] - t84;
-        let t88 = t82 * t82 + t85 * t85;
+        let t79 = t0 + pose[1] * 0.8660254037844386;
+        let t80 = pose[0] - t79;
+        let t81 = pose[0] + 0.3031088913245535;
+        let t83 = pose[1] + 0.175;
+        let t84 = 0.5 * t83;
+        let t85 = 0.8660254037844386 * t81 + t84;
+        let t88 = t85 * t85 + t80 * t80;
         let t90 = 0.0576 / t88 - 0.25;
         ::overact::guard::reach(t90, "leg2")?;
         let t91 = ::overact::math::sqrt(t90);
-        let t94 = t85 * t91 - 0.5 * t82;
-        let t95 = t82 + t94;
-        let t99 = 0.5 * t85 + t82 * t91;
-        let t100 = t85 - t99;
-        let t102 = 3.608439182435161 * t95 + 2.0833333333333335 * t100;
-        let t103 = t88 * t91;
-        ::overact::guard::leg(t103, 0.05748423696979895, "leg2")?;
-        let t104 = 0.24 / t103;
-        let g1_vx_leg2 = t102 * t104;
-        let t108 = 3.608439182435161 * t100 - 2.0833333333333335 * t95;
-        let t114 = 3.608439182435161 * t99 + 2.0833333333333335 * t94;
-        let g2_vy_leg2 = t114 * t104;
-        let t118 = 4.166666666666667 * t78 - t102;
-        let minus_g2_vx_leg2 = t118 * t104;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t122 = rate_2_leg2 * rate_2_leg2;
-        let t124 = t108 * acceleration[1] - t102 * acceleration[0] - 0.24 * t122;
-        let minus_g1_vy_leg2 = t108 * t104;
+        let t94 = t80 * t91 + 0.5 * t85;
+        let t98 = 0.5 * t80 - t85 * t91;
+        let t100 = 3.608439182435161 * t94 + 2.0833333333333335 * t98;
+        let t101 = t88 * t91;
+        ::overact::guard::leg(t101, 0.05748423696979895, "leg2")?;
+        let t102 = 0.24 / t101;
+        let g1_vx_leg2 = t100 * t102;
+        let t106 = 3.608439182435161 * t98 - 2.0833333333333335 * t94;
+        let t110 = 4.166666666666667 * t83;
+        let t111 = t106 + t110;
+        let minus_g2_vy_leg2 = t111 * t102;
+        let t115 = 4.166666666666667 * t81 - t100;
+        let minus_g2_vx_leg2 = t115 * t102;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+            + minus_g2_vx_leg2 * twist[0];
+        let t119 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t121 = t106 * acceleration[1] - t100 * acceleration[0] - 0.24 * t119;
+        let minus_g1_vy_leg2 = t106 * t102;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t129 = rate_1_leg2 * rate_1_leg2;
-        let t131 = 2.0833333333333335 * (t88 - 0.1152);
-        let minus_rate_dot_1_leg2 = t104 * (t124 - t129 * t131);
-        let t135 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t136 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t145 = t118 * acceleration[0] - t114 * acceleration[1] + 0.24 * t129;
-        let minus_rate_dot_2_leg2 = t104 * (t145 + t122 * t131);
-        let t149 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t150 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t166 = rate_2_leg2 - rate_1_leg2;
-        let t170 = pose[0] - 0.3031088913245535;
-        let t172 = 0.8660254037844386 * t170 - t81;
-        let t176 = t172 * t172 + t84 * t84;
-        let t178 = 0.0576 / t176 - 0.25;
-        ::overact::guard::reach(t178, "leg3")?;
-        let t179 = ::overact::math::sqrt(t178);
-        let t181 = 0.5 * t172 - t84 * t179;
-        let t185 = 0.5 * t84 + t172 * t179;
-        let t187 = 3.608439182435161 * t181 + 2.0833333333333335 * t185;
-        let t188 = t176 * t179;
-        ::overact::guard::leg(t188, 0.05748423696979895, "leg3")?;
-        let t189 = 0.24 / t188;
-        let g1_vx_leg3 = t187 * t189;
-        let t194 = 2.0833333333333335 * t181 - 3.608439182435161 * t185;
-        let t198 = t108 + t114 - t194;
-        let g2_vy_leg3 = t198 * t189;
-        let t202 = 4.166666666666667 * t170 - t187;
-        let minus_g2_vx_leg3 = t202 * t189;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t206 = rate_2_leg3 * rate_2_leg3;
-        let t208 = t187 * acceleration[0] - t194 * acceleration[1] + 0.24 * t206;
-        let minus_g1_vy_leg3 = t194 * t189;
+        let t126 = rate_1_leg2 * rate_1_leg2;
+        let t128 = 2.0833333333333335 * (t88 - 0.1152);
+        let minus_rate_dot_1_leg2 = t102 * (t121 - t126 * t128);
+        let t132 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t133 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t142 = t115 * acceleration[0] + t111 * acceleration[1] + 0.24 * t126;
+        let minus_rate_dot_2_leg2 = t102 * (t142 + t119 * t128);
+        let t146 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t147 = minus_g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t164 = -(minus_rate_2_leg2 + rate_1_leg2);
+        let t168 = pose[0] - 0.3031088913245535;
+        let t170 = 0.8660254037844386 * t168 - t84;
+        let t174 = t170 * t170 + t79 * t79;
+        let t176 = 0.0576 / t174 - 0.25;
+        ::overact::guard::reach(t176, "leg3")?;
+        let t177 = ::overact::math::sqrt(t176);
+        let t179 = 0.5 * t170 - t79 * t177;
+        let t183 = 0.5 * t79 + t170 * t177;
+        let t185 = 3.608439182435161 * t179 + 2.0833333333333335 * t183;
+        let t186 = t174 * t177;
+        ::overact::guard::leg(t186, 0.05748423696979895, "leg3")?;
+        let t187 = 0.24 / t186;
+        let g1_vx_leg3 = t185 * t187;
+        let t192 = 2.0833333333333335 * t179 - 3.608439182435161 * t183;
+        let t195 = t192 + t110;
+        let minus_g2_vy_leg3 = t195 * t187;
+        let t199 = 4.166666666666667 * t168 - t185;
+        let minus_g2_vx_leg3 = t199 * t187;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let t203 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t205 = t185 * acceleration[0] - t192 * acceleration[1] + 0.24 * t203;
+        let minus_g1_vy_leg3 = t192 * t187;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t213 = rate_1_leg3 * rate_1_leg3;
-        let t215 = 2.0833333333333335 * (t176 - 0.1152);
-        let rate_dot_1_leg3 = t189 * (t208 + t213 * t215);
-        let t219 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t220 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let t229 = t198 * acceleration[1] - t202 * acceleration[0] - 0.24 * t213;
-        let rate_dot_2_leg3 = t189 * (t229 - t206 * t215);
-        let t233 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t234 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t250 = rate_2_leg3 - rate_1_leg3;
+        let t210 = rate_1_leg3 * rate_1_leg3;
+        let t212 = 2.0833333333333335 * (t174 - 0.1152);
+        let rate_dot_1_leg3 = t187 * (t205 + t210 * t212);
+        let t216 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t217 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let t226 = t195 * acceleration[1] + t199 * acceleration[0] + 0.24 * t210;
+        let minus_rate_dot_2_leg3 = t187 * (t226 + t203 * t212);
+        let t230 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t231 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t248 = -(minus_rate_2_leg3 + rate_1_leg3);
         Ok([
             [
                 t39, t39, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t53,
                 t55 - 0.24 * (t39 + t53), -(minus_g1_vx_leg1 * t63 + minus_g2_vx_leg1 * t65),
                 0.0576 * t39, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t74),
-                -t135, -t135, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t149,
-                t55 - 0.24 * (t149 - t135), g1_vx_leg2 * t145 - minus_g2_vx_leg2 * t124,
-                -(0.0576 * t135), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t166),
-                t219, t219, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t233,
-                t55 - 0.24 * (t219 - t233), minus_g2_vx_leg3 * t208 - g1_vx_leg3 * t229,
-                0.0576 * t219, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t250),
+                -t132, -t132, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t146,
+                t55 - 0.24 * (t146 - t132), g1_vx_leg2 * t142 - minus_g2_vx_leg2 * t121,
+                -(0.0576 * t132), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t164),
+                t216, t216, g1_vx_leg3 * rate_1_leg3,
+                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, t230,
+                t55 - 0.24 * (t216 + t230), minus_g2_vx_leg3 * t205 + g1_vx_leg3 * t226,
+                0.0576 * t216, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t248),
                 acceleration[0],
             ],
             [
                 -t40, -t40, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t54,
                 t59 - 0.24 * (t54 - t40), g1_vy_leg1 * t63 - minus_g2_vy_leg1 * t65,
-                -(0.0576 * t40), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t74), t136,
-                t136, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t150,
-                t59 - 0.24 * (t136 - t150), g2_vy_leg2 * t124 - minus_g1_vy_leg2 * t145,
-                0.0576 * t136, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t166), -t220,
-                -t220, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t234,
-                t59 - 0.24 * (t234 - t220), minus_g1_vy_leg3 * t229 - g2_vy_leg3 * t208,
-                -(0.0576 * t220), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t250),
-                acceleration[1],
+                -(0.0576 * t40), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t74), t133,
+                t133, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, t147,
+                t59 - 0.24 * (t133 + t147), -(minus_g2_vy_leg2 * t121 + minus_g1_vy_leg2 * t142),
+                0.0576 * t133, ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t164),
+                -t217, -t217, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t231,
+                t59 - 0.24 * (t231 - t217), minus_g2_vy_leg3 * t205 - minus_g1_vy_leg3 * t226,
+                -(0.0576 * t217),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t248), acceleration[1],
             ],
         ])
     }
@@ -1119,7 +1121,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 203 operations (65 additions, 135 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 173 intermediates.
+    /// 200 operations (65 additions, 132 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 170 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1143,100 +1145,97 @@ impl ThreeLegPoint {
         let g2_vx_leg1 = s1_leg1 * t10;
         let minus_g2_vy_leg1 = c1_leg1 * t10;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t20 = rate_2_leg1 * rate_2_leg1;
-        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t20;
+        let t21 = 0.24 * (rate_2_leg1 * rate_2_leg1);
+        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - t21;
         let g1_vy_leg1 = c12_leg1 * t10;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t27 = rate_1_leg1 * rate_1_leg1;
-        let t28 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t10 * (t22 - t27 * t28);
+        let t28 = 0.24 * (rate_1_leg1 * rate_1_leg1);
+        let minus_rate_dot_1_leg1 = t10 * (t22 - c2_leg1 * t28);
         let t32 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
         let t33 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t42 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + 0.24 * t27;
-        let minus_rate_dot_2_leg1 = t10 * (t42 + t20 * t28);
-        let t46 = g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t47 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t48 = 4.166666666666667 * acceleration[0];
-        let t52 = 4.166666666666667 * acceleration[1];
-        let t65 = rate_2_leg1 - rate_1_leg1;
+        let t41 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t28;
+        let minus_rate_dot_2_leg1 = t10 * (t41 + t21 * c2_leg1);
+        let t45 = g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t46 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let t47 = 4.166666666666667 * acceleration[0];
+        let t51 = 4.166666666666667 * acceleration[1];
+        let t64 = rate_2_leg1 - rate_1_leg1;
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
-        let t81 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
-        let t82 = 4.166666666666667 / s2_leg2;
-        let g1_vx_leg2 = t81 * t82;
-        let t86 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
-        let t92 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
-        let g2_vy_leg2 = t92 * t82;
-        let t97 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
-        let minus_g2_vx_leg2 = t97 * t82;
+        let t80 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
+        let t81 = 4.166666666666667 / s2_leg2;
+        let g1_vx_leg2 = t80 * t81;
+        let t85 = 0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2;
+        let t91 = 0.8660254037844386 * s1_leg2 + 0.5 * c1_leg2;
+        let g2_vy_leg2 = t91 * t81;
+        let t96 = 0.5 * s1_leg2 - 0.8660254037844386 * c1_leg2;
+        let minus_g2_vx_leg2 = t96 * t81;
         let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t101 = rate_2_leg2 * rate_2_leg2;
-        let t103 = t86 * acceleration[1] - t81 * acceleration[0] - 0.24 * t101;
-        let minus_g1_vy_leg2 = t86 * t82;
+        let t101 = 0.24 * (rate_2_leg2 * rate_2_leg2);
+        let t102 = t85 * acceleration[1] - t80 * acceleration[0] - t101;
+        let minus_g1_vy_leg2 = t85 * t81;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t108 = rate_1_leg2 * rate_1_leg2;
-        let t109 = 0.24 * c2_leg2;
-        let minus_rate_dot_1_leg2 = t82 * (t103 - t108 * t109);
-        let t113 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t114 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t123 = t97 * acceleration[0] - t92 * acceleration[1] + 0.24 * t108;
-        let minus_rate_dot_2_leg2 = t82 * (t123 + t101 * t109);
-        let t127 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t128 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t144 = rate_2_leg2 - rate_1_leg2;
+        let t108 = 0.24 * (rate_1_leg2 * rate_1_leg2);
+        let minus_rate_dot_1_leg2 = t81 * (t102 - c2_leg2 * t108);
+        let t112 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t113 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t121 = t96 * acceleration[0] - t91 * acceleration[1] + t108;
+        let minus_rate_dot_2_leg2 = t81 * (t121 + t101 * c2_leg2);
+        let t125 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t126 = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t142 = rate_2_leg2 - rate_1_leg2;
         let c12_leg3 = c1_leg3 * c2_leg3 - s1_leg3 * s2_leg3;
         let s12_leg3 = s1_leg3 * c2_leg3 + c1_leg3 * s2_leg3;
-        let t160 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
-        let t161 = 4.166666666666667 / s2_leg3;
-        let g1_vx_leg3 = t160 * t161;
-        let t166 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
-        let t171 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
-        let g2_vy_leg3 = t171 * t161;
-        let t176 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
-        let minus_g2_vx_leg3 = t176 * t161;
+        let t158 = 0.8660254037844386 * c12_leg3 + 0.5 * s12_leg3;
+        let t159 = 4.166666666666667 / s2_leg3;
+        let g1_vx_leg3 = t158 * t159;
+        let t164 = 0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3;
+        let t169 = 0.5 * c1_leg3 - 0.8660254037844386 * s1_leg3;
+        let g2_vy_leg3 = t169 * t159;
+        let t174 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
+        let minus_g2_vx_leg3 = t174 * t159;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t180 = rate_2_leg3 * rate_2_leg3;
-        let t182 = t160 * acceleration[0] - t166 * acceleration[1] + 0.24 * t180;
-        let minus_g1_vy_leg3 = t166 * t161;
+        let t179 = 0.24 * (rate_2_leg3 * rate_2_leg3);
+        let t180 = t158 * acceleration[0] - t164 * acceleration[1] + t179;
+        let minus_g1_vy_leg3 = t164 * t159;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t187 = rate_1_leg3 * rate_1_leg3;
-        let t188 = 0.24 * c2_leg3;
-        let rate_dot_1_leg3 = t161 * (t182 + t187 * t188);
-        let t192 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t193 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let t202 = t171 * acceleration[1] - t176 * acceleration[0] - 0.24 * t187;
-        let rate_dot_2_leg3 = t161 * (t202 - t180 * t188);
-        let t206 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t207 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t223 = rate_2_leg3 - rate_1_leg3;
+        let t186 = 0.24 * (rate_1_leg3 * rate_1_leg3);
+        let rate_dot_1_leg3 = t159 * (t180 + c2_leg3 * t186);
+        let t190 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t191 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let t199 = t169 * acceleration[1] - t174 * acceleration[0] - t186;
+        let rate_dot_2_leg3 = t159 * (t199 - t179 * c2_leg3);
+        let t203 = minus_g2_vx_leg3 * rate_dot_2_leg3;
+        let t204 = g2_vy_leg3 * rate_dot_2_leg3;
+        let t220 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 t32, t32, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, -t46,
-                t48 - 0.24 * (t32 - t46), g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t42, 0.0576 * t32,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t65), -t113, -t113,
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, -t45,
+                t47 - 0.24 * (t32 - t45), g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t41, 0.0576 * t32,
+                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t64), -t112, -t112,
                 g1_vx_leg2 * rate_1_leg2, ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
-                g1_vx_leg2, t127, t48 - 0.24 * (t127 - t113),
-                g1_vx_leg2 * t123 - minus_g2_vx_leg2 * t103, -(0.0576 * t113),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t144), t192, t192,
+                g1_vx_leg2, t125, t47 - 0.24 * (t125 - t112),
+                g1_vx_leg2 * t121 - minus_g2_vx_leg2 * t102, -(0.0576 * t112),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t142), t190, t190,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, -t206, t48 - 0.24 * (t192 - t206),
-                minus_g2_vx_leg3 * t182 - g1_vx_leg3 * t202, 0.0576 * t192,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t223), acceleration[0],
+                g1_vx_leg3, -t203, t47 - 0.24 * (t190 - t203),
+                minus_g2_vx_leg3 * t180 - g1_vx_leg3 * t199, 0.0576 * t190,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t220), acceleration[0],
             ],
             [
                 -t33, -t33, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t47,
-                t52 - 0.24 * (t47 - t33), g1_vy_leg1 * t42 - minus_g2_vy_leg1 * t22,
-                -(0.0576 * t33), -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t65), t114,
-                t114, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t128,
-                t52 - 0.24 * (t114 - t128), g2_vy_leg2 * t103 - minus_g1_vy_leg2 * t123,
-                0.0576 * t114, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t144), -t193,
-                -t193, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t207,
-                t52 - 0.24 * (t207 - t193), minus_g1_vy_leg3 * t202 - g2_vy_leg3 * t182,
-                -(0.0576 * t193), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t223),
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t46,
+                t51 - 0.24 * (t46 - t33), g1_vy_leg1 * t41 - minus_g2_vy_leg1 * t22,
+                -(0.0576 * t33), -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t64), t113,
+                t113, -(minus_g1_vy_leg2 * rate_1_leg2),
+                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t126,
+                t51 - 0.24 * (t113 - t126), g2_vy_leg2 * t102 - minus_g1_vy_leg2 * t121,
+                0.0576 * t113, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t142), -t191,
+                -t191, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t204,
+                t51 - 0.24 * (t204 - t191), minus_g1_vy_leg3 * t199 - g2_vy_leg3 * t180,
+                -(0.0576 * t191), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t220),
                 acceleration[1],
             ],
         ])
@@ -1252,7 +1251,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 300 operations (112 additions, 180 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 259 intermediates.
+    /// 296 operations (112 additions, 173 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 256 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1275,167 +1274,168 @@ impl ThreeLegPoint {
         ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
         let t12 = 1.0 / t11;
         let minus_g1_vx_leg1 = t10 * t12;
-        let t15 = pose[0] + 0.3031088913245535;
-        let t18 = 0.5 * (pose[1] + 0.175);
-        let t19 = 0.8660254037844386 * t15 + t18;
-        let t21 = t0 + pose[1] * 0.8660254037844386;
-        let t22 = pose[0] - t21;
-        let t25 = t19 * t19 + t22 * t22;
-        let t27 = 0.0576 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t31 = t22 * t28 - 0.5 * t19;
-        let t32 = t19 + t31;
-        let t36 = 0.5 * t22 + t19 * t28;
-        let t37 = t22 - t36;
-        let t39 = 3.608439182435161 * t32 + 2.0833333333333335 * t37;
-        let t40 = t25 * t28;
+        let t14 = pose[0] + 0.3031088913245535;
+        let t16 = pose[1] + 0.175;
+        let t17 = 0.5 * t16;
+        let t18 = 0.8660254037844386 * t14 + t17;
+        let t19 = pose[1] * 0.8660254037844386;
+        let t20 = t0 + t19;
+        let t21 = 0.5 * t20;
+        let t22 = t21 - t19;
+        let t23 = t22 + t22;
+        let t26 = t18 * t18 + t23 * t23;
+        let t28 = 0.0576 / t26 - 0.25;
+        ::overact::guard::reach(t28, "leg2")?;
+        let t29 = ::overact::math::sqrt(t28);
+        let t32 = t23 * t29 - 0.5 * t18;
+        let t36 = t22 + t18 * t29;
+        let t39 = 3.608439182435161 * (t18 + t32) + 2.0833333333333335 * (t23 - t36);
+        let t40 = t26 * t29;
         ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
         let t41 = 0.24 / t40;
         let g1_vx_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t18;
-        let t51 = t47 * t47 + t21 * t21;
-        let t53 = 0.0576 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg3")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t56 = 0.5 * t47 - t21 * t54;
-        let t60 = 0.5 * t21 + t47 * t54;
-        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
-        let t63 = t51 * t54;
-        ::overact::guard::leg(t63, 0.05748423696979895, "leg3")?;
-        let t64 = 0.24 / t63;
-        let g1_vx_leg3 = t62 * t64;
-        let t67 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
-        let t68 = 1.0 / t67;
-        let t71 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
-        let g2_vy_leg2 = t71 * t41;
-        let t75 = 0.5 * t1 - pose[0] * t7;
-        let t76 = t1 - t75;
-        let g1_vy_leg1 = t76 * t12;
-        let t81 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
-        let minus_g1_vy_leg2 = t81 * t41;
-        let t87 = 2.0833333333333335 * t56 - 3.608439182435161 * t60;
-        let minus_g1_vy_leg3 = t87 * t64;
-        let t95 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t96 = t95 * t68;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t95 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t109 = g1_vx_leg2 * actuator_velocities[1]
+        let t45 = 3.608439182435161 * t36 + 2.0833333333333335 * t32;
+        let g2_vy_leg2 = t45 * t41;
+        let t49 = 0.5 * t1 - pose[0] * t7;
+        let t50 = t1 - t49;
+        let g1_vy_leg1 = t50 * t12;
+        let t53 = t16 * 4.166666666666667;
+        let t54 = t45 + t53;
+        let minus_minus_g1_vy_leg2 = t54 * t41;
+        let t58 = pose[0] - 0.3031088913245535;
+        let t60 = 0.8660254037844386 * t58 - t17;
+        let t64 = t60 * t60 + t20 * t20;
+        let t66 = 0.0576 / t64 - 0.25;
+        ::overact::guard::reach(t66, "leg3")?;
+        let t67 = ::overact::math::sqrt(t66);
+        let t69 = 0.5 * t60 - t20 * t67;
+        let t72 = t21 + t60 * t67;
+        let t74 = 2.0833333333333335 * t69 - 3.608439182435161 * t72;
+        let t75 = t64 * t67;
+        ::overact::guard::leg(t75, 0.05748423696979895, "leg3")?;
+        let t76 = 0.24 / t75;
+        let minus_g1_vy_leg3 = t74 * t76;
+        let t85 = 3.608439182435161 * t69 + 2.0833333333333335 * t72;
+        let g1_vx_leg3 = t85 * t76;
+        let t88 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t112 = t99
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t109 * t96);
-        let t115 = t15 * 4.166666666666667 - t39;
-        let minus_g2_vx_leg2 = t115 * t41;
-        let t119 = t109 * t68 + t96 * t112;
-        let rate_2_leg2 = g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t119;
-        let t122 = rate_2_leg2 * rate_2_leg2;
-        let t123 = 0.24 * t122;
-        let rate_1_leg2 = g1_vx_leg2 * t119 - minus_g1_vy_leg2 * t112;
-        let t127 = rate_1_leg2 * rate_1_leg2;
-        let t129 = 2.0833333333333335 * (t25 - 0.1152);
-        let t130 = t127 * t129;
-        let rate_dot_1_leg2 = t41 * (t123 + t130);
-        let t133 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t93 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * minus_minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        let t99 = t93 / t98;
+        let t108 = g1_vy_leg1 * g1_vy_leg1
+            + minus_minus_g1_vy_leg2 * minus_minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t93 * t99;
+        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
+        let t109 = (g1_vy_leg1 * actuator_velocities[0]
+            + minus_minus_g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
+        let t112 = t14 * 4.166666666666667 - t39;
+        let minus_g2_vx_leg2 = t112 * t41;
+        let t116 = t88 / t98 + t99 * t109;
+        let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
+        let t119 = rate_2_leg2 * rate_2_leg2;
+        let t120 = 0.24 * t119;
+        let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
+        let t124 = rate_1_leg2 * rate_1_leg2;
+        let t126 = 2.0833333333333335 * (t26 - 0.1152);
+        let t127 = t124 * t126;
+        let rate_dot_1_leg2 = t41 * (t120 + t127);
+        let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t75 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t119 + minus_g2_vy_leg1 * t112;
-        let t140 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t141 = 0.0576 * t140;
-        let rate_1_leg1 = g1_vy_leg1 * t112 - minus_g1_vx_leg1 * t119;
-        let t145 = rate_1_leg1 * rate_1_leg1;
-        let t147 = 0.5 * (t4 - 0.1152);
-        let t148 = t145 * t147;
-        let rate_dot_1_leg1 = t12 * (t141 + t148);
-        let t151 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t155 = t71 + t81 - t87;
-        let g2_vy_leg3 = t155 * t64;
-        let t159 = t45 * 4.166666666666667 - t62;
-        let minus_g2_vx_leg3 = t159 * t64;
-        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t119;
-        let t163 = rate_2_leg3 * rate_2_leg3;
-        let t164 = 0.24 * t163;
-        let rate_1_leg3 = g1_vx_leg3 * t119 - minus_g1_vy_leg3 * t112;
-        let t168 = rate_1_leg3 * rate_1_leg3;
-        let t170 = 2.0833333333333335 * (t51 - 0.1152);
-        let t171 = t168 * t170;
-        let rate_dot_1_leg3 = t64 * (t164 + t171);
-        let t174 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t176 = g1_vx_leg2 * t133 - minus_g1_vx_leg1 * t151 + g1_vx_leg3 * t174;
-        let t185 = t99
-            * (g1_vy_leg1 * t151 - minus_g1_vy_leg2 * t133 - minus_g1_vy_leg3 * t174
-                + t96 * t176);
-        let t187 = t68 * t176 + t96 * t185;
-        let t191 = t10 * t187 - t76 * t185 - t141;
-        let minus_rate_dot_1_leg1 = t12 * (t191 - t148);
-        let t194 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
-        let t195 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t204 = t9 * t187 + t75 * t185 + 0.0576 * t145;
-        let minus_rate_dot_2_leg1 = t12 * (t204 + t140 * t147);
-        let t208 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t209 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let t210 = 4.166666666666667 * t187;
-        let t214 = 4.166666666666667 * t185;
-        let t218 = 4.166666666666667 * t204;
-        let t220 = 4.166666666666667 * t191;
-        let t229 = rate_1_leg1 + minus_rate_2_leg1;
-        let t236 = t81 * t185 - t39 * t187 - t123;
-        let minus_rate_dot_1_leg2 = t41 * (t236 - t130);
-        let t239 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t240 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t249 = t115 * t187 - t71 * t185 + 0.24 * t127;
-        let minus_rate_dot_2_leg2 = t41 * (t249 + t122 * t129);
-        let t253 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let t254 = g2_vy_leg2 * minus_rate_dot_2_leg2;
-        let t270 = rate_2_leg2 - rate_1_leg2;
-        let t277 = t62 * t187 - t87 * t185 + t164;
-        let rate_dot_1_leg3_2 = t64 * (t277 + t171);
-        let t280 = g1_vx_leg3 * rate_dot_1_leg3_2;
-        let t281 = minus_g1_vy_leg3 * rate_dot_1_leg3_2;
-        let t290 = t155 * t185 - t159 * t187 - 0.24 * t168;
-        let rate_dot_2_leg3 = t64 * (t290 - t163 * t170);
-        let t294 = minus_g2_vx_leg3 * rate_dot_2_leg3;
-        let t295 = g2_vy_leg3 * rate_dot_2_leg3;
-        let t311 = rate_2_leg3 - rate_1_leg3;
+        let minus_g2_vy_leg1 = t49 * t12;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
+        let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t138 = 0.0576 * t137;
+        let rate_1_leg1 = g1_vy_leg1 * t109 - minus_g1_vx_leg1 * t116;
+        let t142 = rate_1_leg1 * rate_1_leg1;
+        let t144 = 0.5 * (t4 - 0.1152);
+        let t145 = t142 * t144;
+        let rate_dot_1_leg1 = t12 * (t138 + t145);
+        let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t151 = t74 + t53;
+        let minus_g2_vy_leg3 = t151 * t76;
+        let t155 = t58 * 4.166666666666667 - t85;
+        let minus_g2_vx_leg3 = t155 * t76;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
+        let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t160 = 0.24 * t159;
+        let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
+        let t164 = rate_1_leg3 * rate_1_leg3;
+        let t166 = 2.0833333333333335 * (t64 - 0.1152);
+        let t167 = t164 * t166;
+        let rate_dot_1_leg3 = t76 * (t160 + t167);
+        let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t172 = g1_vx_leg2 * t130 - minus_g1_vx_leg1 * t148 + g1_vx_leg3 * t170;
+        let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
+            - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
+        let t183 = t172 / t98 + t99 * t181;
+        let t187 = t10 * t183 - t50 * t181 - t138;
+        let minus_rate_dot_1_leg1 = t12 * (t187 - t145);
+        let t190 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
+        let t191 = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let t200 = t9 * t183 + t49 * t181 + 0.0576 * t142;
+        let minus_rate_dot_2_leg1 = t12 * (t200 + t137 * t144);
+        let t204 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t205 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
+        let t206 = 4.166666666666667 * t183;
+        let t210 = 4.166666666666667 * t181;
+        let t214 = 4.166666666666667 * t200;
+        let t216 = 4.166666666666667 * t187;
+        let t225 = rate_1_leg1 + minus_rate_2_leg1;
+        let t232 = t54 * t181 + t39 * t183 + t120;
+        let minus_minus_rate_dot_1_leg2 = t41 * (t232 + t127);
+        let t235 = g1_vx_leg2 * minus_minus_rate_dot_1_leg2;
+        let t236 = minus_minus_g1_vy_leg2 * minus_minus_rate_dot_1_leg2;
+        let t245 = t112 * t183 - t45 * t181 + 0.24 * t124;
+        let minus_rate_dot_2_leg2 = t41 * (t245 + t119 * t126);
+        let t249 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t250 = g2_vy_leg2 * minus_rate_dot_2_leg2;
+        let t266 = rate_2_leg2 - rate_1_leg2;
+        let t273 = t85 * t183 - t74 * t181 + t160;
+        let rate_dot_1_leg3_2 = t76 * (t273 + t167);
+        let t276 = g1_vx_leg3 * rate_dot_1_leg3_2;
+        let t277 = minus_g1_vy_leg3 * rate_dot_1_leg3_2;
+        let t286 = t151 * t181 + t155 * t183 + 0.24 * t164;
+        let minus_rate_dot_2_leg3 = t76 * (t286 + t159 * t166);
+        let t290 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t291 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t308 = -(minus_rate_2_leg3 + rate_1_leg3);
         Ok([
             [
-                t194, t194, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t208,
-                t210 - 0.24 * (t194 + t208), -(minus_g1_vx_leg1 * t218 + minus_g2_vx_leg1 * t220),
-                0.0576 * t194, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t229),
-                -t239, -t239, g1_vx_leg2 * rate_1_leg2,
-                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t253,
-                t210 - 0.24 * (t253 - t239), g1_vx_leg2 * t249 - minus_g2_vx_leg2 * t236,
-                -(0.0576 * t239), -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t270),
-                t280, t280, g1_vx_leg3 * rate_1_leg3,
-                ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t294,
-                t210 - 0.24 * (t280 - t294), minus_g2_vx_leg3 * t277 - g1_vx_leg3 * t290,
-                0.0576 * t280, -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t311), t187,
+                t190, t190, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t204,
+                t206 - 0.24 * (t190 + t204), -(minus_g1_vx_leg1 * t214 + minus_g2_vx_leg1 * t216),
+                0.0576 * t190, -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t225),
+                t235, t235, g1_vx_leg2 * rate_1_leg2,
+                ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2, t249,
+                t206 - 0.24 * (t249 + t235), g1_vx_leg2 * t245 + minus_g2_vx_leg2 * t232,
+                0.0576 * t235, -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t266), t276,
+                t276, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t290, t206 - 0.24 * (t276 + t290),
+                minus_g2_vx_leg3 * t273 + g1_vx_leg3 * t286, 0.0576 * t276,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t308), t183,
             ],
             [
-                -t195, -t195, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t209,
-                t214 - 0.24 * (t209 - t195), g1_vy_leg1 * t218 - minus_g2_vy_leg1 * t220,
-                -(0.0576 * t195), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t229),
-                t240, t240, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2, -t254,
-                t214 - 0.24 * (t240 - t254), g2_vy_leg2 * t236 - minus_g1_vy_leg2 * t249,
-                0.0576 * t240, ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t270), -t281,
-                -t281, -(minus_g1_vy_leg3 * rate_1_leg3),
-                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t295,
-                t214 - 0.24 * (t295 - t281), minus_g1_vy_leg3 * t290 - g2_vy_leg3 * t277,
-                -(0.0576 * t281), ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t311),
-                t185,
+                -t191, -t191, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t205,
+                t210 - 0.24 * (t205 - t191), g1_vy_leg1 * t214 - minus_g2_vy_leg1 * t216,
+                -(0.0576 * t191), ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t225),
+                t236, t236, minus_minus_g1_vy_leg2 * rate_1_leg2,
+                ::overact::math::signed(minus_minus_g1_vy_leg2, rate_1_leg2),
+                minus_minus_g1_vy_leg2, -t250, t210 - 0.24 * (t236 - t250),
+                minus_minus_g1_vy_leg2 * t245 - g2_vy_leg2 * t232, 0.0576 * t236,
+                ::overact::math::signed(g2_vy_leg2 - minus_minus_g1_vy_leg2, t266), -t277, -t277,
+                -(minus_g1_vy_leg3 * rate_1_leg3),
+                -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, t291,
+                t210 - 0.24 * (t291 - t277), minus_g2_vy_leg3 * t273 - minus_g1_vy_leg3 * t286,
+                -(0.0576 * t277),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t308), t181,
             ],
         ])
     }
@@ -1956,7 +1956,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 213 operations (75 additions, 132 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 186 intermediates.
+    /// 209 operations (72 additions, 131 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 184 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1990,74 +1990,77 @@ impl ThreeLegPoint {
         let t33 = rate_1_leg1 * rate_1_leg1;
         let t35 = 0.5 * (t4 - 0.1152);
         let minus_rate_dot_1_leg1 = t12 * (t28 - t33 * t35);
-        let t41 = pose[0] + 0.3031088913245535;
-        let t44 = 0.5 * (pose[1] + 0.175);
-        let t45 = 0.8660254037844386 * t41 + t44;
-        let t47 = t0 + pose[1] * 0.8660254037844386;
-        let t48 = pose[0] - t47;
-        let t51 = t45 * t45 + t48 * t48;
-        let t53 = 0.0576 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t57 = t48 * t54 - 0.5 * t45;
-        let t58 = t45 + t57;
-        let t62 = 0.5 * t48 + t45 * t54;
-        let t63 = t48 - t62;
-        let t65 = 3.608439182435161 * t58 + 2.0833333333333335 * t63;
-        let t66 = t51 * t54;
-        ::overact::guard::leg(t66, 0.05748423696979895, "leg2")?;
-        let t67 = 0.24 / t66;
-        let g1_vx_leg2 = t65 * t67;
-        let t71 = 3.608439182435161 * t63 - 2.0833333333333335 * t58;
-        let t77 = 3.608439182435161 * t62 + 2.0833333333333335 * t57;
-        let g2_vy_leg2 = t77 * t67;
-        let t81 = t41 * 4.166666666666667 - t65;
-        let minus_g2_vx_leg2 = t81 * t67;
-        let rate_2_leg2 = g2_vy_leg2 * twist[1] - minus_g2_vx_leg2 * twist[0];
-        let t85 = rate_2_leg2 * rate_2_leg2;
-        let t87 = t71 * acceleration[1] - t65 * acceleration[0] - 0.24 * t85;
-        let minus_g1_vy_leg2 = t71 * t67;
+        let t41 = pose[1] * 0.8660254037844386;
+        let t42 = t0 - t41;
+        let t43 = pose[0] + 0.3031088913245535;
+        let t45 = pose[1] + 0.175;
+        let t46 = 0.5 * t45;
+        let t47 = 0.8660254037844386 * t43 + t46;
+        let t50 = t47 * t47 + t42 * t42;
+        let t52 = 0.0576 / t50 - 0.25;
+        ::overact::guard::reach(t52, "leg2")?;
+        let t53 = ::overact::math::sqrt(t52);
+        let t56 = t42 * t53 + 0.5 * t47;
+        let t60 = 0.5 * t42 - t47 * t53;
+        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
+        let t63 = t50 * t53;
+        ::overact::guard::leg(t63, 0.05748423696979895, "leg2")?;
+        let t64 = 0.24 / t63;
+        let g1_vx_leg2 = t62 * t64;
+        let t68 = 3.608439182435161 * t60 - 2.0833333333333335 * t56;
+        let t72 = t45 * 4.166666666666667;
+        let t73 = t68 + t72;
+        let minus_g2_vy_leg2 = t73 * t64;
+        let t77 = t43 * 4.166666666666667 - t62;
+        let minus_g2_vx_leg2 = t77 * t64;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * twist[1]
+            + minus_g2_vx_leg2 * twist[0];
+        let t81 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t83 = t68 * acceleration[1] - t62 * acceleration[0] - 0.24 * t81;
+        let minus_g1_vy_leg2 = t68 * t64;
         let rate_1_leg2 = g1_vx_leg2 * twist[0] - minus_g1_vy_leg2 * twist[1];
-        let t92 = rate_1_leg2 * rate_1_leg2;
-        let t94 = 2.0833333333333335 * (t51 - 0.1152);
-        let minus_rate_dot_1_leg2 = t67 * (t87 - t92 * t94);
-        let t100 = pose[0] - 0.3031088913245535;
-        let t102 = 0.8660254037844386 * t100 - t44;
-        let t106 = t102 * t102 + t47 * t47;
-        let t108 = 0.0576 / t106 - 0.25;
-        ::overact::guard::reach(t108, "leg3")?;
-        let t109 = ::overact::math::sqrt(t108);
-        let t111 = 0.5 * t102 - t47 * t109;
-        let t115 = 0.5 * t47 + t102 * t109;
-        let t117 = 3.608439182435161 * t111 + 2.0833333333333335 * t115;
-        let t118 = t106 * t109;
-        ::overact::guard::leg(t118, 0.05748423696979895, "leg3")?;
-        let t119 = 0.24 / t118;
-        let g1_vx_leg3 = t117 * t119;
-        let t124 = 2.0833333333333335 * t111 - 3.608439182435161 * t115;
-        let t128 = t71 + t77 - t124;
-        let g2_vy_leg3 = t128 * t119;
-        let t132 = t100 * 4.166666666666667 - t117;
-        let minus_g2_vx_leg3 = t132 * t119;
-        let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t136 = rate_2_leg3 * rate_2_leg3;
-        let t138 = t117 * acceleration[0] - t124 * acceleration[1] + 0.24 * t136;
-        let minus_g1_vy_leg3 = t124 * t119;
+        let t88 = rate_1_leg2 * rate_1_leg2;
+        let t90 = 2.0833333333333335 * (t50 - 0.1152);
+        let minus_rate_dot_1_leg2 = t64 * (t83 - t88 * t90);
+        let t96 = pose[0] - 0.3031088913245535;
+        let t98 = 0.8660254037844386 * t96 - t46;
+        let t100 = t0 + t41;
+        let t103 = t98 * t98 + t100 * t100;
+        let t105 = 0.0576 / t103 - 0.25;
+        ::overact::guard::reach(t105, "leg3")?;
+        let t106 = ::overact::math::sqrt(t105);
+        let t108 = 0.5 * t98 - t100 * t106;
+        let t112 = 0.5 * t100 + t98 * t106;
+        let t114 = 3.608439182435161 * t108 + 2.0833333333333335 * t112;
+        let t115 = t103 * t106;
+        ::overact::guard::leg(t115, 0.05748423696979895, "leg3")?;
+        let t116 = 0.24 / t115;
+        let g1_vx_leg3 = t114 * t116;
+        let t121 = 2.0833333333333335 * t108 - 3.608439182435161 * t112;
+        let t124 = t121 + t72;
+        let minus_g2_vy_leg3 = t124 * t116;
+        let t128 = t96 * 4.166666666666667 - t114;
+        let minus_g2_vx_leg3 = t128 * t116;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * twist[1]
+            + minus_g2_vx_leg3 * twist[0];
+        let t132 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t134 = t114 * acceleration[0] - t121 * acceleration[1] + 0.24 * t132;
+        let minus_g1_vy_leg3 = t121 * t116;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t143 = rate_1_leg3 * rate_1_leg3;
-        let t145 = 2.0833333333333335 * (t106 - 0.1152);
-        let rate_dot_1_leg3 = t119 * (t138 + t143 * t145);
-        let t167 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
-        let minus_rate_dot_2_leg1 = t12 * (t167 + t26 * t35);
-        let t177 = t81 * acceleration[0] - t77 * acceleration[1] + 0.24 * t92;
-        let minus_rate_dot_2_leg2 = t67 * (t177 + t85 * t94);
-        let t187 = t128 * acceleration[1] - t132 * acceleration[0] - 0.24 * t143;
-        let rate_dot_2_leg3 = t119 * (t187 - t136 * t145);
-        let t193 = 4.166666666666667 * t167;
-        let t195 = 4.166666666666667 * t28;
-        let t214 = rate_1_leg1 + minus_rate_2_leg1;
-        let t219 = rate_2_leg2 - rate_1_leg2;
-        let t224 = rate_2_leg3 - rate_1_leg3;
+        let t139 = rate_1_leg3 * rate_1_leg3;
+        let t141 = 2.0833333333333335 * (t103 - 0.1152);
+        let rate_dot_1_leg3 = t116 * (t134 + t139 * t141);
+        let t163 = t9 * acceleration[0] + t17 * acceleration[1] + 0.0576 * t33;
+        let minus_rate_dot_2_leg1 = t12 * (t163 + t26 * t35);
+        let t173 = t77 * acceleration[0] + t73 * acceleration[1] + 0.24 * t88;
+        let minus_rate_dot_2_leg2 = t64 * (t173 + t81 * t90);
+        let t183 = t124 * acceleration[1] + t128 * acceleration[0] + 0.24 * t139;
+        let minus_rate_dot_2_leg3 = t116 * (t183 + t132 * t141);
+        let t189 = 4.166666666666667 * t163;
+        let t191 = 4.166666666666667 * t28;
+        let t210 = rate_1_leg1 + minus_rate_2_leg1;
+        let t216 = -(minus_rate_2_leg2 + rate_1_leg2);
+        let t222 = -(minus_rate_2_leg3 + rate_1_leg3);
         Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2067,13 +2070,13 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                -(minus_g1_vx_leg1 * t193 + minus_g2_vx_leg1 * t195),
-                g1_vx_leg2 * t177 - minus_g2_vx_leg2 * t87,
-                minus_g2_vx_leg3 * t138 - g1_vx_leg3 * t187,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t214),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t219),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t224),
+                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(minus_g1_vx_leg1 * t189 + minus_g2_vx_leg1 * t191),
+                g1_vx_leg2 * t173 - minus_g2_vx_leg2 * t83,
+                minus_g2_vx_leg3 * t134 + g1_vx_leg3 * t183,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t210),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t216),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t222),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2083,13 +2086,13 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t193 - minus_g2_vy_leg1 * t195,
-                g2_vy_leg2 * t87 - minus_g1_vy_leg2 * t177,
-                minus_g1_vy_leg3 * t187 - g2_vy_leg3 * t138,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t214),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t219),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t224),
+                minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg1 * t189 - minus_g2_vy_leg1 * t191,
+                -(minus_g2_vy_leg2 * t83 + minus_g1_vy_leg2 * t173),
+                minus_g2_vy_leg3 * t134 - minus_g1_vy_leg3 * t183,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t210),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t216),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t222),
             ],
         ])
     }
@@ -2104,7 +2107,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 177 operations (53 additions, 121 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 159 intermediates.
+    /// 175 operations (53 additions, 119 multiplications, 3 divisions), 0 square roots, 6 trigonometric pairs, 12 signs, 157 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2128,13 +2131,12 @@ impl ThreeLegPoint {
         let g2_vx_leg1 = s1_leg1 * t10;
         let minus_g2_vy_leg1 = c1_leg1 * t10;
         let rate_2_leg1 = g2_vx_leg1 * twist[0] - minus_g2_vy_leg1 * twist[1];
-        let t20 = rate_2_leg1 * rate_2_leg1;
-        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - 0.24 * t20;
+        let t21 = 0.24 * (rate_2_leg1 * rate_2_leg1);
+        let t22 = s12_leg1 * acceleration[0] - c12_leg1 * acceleration[1] - t21;
         let g1_vy_leg1 = c12_leg1 * t10;
         let rate_1_leg1 = g1_vy_leg1 * twist[1] - minus_g1_vx_leg1 * twist[0];
-        let t27 = rate_1_leg1 * rate_1_leg1;
-        let t28 = 0.24 * c2_leg1;
-        let minus_rate_dot_1_leg1 = t10 * (t22 - t27 * t28);
+        let t28 = 0.24 * (rate_1_leg1 * rate_1_leg1);
+        let minus_rate_dot_1_leg1 = t10 * (t22 - c2_leg1 * t28);
         let c12_leg2 = c1_leg2 * c2_leg2 - s1_leg2 * s2_leg2;
         let s12_leg2 = s1_leg2 * c2_leg2 + c1_leg2 * s2_leg2;
         let t46 = 0.5 * s12_leg2 - 0.8660254037844386 * c12_leg2;
@@ -2164,22 +2166,21 @@ impl ThreeLegPoint {
         let t108 = 0.8660254037844386 * c1_leg3 + 0.5 * s1_leg3;
         let minus_g2_vx_leg3 = t108 * t93;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        let t112 = rate_2_leg3 * rate_2_leg3;
-        let t114 = t92 * acceleration[0] - t98 * acceleration[1] + 0.24 * t112;
+        let t113 = 0.24 * (rate_2_leg3 * rate_2_leg3);
+        let t114 = t92 * acceleration[0] - t98 * acceleration[1] + t113;
         let minus_g1_vy_leg3 = t98 * t93;
         let rate_1_leg3 = g1_vx_leg3 * twist[0] - minus_g1_vy_leg3 * twist[1];
-        let t119 = rate_1_leg3 * rate_1_leg3;
-        let t120 = 0.24 * c2_leg3;
-        let rate_dot_1_leg3 = t93 * (t114 + t119 * t120);
-        let t142 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + 0.24 * t27;
-        let minus_rate_dot_2_leg1 = t10 * (t142 + t20 * t28);
-        let t152 = t62 * acceleration[0] - t57 * acceleration[1] + 0.24 * t73;
-        let minus_rate_dot_2_leg2 = t47 * (t152 + t66 * t74);
-        let t162 = t103 * acceleration[1] - t108 * acceleration[0] - 0.24 * t119;
-        let rate_dot_2_leg3 = t93 * (t162 - t112 * t120);
-        let t187 = rate_2_leg1 - rate_1_leg1;
-        let t192 = rate_2_leg2 - rate_1_leg2;
-        let t197 = rate_2_leg3 - rate_1_leg3;
+        let t120 = 0.24 * (rate_1_leg3 * rate_1_leg3);
+        let rate_dot_1_leg3 = t93 * (t114 + c2_leg3 * t120);
+        let t141 = c1_leg1 * acceleration[1] - s1_leg1 * acceleration[0] + t28;
+        let minus_rate_dot_2_leg1 = t10 * (t141 + t21 * c2_leg1);
+        let t151 = t62 * acceleration[0] - t57 * acceleration[1] + 0.24 * t73;
+        let minus_rate_dot_2_leg2 = t47 * (t151 + t66 * t74);
+        let t160 = t103 * acceleration[1] - t108 * acceleration[0] - t120;
+        let rate_dot_2_leg3 = t93 * (t160 - t113 * c2_leg3);
+        let t185 = rate_2_leg1 - rate_1_leg1;
+        let t190 = rate_2_leg2 - rate_1_leg2;
+        let t195 = rate_2_leg3 - rate_1_leg3;
         Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
@@ -2190,12 +2191,12 @@ impl ThreeLegPoint {
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, -(g2_vx_leg1 * minus_rate_dot_2_leg1),
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t142,
-                g1_vx_leg2 * t152 - minus_g2_vx_leg2 * t68,
-                minus_g2_vx_leg3 * t114 - g1_vx_leg3 * t162,
-                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t187),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t192),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t197),
+                g2_vx_leg1 * t22 - minus_g1_vx_leg1 * t141,
+                g1_vx_leg2 * t151 - minus_g2_vx_leg2 * t68,
+                minus_g2_vx_leg3 * t114 - g1_vx_leg3 * t160,
+                ::overact::math::signed(minus_g1_vx_leg1 + g2_vx_leg1, t185),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t190),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t195),
             ],
             [
                 acceleration[1], -(g1_vy_leg1 * minus_rate_dot_1_leg1),
@@ -2206,12 +2207,12 @@ impl ThreeLegPoint {
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t142 - minus_g2_vy_leg1 * t22,
-                g2_vy_leg2 * t68 - minus_g1_vy_leg2 * t152,
-                minus_g1_vy_leg3 * t162 - g2_vy_leg3 * t114,
-                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t187),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t192),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t197),
+                g1_vy_leg1 * t141 - minus_g2_vy_leg1 * t22,
+                g2_vy_leg2 * t68 - minus_g1_vy_leg2 * t151,
+                minus_g1_vy_leg3 * t160 - g2_vy_leg3 * t114,
+                -::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t185),
+                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t190),
+                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t195),
             ],
         ])
     }
@@ -2226,7 +2227,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 274 operations (100 additions, 166 multiplications, 8 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 245 intermediates.
+    /// 270 operations (100 additions, 159 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 242 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2237,168 +2238,168 @@ impl ThreeLegPoint {
         start: &[f64; 2],
     ) -> Result<[[f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = 0.5 * pose[0];
-        let t1 = pose[1] - 0.35;
-        let t4 = t1 * t1 + pose[0] * pose[0];
-        let t6 = 0.0576 / t4 - 0.25;
-        ::overact::guard::reach(t6, "leg1")?;
-        let t7 = ::overact::math::sqrt(t6);
-        let t9 = t0 + t1 * t7;
-        let t10 = t9 - pose[0];
-        let t11 = t4 * t7;
-        ::overact::guard::leg(t11, 0.05748423696979895, "leg1")?;
-        let t12 = 1.0 / t11;
-        let minus_g1_vx_leg1 = t10 * t12;
-        let t15 = pose[0] + 0.3031088913245535;
-        let t18 = 0.5 * (pose[1] + 0.175);
-        let t19 = 0.8660254037844386 * t15 + t18;
-        let t21 = t0 + pose[1] * 0.8660254037844386;
-        let t22 = pose[0] - t21;
-        let t25 = t19 * t19 + t22 * t22;
-        let t27 = 0.0576 / t25 - 0.25;
-        ::overact::guard::reach(t27, "leg2")?;
-        let t28 = ::overact::math::sqrt(t27);
-        let t31 = t22 * t28 - 0.5 * t19;
-        let t32 = t19 + t31;
-        let t36 = 0.5 * t22 + t19 * t28;
-        let t37 = t22 - t36;
-        let t39 = 3.608439182435161 * t32 + 2.0833333333333335 * t37;
-        let t40 = t25 * t28;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let g1_vx_leg2 = t39 * t41;
-        let t45 = pose[0] - 0.3031088913245535;
-        let t47 = 0.8660254037844386 * t45 - t18;
-        let t51 = t47 * t47 + t21 * t21;
-        let t53 = 0.0576 / t51 - 0.25;
-        ::overact::guard::reach(t53, "leg3")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t56 = 0.5 * t47 - t21 * t54;
-        let t60 = 0.5 * t21 + t47 * t54;
-        let t62 = 3.608439182435161 * t56 + 2.0833333333333335 * t60;
-        let t63 = t51 * t54;
-        ::overact::guard::leg(t63, 0.05748423696979895, "leg3")?;
-        let t64 = 0.24 / t63;
-        let g1_vx_leg3 = t62 * t64;
-        let t67 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t67, 26.146658848896372, "actuators")?;
-        let t68 = 1.0 / t67;
-        let t71 = 3.608439182435161 * t36 + 2.0833333333333335 * t31;
-        let g2_vy_leg2 = t71 * t41;
-        let t75 = 0.5 * t1 - pose[0] * t7;
-        let t76 = t1 - t75;
-        let g1_vy_leg1 = t76 * t12;
-        let t81 = 3.608439182435161 * t37 - 2.0833333333333335 * t32;
-        let minus_g1_vy_leg2 = t81 * t41;
-        let t87 = 2.0833333333333335 * t56 - 3.608439182435161 * t60;
-        let minus_g1_vy_leg3 = t87 * t64;
-        let t95 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t96 = t95 * t68;
-        let t98 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t95 * t96;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
-        let t99 = 1.0 / t98;
-        let t109 = g1_vx_leg2 * actuator_velocities[1]
+        let t0 = pose[0] + 0.3031088913245535;
+        let t2 = pose[1] + 0.175;
+        let t3 = 0.5 * t2;
+        let t4 = 0.8660254037844386 * t0 + t3;
+        let t5 = 0.5 * pose[0];
+        let t7 = t5 + pose[1] * 0.8660254037844386;
+        let t8 = 0.5 * t7;
+        let t9 = t5 - t8;
+        let t10 = t9 + t9;
+        let t13 = t4 * t4 + t10 * t10;
+        let t15 = 0.0576 / t13 - 0.25;
+        ::overact::guard::reach(t15, "leg2")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let t19 = t10 * t16 - 0.5 * t4;
+        let t23 = t9 + t4 * t16;
+        let t26 = 3.608439182435161 * (t4 + t19) + 2.0833333333333335 * (t10 - t23);
+        let t27 = t13 * t16;
+        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
+        let t28 = 0.24 / t27;
+        let g1_vx_leg2 = t26 * t28;
+        let t32 = 3.608439182435161 * t23 + 2.0833333333333335 * t19;
+        let g2_vy_leg2 = t32 * t28;
+        let t34 = pose[1] - 0.35;
+        let t38 = t34 * t34 + pose[0] * pose[0];
+        let t40 = 0.0576 / t38 - 0.25;
+        ::overact::guard::reach(t40, "leg1")?;
+        let t41 = ::overact::math::sqrt(t40);
+        let t43 = 0.5 * t34 - pose[0] * t41;
+        let t44 = t34 - t43;
+        let t45 = t38 * t41;
+        ::overact::guard::leg(t45, 0.05748423696979895, "leg1")?;
+        let t46 = 1.0 / t45;
+        let g1_vy_leg1 = t44 * t46;
+        let t49 = t2 * 4.166666666666667;
+        let t50 = t32 + t49;
+        let minus_minus_g1_vy_leg2 = t50 * t28;
+        let t54 = pose[0] - 0.3031088913245535;
+        let t56 = 0.8660254037844386 * t54 - t3;
+        let t60 = t56 * t56 + t7 * t7;
+        let t62 = 0.0576 / t60 - 0.25;
+        ::overact::guard::reach(t62, "leg3")?;
+        let t63 = ::overact::math::sqrt(t62);
+        let t65 = 0.5 * t56 - t7 * t63;
+        let t68 = t8 + t56 * t63;
+        let t70 = 2.0833333333333335 * t65 - 3.608439182435161 * t68;
+        let t71 = t60 * t63;
+        ::overact::guard::leg(t71, 0.05748423696979895, "leg3")?;
+        let t72 = 0.24 / t71;
+        let minus_g1_vy_leg3 = t70 * t72;
+        let t78 = t5 + t34 * t41;
+        let t79 = t78 - pose[0];
+        let minus_g1_vx_leg1 = t79 * t46;
+        let t85 = 3.608439182435161 * t65 + 2.0833333333333335 * t68;
+        let g1_vx_leg3 = t85 * t72;
+        let t88 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t112 = t99
-            * (g1_vy_leg1 * actuator_velocities[0]
-                - minus_g1_vy_leg2 * actuator_velocities[1]
-                - minus_g1_vy_leg3 * actuator_velocities[2] + t109 * t96);
-        let t115 = t15 * 4.166666666666667 - t39;
-        let minus_g2_vx_leg2 = t115 * t41;
-        let t119 = t109 * t68 + t96 * t112;
-        let rate_2_leg2 = g2_vy_leg2 * t112 - minus_g2_vx_leg2 * t119;
-        let t122 = rate_2_leg2 * rate_2_leg2;
-        let t123 = 0.24 * t122;
-        let rate_1_leg2 = g1_vx_leg2 * t119 - minus_g1_vy_leg2 * t112;
-        let t127 = rate_1_leg2 * rate_1_leg2;
-        let t129 = 2.0833333333333335 * (t25 - 0.1152);
-        let t130 = t127 * t129;
-        let rate_dot_1_leg2 = t41 * (t123 + t130);
-        let t133 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t75 * t12;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t119 + minus_g2_vy_leg1 * t112;
-        let t140 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t141 = 0.0576 * t140;
-        let rate_1_leg1 = g1_vy_leg1 * t112 - minus_g1_vx_leg1 * t119;
-        let t145 = rate_1_leg1 * rate_1_leg1;
-        let t147 = 0.5 * (t4 - 0.1152);
-        let t148 = t145 * t147;
-        let rate_dot_1_leg1 = t12 * (t141 + t148);
-        let t151 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t155 = t71 + t81 - t87;
-        let g2_vy_leg3 = t155 * t64;
-        let t159 = t45 * 4.166666666666667 - t62;
-        let minus_g2_vx_leg3 = t159 * t64;
-        let rate_2_leg3 = g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t119;
-        let t163 = rate_2_leg3 * rate_2_leg3;
-        let t164 = 0.24 * t163;
-        let rate_1_leg3 = g1_vx_leg3 * t119 - minus_g1_vy_leg3 * t112;
-        let t168 = rate_1_leg3 * rate_1_leg3;
-        let t170 = 2.0833333333333335 * (t51 - 0.1152);
-        let t171 = t168 * t170;
-        let rate_dot_1_leg3 = t64 * (t164 + t171);
-        let t174 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t176 = g1_vx_leg2 * t133 - minus_g1_vx_leg1 * t151 + g1_vx_leg3 * t174;
-        let t185 = t99
-            * (g1_vy_leg1 * t151 - minus_g1_vy_leg2 * t133 - minus_g1_vy_leg3 * t174
-                + t96 * t176);
-        let t187 = t68 * t176 + t96 * t185;
-        let t191 = t10 * t187 - t76 * t185 - t141;
-        let minus_rate_dot_1_leg1 = t12 * (t191 - t148);
-        let t199 = t81 * t185 - t39 * t187 - t123;
-        let minus_rate_dot_1_leg2 = t41 * (t199 - t130);
-        let t207 = t62 * t187 - t87 * t185 + t164;
-        let rate_dot_1_leg3_2 = t64 * (t207 + t171);
-        let t228 = t9 * t187 + t75 * t185 + 0.0576 * t145;
-        let minus_rate_dot_2_leg1 = t12 * (t228 + t140 * t147);
-        let t238 = t115 * t187 - t71 * t185 + 0.24 * t127;
-        let minus_rate_dot_2_leg2 = t41 * (t238 + t122 * t129);
-        let t248 = t155 * t185 - t159 * t187 - 0.24 * t168;
-        let rate_dot_2_leg3 = t64 * (t248 - t163 * t170);
-        let t254 = 4.166666666666667 * t228;
-        let t256 = 4.166666666666667 * t191;
-        let t275 = rate_1_leg1 + minus_rate_2_leg1;
-        let t280 = rate_2_leg2 - rate_1_leg2;
-        let t285 = rate_2_leg3 - rate_1_leg3;
+        let t93 = minus_g1_vx_leg1 * g1_vy_leg1 - g1_vx_leg2 * minus_minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t98, 26.146658848896372, "actuators")?;
+        let t99 = t93 / t98;
+        let t108 = g1_vy_leg1 * g1_vy_leg1
+            + minus_minus_g1_vy_leg2 * minus_minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t93 * t99;
+        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
+        ::overact::guard::platform(t108, 26.146658848896372, "actuators")?;
+        let t109 = (g1_vy_leg1 * actuator_velocities[0]
+            + minus_minus_g1_vy_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
+        let t112 = t0 * 4.166666666666667 - t26;
+        let minus_g2_vx_leg2 = t112 * t28;
+        let t116 = t88 / t98 + t99 * t109;
+        let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
+        let t119 = rate_2_leg2 * rate_2_leg2;
+        let t120 = 0.24 * t119;
+        let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
+        let t124 = rate_1_leg2 * rate_1_leg2;
+        let t126 = 2.0833333333333335 * (t13 - 0.1152);
+        let t127 = t124 * t126;
+        let rate_dot_1_leg2 = t28 * (t120 + t127);
+        let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t78 * t46;
+        let minus_g2_vy_leg1 = t43 * t46;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
+        let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t138 = 0.0576 * t137;
+        let rate_1_leg1 = g1_vy_leg1 * t109 - minus_g1_vx_leg1 * t116;
+        let t142 = rate_1_leg1 * rate_1_leg1;
+        let t144 = 0.5 * (t38 - 0.1152);
+        let t145 = t142 * t144;
+        let rate_dot_1_leg1 = t46 * (t138 + t145);
+        let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t151 = t70 + t49;
+        let minus_g2_vy_leg3 = t151 * t72;
+        let t155 = t54 * 4.166666666666667 - t85;
+        let minus_g2_vx_leg3 = t155 * t72;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
+        let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t160 = 0.24 * t159;
+        let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
+        let t164 = rate_1_leg3 * rate_1_leg3;
+        let t166 = 2.0833333333333335 * (t60 - 0.1152);
+        let t167 = t164 * t166;
+        let rate_dot_1_leg3 = t72 * (t160 + t167);
+        let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t172 = g1_vx_leg2 * t130 - minus_g1_vx_leg1 * t148 + g1_vx_leg3 * t170;
+        let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
+            - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
+        let t183 = t172 / t98 + t99 * t181;
+        let t187 = t79 * t183 - t44 * t181 - t138;
+        let minus_rate_dot_1_leg1 = t46 * (t187 - t145);
+        let t195 = t50 * t181 + t26 * t183 + t120;
+        let minus_minus_rate_dot_1_leg2 = t28 * (t195 + t127);
+        let t203 = t85 * t183 - t70 * t181 + t160;
+        let rate_dot_1_leg3_2 = t72 * (t203 + t167);
+        let t224 = t78 * t183 + t43 * t181 + 0.0576 * t142;
+        let minus_rate_dot_2_leg1 = t46 * (t224 + t137 * t144);
+        let t234 = t112 * t183 - t32 * t181 + 0.24 * t124;
+        let minus_rate_dot_2_leg2 = t28 * (t234 + t119 * t126);
+        let t244 = t151 * t181 + t155 * t183 + 0.24 * t164;
+        let minus_rate_dot_2_leg3 = t72 * (t244 + t159 * t166);
+        let t250 = 4.166666666666667 * t224;
+        let t252 = 4.166666666666667 * t187;
+        let t271 = rate_1_leg1 + minus_rate_2_leg1;
+        let t276 = rate_2_leg2 - rate_1_leg2;
+        let t282 = -(minus_rate_2_leg3 + rate_1_leg3);
         Ok([
             [
-                t187, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
-                -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3_2,
+                t183, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
+                g1_vx_leg2 * minus_minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3_2,
                 -(minus_g1_vx_leg1 * rate_1_leg1), g1_vx_leg2 * rate_1_leg2,
                 g1_vx_leg3 * rate_1_leg3, -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1),
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg1, g1_vx_leg2,
                 g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, -(minus_g2_vx_leg3 * rate_dot_2_leg3),
-                -(minus_g1_vx_leg1 * t254 + minus_g2_vx_leg1 * t256),
-                g1_vx_leg2 * t238 - minus_g2_vx_leg2 * t199,
-                minus_g2_vx_leg3 * t207 - g1_vx_leg3 * t248,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t275),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t280),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t285),
+                minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
+                -(minus_g1_vx_leg1 * t250 + minus_g2_vx_leg1 * t252),
+                g1_vx_leg2 * t234 + minus_g2_vx_leg2 * t195,
+                minus_g2_vx_leg3 * t203 + g1_vx_leg3 * t244,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t271),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t276),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t282),
             ],
             [
-                t185, -(g1_vy_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_vy_leg2 * minus_rate_dot_1_leg2, -(minus_g1_vy_leg3 * rate_dot_1_leg3_2),
-                g1_vy_leg1 * rate_1_leg1, -(minus_g1_vy_leg2 * rate_1_leg2),
-                -(minus_g1_vy_leg3 * rate_1_leg3), ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
-                -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2),
+                t181, -(g1_vy_leg1 * minus_rate_dot_1_leg1),
+                minus_minus_g1_vy_leg2 * minus_minus_rate_dot_1_leg2,
+                -(minus_g1_vy_leg3 * rate_dot_1_leg3_2), g1_vy_leg1 * rate_1_leg1,
+                minus_minus_g1_vy_leg2 * rate_1_leg2, -(minus_g1_vy_leg3 * rate_1_leg3),
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1),
+                ::overact::math::signed(minus_minus_g1_vy_leg2, rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), g2_vy_leg3 * rate_dot_2_leg3,
-                g1_vy_leg1 * t254 - minus_g2_vy_leg1 * t256,
-                g2_vy_leg2 * t199 - minus_g1_vy_leg2 * t238,
-                minus_g1_vy_leg3 * t248 - g2_vy_leg3 * t207,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t275),
-                ::overact::math::signed(minus_g1_vy_leg2 + g2_vy_leg2, t280),
-                ::overact::math::signed(minus_g1_vy_leg3 + g2_vy_leg3, t285),
+                minus_minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
+                g1_vy_leg1 * t250 - minus_g2_vy_leg1 * t252,
+                minus_minus_g1_vy_leg2 * t234 - g2_vy_leg2 * t195,
+                minus_g2_vy_leg3 * t203 - minus_g1_vy_leg3 * t244,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t271),
+                ::overact::math::signed(g2_vy_leg2 - minus_minus_g1_vy_leg2, t276),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t282),
             ],
         ])
     }

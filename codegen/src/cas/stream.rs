@@ -18,4 +18,9 @@ impl Stream {
         self.0 = mix(self.0);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
+    /// The next whole number below a bound, zero for none.
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0 = mix(self.0);
+        ((u128::from(self.0) * bound as u128) >> 64) as usize
+    }
 }

@@ -43,14 +43,14 @@ const BISECTIONS: usize = 52;
 pub type Home<'h> = &'h dyn Fn(&str) -> Option<f64>;
 
 /// The states, with the values of all nodes.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Digits {
     /// By guard.
     states: Vec<State>,
 }
 
 /// A state at which a guard's value is nearly zero.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct State {
     guard: usize,
     values: Vec<f64>,

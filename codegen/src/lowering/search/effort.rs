@@ -68,6 +68,15 @@ impl Reach {
         }
     }
 
+    /// How many steps a walk among forms of equal cost has at most, by the nodes of the function.
+    pub(super) const fn steps(self, nodes: usize) -> usize {
+        match self {
+            Self::Everything => 40,
+            Self::Headings if nodes <= 1000 => 2,
+            _ => 0,
+        }
+    }
+
     /// Up to so many nodes a function's pairs are searched as a whole.
     pub(super) const fn whole(self) -> usize {
         match self {

@@ -82,6 +82,7 @@ impl Hasher for FieldHasher {
 pub(super) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
 
 /// The nodes of a function.
+#[derive(Clone)]
 pub(super) struct Graph {
     pub(super) definitions: Vec<Definition>,
     pub(super) meanings: Vec<Meaning>,
@@ -102,7 +103,8 @@ pub(super) struct Graph {
     inverses: Vec<Element>,
     /// The arena's index of each node; new ones have none.
     arena_index: Vec<Option<usize>>,
-    changed: Vec<bool>,
+    /// The derivation's definition of each node; new ones have none.
+    own_forms: Vec<Option<Definition>>,
     /// What replacements are held against.
     digits: Digits,
 }
@@ -126,7 +128,7 @@ impl Graph {
             values: Vec::new(),
             inverses: Vec::new(),
             arena_index: Vec::new(),
-            changed: Vec::new(),
+            own_forms: Vec::new(),
             digits: Digits::default(),
         };
         let mut numbers = HashMap::new();
@@ -203,7 +205,7 @@ impl Graph {
         self.is_sign.push(false);
         self.is_expensive.push(false);
         self.arena_index.push(None);
-        self.changed.push(false);
+        self.own_forms.push(Some(definition));
         self.inverses.push(meaning.value().inverse());
         self.values.push(meaning.value());
         let (key, negative) = canonical(meaning.value());
@@ -218,7 +220,7 @@ impl Graph {
     pub(super) fn add(&mut self, definition: Definition, scope: u32) -> usize {
         let meaning = self.meaning_of(definition);
         let node = self.push(definition, meaning, scope);
-        self.changed[node] = true;
+        self.own_forms[node] = None;
         self.digits.push(definition);
         node
     }
@@ -254,7 +256,7 @@ impl Graph {
         self.is_sign.pop();
         self.is_expensive.pop();
         self.arena_index.pop();
-        self.changed.pop();
+        self.own_forms.pop();
         self.digits.pop();
     }
 
@@ -265,6 +267,21 @@ impl Graph {
     /// Whether the node is needed.
     pub(super) fn is_live(&self, node: usize) -> bool {
         self.uses[node] > 0
+    }
+
+    /// Whether the node is needed and may be written in another way.
+    pub(super) fn is_open(&self, node: usize) -> bool {
+        let is_kept = matches!(
+            self.definitions[node],
+            Definition::Leaf | Definition::Fixed(..)
+        );
+        self.is_live(node) && !is_kept
+    }
+
+    /// What all nodes count.
+    pub(super) fn total(&self) -> i32 {
+        let live = (0..self.len()).filter(|&node| self.is_live(node));
+        live.map(|node| self.cost(node)).sum()
     }
 
     /// The live node, with its sign, of a value.
@@ -321,14 +338,19 @@ impl Graph {
     /// Gives a node another definition of the same meaning; uses are the caller's business.
     pub(super) fn redefine(&mut self, node: usize, definition: Definition) {
         self.definitions[node] = definition;
-        self.changed[node] = true;
+    }
+
+    /// The derivation's form of a live node that is written in another way.
+    pub(super) fn own_form(&self, node: usize) -> Option<Definition> {
+        let own = self.own_forms[node].filter(|_| self.is_live(node))?;
+        (own != self.definitions[node]).then_some(own)
     }
 
     /// The definitions that differ from the arena's.
     pub(super) fn overlay(&self) -> Overlay {
         let mut overlay = Overlay::default();
         for node in 0..self.len() {
-            if !self.changed[node] || !self.is_live(node) {
+            if self.own_forms[node] == Some(self.definitions[node]) || !self.is_live(node) {
                 continue;
             }
             let name = |of: Signed| {

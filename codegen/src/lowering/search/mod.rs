@@ -10,8 +10,11 @@
 //!
 //! What a replacement saves is counted exactly: the operations that nothing else needs any more
 //! (the node's *maximal fan-out free cone*, as in the resubstitution of logic synthesis), less those
-//! that it adds. No new divisor is ever introduced, so the function is defined wherever it was, and no sum
-//! that cancels near singular configurations where the form that it replaces does not.
+//! that it adds. The tree of dominators says at once which operations these can be, so that of the
+//! millions of sums and products of two nodes only those few are tried that may save something. Where
+//! nothing saves any more, a walk among forms of equal cost goes on. No new divisor is ever introduced, so
+//! the function is defined wherever it was, and no sum that cancels near singular configurations where
+//! the form that it replaces does not.
 
 mod cone;
 mod digits;
@@ -21,6 +24,7 @@ mod graph;
 mod pairs;
 mod sieve;
 mod singles;
+mod walk;
 
 pub use digits::Home;
 pub use effort::{Effort, Reach};
@@ -43,21 +47,28 @@ pub fn search<'a>(
         return Overlay::default();
     }
     let mut graph = Graph::new(arena, entries, guards, home);
-    let mut known = singles::Known::new(&graph);
-    let mut rounds = reach.rounds();
+    let known = singles::Known::new(&graph);
+    settle(&mut graph, known, reach, reach.rounds());
+    walk::improve(&mut graph, reach);
+    walk::come_home(&mut graph);
+    graph.overlay()
+}
+
+/// Replaces nodes as long as that saves anything, with so many rounds of pairs at most.
+fn settle(graph: &mut Graph, mut known: singles::Known, reach: Reach, mut rounds: usize) {
     loop {
-        let mut saved = singles::improve(&mut graph, &mut known);
+        let mut saved = singles::improve(graph, &mut known);
         if rounds > 0 {
             rounds -= 1;
-            let by_pairs = pairs::improve(&mut graph, reach.whole());
+            let by_pairs = pairs::improve(graph, reach.whole());
             if by_pairs > 0 {
                 // There are new nodes.
-                known = singles::Known::new(&graph);
+                known = singles::Known::new(graph);
             }
             saved += by_pairs;
         }
         if saved == 0 {
-            return graph.overlay();
+            return;
         }
     }
 }

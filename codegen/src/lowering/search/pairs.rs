@@ -72,11 +72,7 @@ fn groups(graph: &Graph, whole: usize) -> Vec<(Vec<usize>, Vec<usize>)> {
 
 fn improve_group(graph: &mut Graph, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
     let tree = Dominators::new(graph);
-    let is_target = |node: &usize| {
-        let definition = graph.definitions[*node];
-        let is_open = !matches!(definition, Definition::Leaf | Definition::Fixed(..));
-        is_open && graph.is_live(*node) && tree.cone(*node) > 1
-    };
+    let is_target = |node: &usize| graph.is_open(*node) && tree.cone(*node) > 1;
     let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
     let (requests, heads) = requests(graph, &tree, &targets, all);
     let mut hits = Vec::new();

@@ -28,7 +28,7 @@ pub(super) fn improve(graph: &mut Graph, known: &mut Known) -> i32 {
     let mut saved = 0;
     let mut divisors = graph.divisors();
     for node in 0..graph.len() {
-        if graph.is_live(node)
+        if graph.is_open(node)
             && graph.cone(node) > 1
             && let Some((by, saving)) = best(graph, node, known, &divisors)
         {
@@ -47,34 +47,35 @@ fn best(
     known: &mut Known,
     divisors: &[usize],
 ) -> Option<(Definition, i32)> {
-    if matches!(
-        graph.definitions[node],
-        Definition::Leaf | Definition::Fixed(..)
-    ) {
-        return None;
+    let mut best: Option<(Definition, i32)> = None;
+    for by in forms(graph, node, known, divisors) {
+        let saving = graph.saving(node, by);
+        if saving > best.map_or(0, |(_, saving)| saving) && fits(graph, by, node) {
+            best = Some((by, saving));
+        }
     }
+    best
+}
+
+/// All sums, products and quotients of live nodes that seem to have a node's value, of two others.
+pub(super) fn forms(
+    graph: &Graph,
+    node: usize,
+    known: &mut Known,
+    divisors: &[usize],
+) -> Vec<Definition> {
     let sieve = &known.sieve;
     let entry = known.pairs.entry(node);
     let pairs = entry.or_insert_with(|| pairs(graph, node, sieve));
     let quotients = quotients(graph, node, divisors);
-    let mut best: Option<(Definition, i32)> = None;
-    for by in pairs.iter().copied().chain(quotients) {
-        if by.operands().any(|o| !graph.is_live(o)) {
-            continue;
-        }
-        let saving = graph.saving(node, by);
-        if saving <= best.map_or(0, |(_, saving)| saving) {
-            continue;
-        }
-        if graph.depend(by.operands(), node)
-            || !graph.means(by, node)
-            || !graph.keeps_digits(by, node)
-        {
-            continue;
-        }
-        best = Some((by, saving));
-    }
-    best
+    let all = pairs.iter().copied().chain(quotients);
+    let is_there = |by: &Definition| by.operands().all(|operand| graph.is_live(operand));
+    all.filter(is_there).collect()
+}
+
+/// Whether a form can stand for a node: it is not computed from it, has its value indeed, and its digits.
+pub(super) fn fits(graph: &Graph, by: Definition, node: usize) -> bool {
+    !graph.depend(by.operands(), node) && graph.means(by, node) && graph.keeps_digits(by, node)
 }
 
 /// All sums and products of two live nodes that have the node's value.
