@@ -4,8 +4,9 @@ use crate::cas::Arena;
 use crate::derivation::{
     Columns, Family, From, GuardKind, JointsBy, Selection, Underivable, derive,
 };
-use crate::lowering::{Array, Condition, GuardedExpr, Program, Reach, lower};
+use crate::lowering::{Array, Condition, GuardedExpr, Program, Reach, States, lower};
 use crate::mechanism::Mechanism;
+use crate::states::State;
 
 /// How the joints of a robot follow from its pose: by rule, if one fits every leg.
 ///
@@ -67,13 +68,19 @@ pub fn program(
         &derived.entries,
         &guards,
         reach(selection.reach, family),
-        &|symbol| at_home(mechanism, symbol),
+        &States {
+            home: &|symbol| at_home(mechanism, symbol),
+            groups: &selection.states.iter().map(Vec::len).collect::<Vec<_>>(),
+            regular: &|group, number, symbol| {
+                at_state(mechanism, &selection.states[group][number], symbol)
+            },
+        },
     ))
 }
 
 /// The value of an input, by its symbol `name[index]`, in the home configuration; rates have none.
 fn at_home(mechanism: &Mechanism, symbol: &str) -> Option<f64> {
-    let (name, index) = symbol.strip_suffix(']')?.split_once('[')?;
+    let (name, index) = indexed(symbol)?;
     let home = &mechanism.home;
     let values = match name {
         "pose" => &home.pose,
@@ -81,7 +88,27 @@ fn at_home(mechanism: &Mechanism, symbol: &str) -> Option<f64> {
         "actuators" => &home.actuators,
         _ => return None,
     };
-    values.get(index.parse::<usize>().ok()?).copied()
+    values.get(index).copied()
+}
+
+/// The same at a state.
+fn at_state(mechanism: &Mechanism, state: &State, symbol: &str) -> Option<f64> {
+    let (name, index) = indexed(symbol)?;
+    let values = match name {
+        "pose" => &state.pose,
+        "joints" => &state.joints,
+        "twist" | "joint_velocities" => &state.twist,
+        "acceleration" | "joint_accelerations" => &state.acceleration,
+        "actuators" => return state.joints.get(*mechanism.actuated().get(index)?).copied(),
+        _ => return None,
+    };
+    values.get(index).copied()
+}
+
+/// Name and index of a symbol `name[index]`.
+fn indexed(symbol: &str) -> Option<(&str, usize)> {
+    let (name, index) = symbol.strip_suffix(']')?.split_once('[')?;
+    Some((name, index.parse().ok()?))
 }
 
 /// How far the search of a function goes: the identification models, which run at every sample of

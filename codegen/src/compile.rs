@@ -11,6 +11,10 @@ use crate::lowering::{Effort, Reach};
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
+use crate::states::{outer_states, random_states};
+
+/// States of each kind by which the search compares the digits of forms.
+const STATES: usize = 24;
 
 /// Which functions of a robot a model shall have.
 pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);
@@ -100,6 +104,11 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
     let joints = joints_by(&mechanism, &selection)?;
     selection.reach = request.effort.unwrap_or(request.otherwise).reach();
+    if selection.reach > Reach::Nothing {
+        let near = random_states(&mechanism, STATES, 7);
+        let far = outer_states(&mechanism, STATES, 7);
+        selection.states = vec![near, far];
+    }
     let tree = mechanism.platform.is_none();
     let mut all = Family::all(&mechanism, joints);
     all.retain(|&(family, from)| (request.wanted)(&mechanism, family, from));

@@ -19,23 +19,50 @@ pub struct State {
     pub acceleration: Vec<f64>,
 }
 
+/// How states spread around home: in units of the robot's length scale, and in radians.
+#[derive(Debug, Clone, Copy)]
+struct Spread {
+    /// At first.
+    most: f64,
+    /// What it is multiplied by for a state that no leg's Newton iteration follows.
+    shrink: f64,
+}
+
 /// `count` random states. The spread around home is halved for a state that no leg's Newton iteration
 /// follows; a state that stays out of reach is home itself with random rates.
 #[must_use]
 pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
+    let spread = Spread {
+        most: 0.4,
+        shrink: 0.5,
+    };
+    spread_states(mechanism, count, seed, spread)
+}
+
+/// `count` random states as far from home as legs reach, but for a few in a hundred of the way.
+#[must_use]
+pub fn outer_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
+    let spread = Spread {
+        most: 1.6,
+        shrink: 0.95,
+    };
+    spread_states(mechanism, count, seed, spread)
+}
+
+fn spread_states(mechanism: &Mechanism, count: usize, seed: u64, by: Spread) -> Vec<State> {
     let mut stream = Stream::new(seed);
     let dof = mechanism.dof();
     let mut states = Vec::with_capacity(count);
     for _ in 0..count {
         let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.number()).collect();
-        let mut spread = 0.4;
+        let mut spread = by.most;
         let (pose, joints) = loop {
             match displaced(mechanism, &direction, spread) {
                 Some(found) => break found,
                 None if spread < 1e-4 => {
                     break (mechanism.home.pose.clone(), mechanism.home.joints.clone());
                 }
-                None => spread *= 0.5,
+                None => spread *= by.shrink,
             }
         };
         let twist = (0..dof).map(|_| stream.number()).collect();

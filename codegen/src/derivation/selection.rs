@@ -4,6 +4,7 @@ use super::regressor::BodyParameter;
 use super::robot::Formulation;
 use crate::cas::Number;
 use crate::lowering::Reach;
+use crate::states::State;
 
 /// What the derivation of a function needs beside the mechanism.
 #[derive(Debug, Clone, Default)]
@@ -22,6 +23,8 @@ pub struct Selection {
     pub combined: Vec<Combination>,
     /// How far cheaper ways to write a function are searched.
     pub reach: Reach,
+    /// Groups of states at which the search compares the digits of forms.
+    pub states: Vec<Vec<State>>,
 }
 
 /// A column as a linear combination of other columns.

@@ -1,7 +1,7 @@
 //! From the graph to the program: reachable nodes in an order in which operands come first.
 
 use super::program::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
-use super::search::{Home, Overlay, Place, Reach, Rewritten, search};
+use super::search::{Overlay, Place, Reach, Rewritten, States, search};
 use super::trigonometry::{Plan, plan};
 use crate::cas::arena::{Handle, Op};
 use crate::cas::{Arena, Direction, Expr};
@@ -17,7 +17,8 @@ pub struct GuardedExpr<'a> {
 }
 
 /// Lowers the expressions of one function. `inputs` are the arrays whose elements the graph's symbols
-/// `name[index]` stand for, `home` their values in the home configuration; a guard is kept if the program divides by its expression or takes its root.
+/// `name[index]` stand for, `states` some of their values; a guard is kept if the program divides by its
+/// expression or takes its root.
 ///
 /// Entries are visited column by column, so that the program works through leg after leg.
 #[must_use]
@@ -28,10 +29,10 @@ pub fn lower<'a>(
     entries: &[Expr<'a>],
     guards: &[GuardedExpr<'a>],
     reach: Reach,
-    home: Home<'_>,
+    states: &States<'_>,
 ) -> Program {
     let guarded: Vec<Expr<'a>> = guards.iter().map(|g| g.value).collect();
-    let overlay = search(arena, entries, &guarded, reach, home);
+    let overlay = search(arena, entries, &guarded, reach, states);
     let mut lowering = Lowering::new(arena, inputs, entries, overlay);
     let (rows, columns) = match output.shape[..] {
         [rows, columns] => (rows, columns),

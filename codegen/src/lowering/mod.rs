@@ -15,4 +15,4 @@ pub use lower::{GuardedExpr, lower};
 pub use program::{
     Array, Condition, Cost, Entry, Guard, Operation, Program, SINGULAR, Source, Step,
 };
-pub use search::{Effort, Reach};
+pub use search::{Effort, Reach, States};

@@ -78,7 +78,7 @@ impl Graph {
 
     /// Counts the depths anew after a replacement: a leaf's is zero, others are deeper than what they
     /// are computed from.
-    fn measure_depths(&mut self) {
+    pub(super) fn measure_depths(&mut self) {
         let mut done = vec![false; self.len()];
         let mut stack = Vec::new();
         for start in 0..self.len() {

@@ -1,6 +1,7 @@
 //! The nodes that a function needs, with what they cost and who uses them.
 
-use super::digits::{Digits, Home};
+use super::digits::Digits;
+use super::rays::{self, States};
 use crate::cas::arena::{Handle, Meaning, Op};
 use crate::cas::field::Element;
 use crate::cas::{Arena, Expr};
@@ -40,18 +41,30 @@ pub(super) enum Definition {
     Product(Signed, Signed),
     /// a / b.
     Quotient(Signed, Signed),
-    /// Of one or two operands, and never written in another way: a root, a sign, an arc tangent.
-    Fixed(Signed, Option<Signed>),
+    /// √a, never written in another way, as the following.
+    Root(Signed),
+    /// The sign of a.
+    Sign(Signed),
+    /// The angle whose sine and cosine have the ratio a / b.
+    ArcTangent(Signed, Signed),
 }
 
 impl Definition {
     pub(super) fn operands(self) -> impl Iterator<Item = usize> {
         let (first, second) = match self {
             Self::Leaf => (None, None),
-            Self::Sum(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => (Some(a), Some(b)),
-            Self::Fixed(a, b) => (Some(a), b),
+            Self::Root(a) | Self::Sign(a) => (Some(a), None),
+            Self::Sum(a, b)
+            | Self::Product(a, b)
+            | Self::Quotient(a, b)
+            | Self::ArcTangent(a, b) => (Some(a), Some(b)),
         };
         first.into_iter().chain(second).map(Signed::node)
+    }
+
+    /// Whether it may be written in another way.
+    pub(super) const fn is_open(self) -> bool {
+        matches!(self, Self::Sum(..) | Self::Product(..) | Self::Quotient(..))
     }
 }
 
@@ -92,10 +105,6 @@ pub(super) struct Graph {
     pub(super) uses: Vec<u32>,
     /// Longest way from an input to each node.
     pub(super) depths: Vec<u32>,
-    /// Nodes that products with are free, because they are signs.
-    is_sign: Vec<bool>,
-    /// Fixed nodes that count.
-    is_expensive: Vec<bool>,
     /// Node of each value.
     by_value: ByValue<Signed>,
     /// What the nodes are looked up by: the first point of their meanings.
@@ -105,6 +114,10 @@ pub(super) struct Graph {
     arena_index: Vec<Option<usize>>,
     /// The derivation's definition of each node; new ones have none.
     own_forms: Vec<Option<Definition>>,
+    /// Nodes that are written as the derivation has them for good.
+    pub(super) is_kept: Vec<bool>,
+    /// The nodes of the entries.
+    pub(super) entries: Vec<usize>,
     /// What replacements are held against.
     digits: Digits,
 }
@@ -114,7 +127,7 @@ impl Graph {
         arena: &'a Arena,
         entries: &[Expr<'a>],
         guards: &[Expr<'a>],
-        home: Home<'_>,
+        states: &States<'_>,
     ) -> Self {
         let mut graph = Self {
             definitions: Vec::new(),
@@ -122,20 +135,23 @@ impl Graph {
             scopes: Vec::new(),
             uses: Vec::new(),
             depths: Vec::new(),
-            is_sign: Vec::new(),
-            is_expensive: Vec::new(),
             by_value: ByValue::default(),
             values: Vec::new(),
             inverses: Vec::new(),
             arena_index: Vec::new(),
             own_forms: Vec::new(),
+            is_kept: Vec::new(),
+            entries: Vec::new(),
             digits: Digits::default(),
         };
         let mut numbers = HashMap::new();
         for entry in entries {
             let node = graph.reach(arena, entry.handle().index(), &mut numbers);
             graph.uses[node] += 1;
+            graph.entries.push(node);
         }
+        graph.entries.sort_unstable();
+        graph.entries.dedup();
         let guards = guards.iter().filter_map(|guard| {
             let node = *numbers.get(&guard.handle().index())?;
             Some(Signed::new(node, guard.handle().is_negative()))
@@ -146,7 +162,7 @@ impl Graph {
         for guard in &guards {
             graph.uses[guard.node()] += 1;
         }
-        graph.digits = Digits::new(&graph, arena, &guards, home);
+        graph.digits = Digits::new(rays::states(&graph, arena, &guards, states));
         graph
     }
 
@@ -184,12 +200,11 @@ impl Graph {
             Op::Sub(a, b) => Definition::Sum(operand(a), operand(b).times(true)),
             Op::Mul(a, b) => Definition::Product(operand(a), operand(b)),
             Op::Div(a, b) => Definition::Quotient(operand(a), operand(b)),
-            Op::Sqrt(a) | Op::Sign(a) => Definition::Fixed(operand(a), None),
-            Op::Atan2(a, b) => Definition::Fixed(operand(a), Some(operand(b))),
+            Op::Sqrt(a) => Definition::Root(operand(a)),
+            Op::Sign(a) => Definition::Sign(operand(a)),
+            Op::Atan2(a, b) => Definition::ArcTangent(operand(a), operand(b)),
         };
         let node = self.push(definition, arena.meaning_at(index), arena.scope_at(index));
-        self.is_sign[node] = matches!(op, Op::Sign(_));
-        self.is_expensive[node] = matches!(op, Op::Sqrt(_) | Op::Atan2(..));
         self.arena_index[node] = Some(index);
         numbers.insert(index, node);
         node
@@ -202,10 +217,9 @@ impl Graph {
         self.meanings.push(meaning);
         self.scopes.push(scope);
         self.uses.push(0);
-        self.is_sign.push(false);
-        self.is_expensive.push(false);
         self.arena_index.push(None);
         self.own_forms.push(Some(definition));
+        self.is_kept.push(false);
         self.inverses.push(meaning.value().inverse());
         self.values.push(meaning.value());
         let (key, negative) = canonical(meaning.value());
@@ -225,9 +239,14 @@ impl Graph {
         node
     }
 
-    /// Whether a form keeps the digits that a node's own form has near singular configurations.
-    pub(super) fn keeps_digits(&self, by: Definition, node: usize) -> bool {
-        self.digits.keeps(by, node)
+    /// How much larger than a node's own error that of a form is.
+    pub(super) fn loss(&self, by: Definition, node: usize) -> f64 {
+        self.digits.loss(by, node)
+    }
+
+    /// Takes a node's errors from what it is computed from, as that is written by now.
+    pub(super) fn refresh(&mut self, node: usize) {
+        self.digits.refresh(node, self.definitions[node]);
     }
 
     pub(super) fn depth_of(&self, definition: Definition) -> u32 {
@@ -253,10 +272,9 @@ impl Graph {
         self.scopes.pop();
         self.uses.pop();
         self.depths.pop();
-        self.is_sign.pop();
-        self.is_expensive.pop();
         self.arena_index.pop();
         self.own_forms.pop();
+        self.is_kept.pop();
         self.digits.pop();
     }
 
@@ -271,11 +289,7 @@ impl Graph {
 
     /// Whether the node is needed and may be written in another way.
     pub(super) fn is_open(&self, node: usize) -> bool {
-        let is_kept = matches!(
-            self.definitions[node],
-            Definition::Leaf | Definition::Fixed(..)
-        );
-        self.is_live(node) && !is_kept
+        self.is_live(node) && !self.is_kept[node] && self.definitions[node].is_open()
     }
 
     /// What all nodes count.
@@ -312,26 +326,26 @@ impl Graph {
             Definition::Sum(a, b) => self.meaning(a) + self.meaning(b),
             Definition::Product(a, b) => self.meaning(a) * self.meaning(b),
             Definition::Quotient(a, b) => self.meaning(a).over(self.meaning(b)),
-            Definition::Leaf | Definition::Fixed(..) => Meaning::NONE,
+            Definition::Leaf
+            | Definition::Root(_)
+            | Definition::Sign(_)
+            | Definition::ArcTangent(..) => Meaning::NONE,
         }
     }
 
     /// What the node's own operation counts.
     pub(super) fn cost(&self, node: usize) -> i32 {
-        match self.definitions[node] {
-            Definition::Leaf => 0,
-            Definition::Fixed(..) => i32::from(self.is_expensive[node]) * EXPENSIVE,
-            definition => self.cost_of(definition),
-        }
+        self.cost_of(self.definitions[node])
     }
 
     /// What an operation counts: one, and nothing for a product with a sign, which is a selection.
     pub(super) fn cost_of(&self, definition: Definition) -> i32 {
+        let is_sign = |of: Signed| matches!(self.definitions[of.node()], Definition::Sign(_));
         match definition {
-            Definition::Product(a, b) => {
-                i32::from(!self.is_sign[a.node()] && !self.is_sign[b.node()])
-            }
-            _ => 1,
+            Definition::Leaf | Definition::Sign(_) => 0,
+            Definition::Root(_) | Definition::ArcTangent(..) => EXPENSIVE,
+            Definition::Product(a, b) => i32::from(!is_sign(a) && !is_sign(b)),
+            Definition::Sum(..) | Definition::Quotient(..) => 1,
         }
     }
 
@@ -340,12 +354,20 @@ impl Graph {
         self.definitions[node] = definition;
     }
 
-    /// The derivation's form of a live node that is written in another way.
+    /// The derivation's form of a node that is written in another way.
     pub(super) fn own_form(&self, node: usize) -> Option<Definition> {
-        let own = self.own_forms[node].filter(|_| self.is_live(node))?;
+        let own = self.own_forms[node]?;
         (own != self.definitions[node]).then_some(own)
     }
 
+    /// The errors of all nodes, as they are written by now.
+    pub(super) fn refresh_all(&mut self) {
+        let mut order: Vec<usize> = (0..self.len()).filter(|&node| self.is_live(node)).collect();
+        order.sort_by_key(|&node| self.depths[node]);
+        for node in order {
+            self.refresh(node);
+        }
+    }
     /// The definitions that differ from the arena's.
     pub(super) fn overlay(&self) -> Overlay {
         let mut overlay = Overlay::default();
@@ -364,7 +386,7 @@ impl Graph {
                 Definition::Sum(a, b) => Rewritten::Sum(name(a), name(b)),
                 Definition::Product(a, b) => Rewritten::Product(name(a), name(b)),
                 Definition::Quotient(a, b) => Rewritten::Quotient(name(a), name(b)),
-                Definition::Leaf | Definition::Fixed(..) => continue,
+                _ => continue,
             };
             let (place, _) = name(Signed::new(node, false));
             overlay

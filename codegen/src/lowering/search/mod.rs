@@ -22,35 +22,39 @@ mod dominators;
 mod effort;
 mod graph;
 mod pairs;
+mod rays;
+mod repair;
 mod sieve;
 mod singles;
 mod walk;
 
-pub use digits::Home;
 pub use effort::{Effort, Reach};
 pub use graph::{Overlay, Place, Rewritten};
+pub use rays::States;
 
 use crate::cas::{Arena, Expr};
 use graph::Graph;
 
-/// Other definitions for some of the nodes that the entries need. `home` are the inputs in the home
-/// configuration.
+/// Other definitions for some of the nodes that the entries need. At the `states`
+/// forms are compared.
 #[must_use]
 pub fn search<'a>(
     arena: &'a Arena,
     entries: &[Expr<'a>],
     guards: &[Expr<'a>],
     reach: Reach,
-    home: Home<'_>,
+    states: &States<'_>,
 ) -> Overlay {
     if reach == Reach::Nothing {
         return Overlay::default();
     }
-    let mut graph = Graph::new(arena, entries, guards, home);
+    let mut graph = Graph::new(arena, entries, guards, states);
     let known = singles::Known::new(&graph);
     settle(&mut graph, known, reach, reach.rounds());
+    repair::improve(&mut graph);
     walk::improve(&mut graph, reach);
     walk::come_home(&mut graph);
+    repair::improve(&mut graph);
     graph.overlay()
 }
 

@@ -7,6 +7,7 @@
 
 use super::dominators::Dominators;
 use super::graph::{ByValue, Definition, Graph, Signed, canonical};
+use super::singles;
 
 /// More nodes than this are searched without pairs: the table of pairs grows with the square.
 const MOST: usize = 2500;
@@ -221,10 +222,7 @@ fn give(graph: &mut Graph, requests: &[Request], hit: &Hit, node: Signed) -> Opt
         if saving < i32::from(!undo.is_empty()) {
             continue;
         }
-        if graph.depend(by.operands(), target)
-            || !graph.means(by, target)
-            || !graph.keeps_digits(by, target)
-        {
+        if !singles::fits(graph, by, target, singles::LOSS) {
             continue;
         }
         undo.push((target, graph.definitions[target]));

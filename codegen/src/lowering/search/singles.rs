@@ -4,6 +4,9 @@ use super::graph::{Definition, Graph, Signed};
 use super::sieve::Sieve;
 use std::collections::HashMap;
 
+/// How much larger than a node's own error that of a cheaper form may be.
+pub(super) const LOSS: f64 = 10.0;
+
 /// The sums and products of two nodes that have the value of a node, of the nodes that were looked at.
 ///
 /// Single replacements add no node and bring none back, so what was found once is all there is: only
@@ -28,6 +31,7 @@ pub(super) fn improve(graph: &mut Graph, known: &mut Known) -> i32 {
     let mut saved = 0;
     let mut divisors = graph.divisors();
     for node in 0..graph.len() {
+        graph.refresh(node);
         if graph.is_open(node)
             && graph.cone(node) > 1
             && let Some((by, saving)) = best(graph, node, known, &divisors)
@@ -50,7 +54,7 @@ fn best(
     let mut best: Option<(Definition, i32)> = None;
     for by in forms(graph, node, known, divisors) {
         let saving = graph.saving(node, by);
-        if saving > best.map_or(0, |(_, saving)| saving) && fits(graph, by, node) {
+        if saving > best.map_or(0, |(_, saving)| saving) && fits(graph, by, node, LOSS) {
             best = Some((by, saving));
         }
     }
@@ -73,9 +77,10 @@ pub(super) fn forms(
     all.filter(is_there).collect()
 }
 
-/// Whether a form can stand for a node: it is not computed from it, has its value indeed, and its digits.
-pub(super) fn fits(graph: &Graph, by: Definition, node: usize) -> bool {
-    !graph.depend(by.operands(), node) && graph.means(by, node) && graph.keeps_digits(by, node)
+/// Whether a form can stand for a node: it is not computed from it, has its value indeed, and an error no
+/// larger than `loss` times its own.
+pub(super) fn fits(graph: &Graph, by: Definition, node: usize, loss: f64) -> bool {
+    !graph.depend(by.operands(), node) && graph.means(by, node) && graph.loss(by, node) <= loss
 }
 
 /// All sums and products of two live nodes that have the node's value.

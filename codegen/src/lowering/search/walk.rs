@@ -8,8 +8,11 @@
 
 use super::graph::Graph;
 use super::singles::{self, Known};
-use super::{Reach, settle};
+use super::{Reach, repair, settle};
 use crate::cas::Stream;
+
+/// How much larger than a node's own error that of a form of equal cost may be.
+const LOSS: f64 = 2.0;
 
 /// Steps in a row that may bring nothing.
 const PATIENCE: usize = 3;
@@ -24,6 +27,7 @@ pub(super) fn improve(graph: &mut Graph, reach: Reach) {
         let mut known = Known::new(graph);
         step(graph, &mut known, &mut stream);
         settle(graph, known, reach, 1);
+        repair::improve(graph);
         let total = graph.total();
         fruitless = if total < best { 0 } else { fruitless + 1 };
         if total > best {
@@ -40,11 +44,12 @@ pub(super) fn improve(graph: &mut Graph, reach: Reach) {
 fn step(graph: &mut Graph, known: &mut Known, stream: &mut Stream) {
     let mut divisors = graph.divisors();
     for node in 0..graph.len() {
+        graph.refresh(node);
         if !graph.is_open(node) {
             continue;
         }
         let mut forms = singles::forms(graph, node, known, &divisors);
-        forms.retain(|&by| graph.saving(node, by) >= 0 && singles::fits(graph, by, node));
+        forms.retain(|&by| graph.saving(node, by) >= 0 && singles::fits(graph, by, node, LOSS));
         let drawn = stream.below(forms.len() + 1);
         if let Some(&by) = forms.get(drawn) {
             graph.replace(node, by);
@@ -58,7 +63,7 @@ pub(super) fn come_home(graph: &mut Graph) {
     loop {
         let mut count = 0;
         for node in 0..graph.len() {
-            let Some(own) = graph.own_form(node) else {
+            let Some(own) = graph.own_form(node).filter(|_| graph.is_live(node)) else {
                 continue;
             };
             let is_there = own.operands().all(|operand| graph.is_live(operand));
