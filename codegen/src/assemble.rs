@@ -61,19 +61,23 @@ pub fn program(
     } else {
         vec![rows, columns]
     };
+    let reach = reach(selection.reach, family);
+    // Of single replacements in functions that matter less, only those near singular states are looked at.
+    let compared = match reach {
+        Reach::Nothing | Reach::Singles => &[][..],
+        _ => &selection.states,
+    };
     Ok(lower(
         &arena,
         &inputs,
         array(family.name(), shape),
         &derived.entries,
         &guards,
-        reach(selection.reach, family),
+        reach,
         &States {
             home: &|symbol| at_home(mechanism, symbol),
-            groups: &selection.states.iter().map(Vec::len).collect::<Vec<_>>(),
-            regular: &|group, number, symbol| {
-                at_state(mechanism, &selection.states[group][number], symbol)
-            },
+            groups: &compared.iter().map(Vec::len).collect::<Vec<_>>(),
+            regular: &|group, number, symbol| at_state(mechanism, &compared[group][number], symbol),
         },
     ))
 }

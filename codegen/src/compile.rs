@@ -14,7 +14,7 @@ use crate::parallel;
 use crate::states::{outer_states, random_states};
 
 /// States of each kind by which the search compares the digits of forms.
-const STATES: usize = 24;
+const STATES: usize = 16;
 
 /// Which functions of a robot a model shall have.
 pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);

@@ -39,12 +39,12 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<Stat
     spread_states(mechanism, count, seed, spread)
 }
 
-/// `count` random states as far from home as legs reach, but for a few in a hundred of the way.
+/// `count` random states as far from home as legs reach, but for a fifth of the way.
 #[must_use]
 pub fn outer_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
     let spread = Spread {
         most: 1.6,
-        shrink: 0.95,
+        shrink: 0.8,
     };
     spread_states(mechanism, count, seed, spread)
 }

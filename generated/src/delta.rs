@@ -1639,7 +1639,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 724 operations (231 additions, 469 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 599 intermediates.
+    /// 738 operations (235 additions, 479 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 613 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1653,7 +1653,8 @@ impl Delta {
         let t2 = 0.48 * t1;
         let t4 = pose[2] * pose[2];
         let t5 = t1 * t1 + t4;
-        let t7 = pose[1] * pose[1] + -0.3136;
+        let t6 = pose[1] * pose[1];
+        let t7 = t6 + -0.3136;
         let t8 = t5 + t7;
         let t9 = t8 + 0.0576;
         let t11 = 0.48 * pose[2];
@@ -1664,410 +1665,474 @@ impl Delta {
         let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
         let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t23 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t8 + -0.0576) / t23;
-        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let s_cross_leg1 = t15 / t23;
+        let t24 = 0.56 * c_rod_leg1;
+        let s_cross_leg1 = 2.0833333333333335 * t15 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
+        let t26 = 1.0 / s_cross_leg1;
+        let c_cross_leg1 = (t8 + -0.0576) / (t15 * t26);
+        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t33 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t33;
+        let t36 = 4.166666666666667 * t26;
+        let garm_vx_leg1 = c_armcross_leg1 * t36;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t45 = pose[1] * grod_vy_leg1;
-        let t46 = t45 * twist[1];
-        let t47 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t46;
-        let rate_arm_leg1 = t33 * t47;
-        let t49 = 0.24 * c_cross_leg1;
-        let t50 = t49 * rate_arm_leg1;
-        let t52 = 0.56 * c_rod_leg1;
-        let t56 = t50 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t56;
-        let t58 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t44 = 0.24 * c_cross_leg1;
+        let t48 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t48;
+        let t50 = pose[1] * grod_vy_leg1;
+        let t51 = t50 * twist[1];
+        let rate_arm_leg1 = t36
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t51);
+        let t54 = rate_arm_leg1 * rate_arm_leg1;
+        let t60 = t44 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t60;
+        let t62 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t60 = rate_rod_leg1 * rate_rod_leg1;
-        let t61 = t58 + t60;
-        let t66 = acceleration[1] + t46 * rate_rod_leg1;
-        let rate_dot_arm_leg1 = t33
-            * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-                + rate_arm_leg1 * t50 + t52 * t61 + t45 * t66);
-        let t70 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t33 * t45;
-        let t72 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t33;
-        let t74 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t75 = 9.81 * c_arm_leg1;
-        let t79 = 9.81 * minus_s_arm_leg1;
-        let t89 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t89;
-        let t92 = rate_rod_leg1 * (1.7857142857142858 * t56);
+        let t64 = rate_rod_leg1 * rate_rod_leg1;
+        let t70 = acceleration[1] + pose[1] * t64;
+        let t72 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t44 * t54 + t24 * (t62 + t64) + t50 * t70;
+        let rate_dot_arm_leg1 = t36 * t72;
+        let t74 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t36 * t50;
+        let t76 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
+        let t78 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t79 = 9.81 * c_arm_leg1;
+        let t83 = 9.81 * minus_s_arm_leg1;
+        let t93 = t26 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t93;
+        let t96 = rate_rod_leg1 * (1.7857142857142858 * t60);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t94 = 0.24 * rate_dot_arm_leg1;
-        let t99 = t47 * rate_arm_leg1;
-        let t100 = t46 * minus_rate_cross_leg1;
+        let t98 = 0.24 * rate_dot_arm_leg1;
+        let t103 = s_cross_leg1 * 0.24;
+        let t105 = t51 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t94 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t99 + t100 + t100);
-        let t106 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t108 = t92 + t106 + t92;
-        let t109 = c_rod_leg1 * t108;
-        let t110 = t45 * t109;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t49 * garm_vy_leg1);
-        let t115 = t58 * s_rod_leg1;
-        let t116 = 1.7857142857142858 * t115;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t89;
-        let t120 = t110 - minus_rate_dot_cross_leg1;
-        let t122 = t45 * t120 - t109;
-        let t124 = t52 * t116;
-        let t125 = t45 * t124;
-        let t126 = t61 - t125;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t66;
-        let t135 = s_rod_leg1 * (t124 + rate_dot_rod_leg1);
-        let t138 = t135 + c_rod_leg1 * (t60 - t125);
-        let t148 = 1.7857142857142858 * acceleration[1];
-        let t157 = 0.8928571428571429 * t15;
-        let t159 = t157 / c_rod_leg1;
-        let t162 = t49 * (t120 / c_rod_leg1) - (t157 * t126 + t135 * t159);
-        let t164 = t94 - t75;
-        let t167 = t79 - t99 / s_cross_leg1;
-        let t169 = c_cross_leg1 * t164 - s_cross_leg1 * t167;
-        let t170 = c_rod_leg1 * t169;
-        let t174 = 0.24 * t164;
-        let t175 = garm_vy_leg1 * t174;
-        let t184 = t49 * t108 - t159 * (t148 - t115);
-        let t186 = s_rod_leg1 * t169;
-        let t194 = c_cross_leg1 * t167 + s_cross_leg1 * t164;
-        let t202 = t49 * t58 - minus_rate_dot_cross_leg1 * t159;
-        let t214 = t0 + 0.025;
-        let t215 = t214 * t214;
-        let t217 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t220 = t215 + t217 * t217 + t4;
-        let t223 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t225 = 0.8660254037844387 * t214 - 0.5 * t223;
-        let t226 = pose[1] + t225;
-        let t227 = t226 * t226;
-        let t228 = t220 - t227;
-        let t229 = 0.2304 * t228;
-        let t230 = t220 - 0.3136;
-        let t231 = t230 + 0.0576;
-        let t233 = t229 - t231 * t231;
-        ::overact::guard::reach(t233, "leg2")?;
-        let t234 = ::overact::math::sqrt(t233);
-        let t235 = t228 - t230;
-        let t236 = 3.188775510204082 * t235;
-        ::overact::guard::reach(t236, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t236);
-        let t238 = 0.2688 * c_rod_leg2;
-        let t239 = 0.2688 / t238;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t239;
-        let t241 = t234 * minus_grod_vy_leg2;
-        let s_cross_leg2 = 4.166666666666667 * t241;
+            * (c_cross_leg1 * t98 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t54 * t103 + t105 + t105);
+        let t111 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t113 = t96 + t111 + t96;
+        let t114 = c_rod_leg1 * t113;
+        let t115 = t50 * t114;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t44 * garm_vy_leg1);
+        let t121 = 3.188775510204082 * (pose[1] * t62);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t93;
+        let t125 = t115 - minus_rate_dot_cross_leg1;
+        let t127 = t50 * t125 - t114;
+        let t129 = t6 * t62;
+        let t137 = t24 * t121;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t70;
+        let t141 = 3.188775510204082 * t129;
+        let t144 = s_rod_leg1 * (t137 + rate_dot_rod_leg1) + c_rod_leg1 * (t64 - t141);
+        let t150 = minus_gcross_vx_leg1 * t125;
+        let t152 = t121 - minus_gcross_vy_leg1 * t125;
+        let t153 = minus_gcross_vz_leg1 * t125;
+        let t154 = 1.7857142857142858 * acceleration[1];
+        let t160 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t161 = 1.7857142857142858 * acceleration[0];
+        let t162 = t98 - t79;
+        let t163 = 0.24 * t162;
+        let t164 = garm_vx_leg1 * t163;
+        let t170 = garm_vy_leg1 * t163;
+        let t178 = acceleration[2] + 9.81;
+        let t179 = 1.7857142857142858 * t178;
+        let t180 = minus_garm_vz_leg1 * t163;
+        let t194 = 0.8928571428571429 * t15 * (t137 - rate_dot_rod_leg1)
+            + s_rod_leg1 * t103 * (t141 + t64) + t44 * t113;
+        let t198 = t83 - 0.24 * t54;
+        let t201 = s_rod_leg1 * (c_cross_leg1 * t162 - s_cross_leg1 * t198);
+        let t209 = c_cross_leg1 * t198 + s_cross_leg1 * t162;
+        let t217 = t44 * t62 - minus_rate_dot_cross_leg1 * t103;
+        let t230 = t0 + 0.025;
+        let t231 = 0.5 * t230;
+        let t232 = 0.8660254037844387
+            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t231;
+        let t234 = t232 * t232 + t4;
+        let t235 = 0.2304 * t234;
+        let t238 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t240 = 0.8660254037844387 * t230 - 0.5 * t238;
+        let s_rod_leg3 = 1.7857142857142858 * t240;
+        let minus_s_rod_leg2 = s_rod_leg1 + s_rod_leg3;
+        let t243 = minus_s_rod_leg2 * minus_s_rod_leg2;
+        let t246 = t234 + 0.3136 * t243 - 0.3136;
+        let t247 = t246 + 0.0576;
+        let t249 = t235 - t247 * t247;
+        ::overact::guard::reach(t249, "leg2")?;
+        let t250 = ::overact::math::sqrt(t249);
+        let t252 = 1.0 - t243;
+        ::overact::guard::reach(t252, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t252);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t254 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t250 / t254;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t243 = 4.166666666666667 / s_cross_leg2;
-        let t244 = 1.7857142857142858 * t239;
-        let t245 = t226 * t244;
-        let t249 = 0.5 * t214;
-        let t251 = 0.48 * (0.8660254037844387 * t217 - t249);
-        let minus_s_arm_leg2 = (t11 * t231 + t251 * t234) / t229;
-        let t255 = minus_s_arm_leg2 / s_cross_leg2;
-        let c_cross_leg2 = (-0.0576 + t230) / t238;
-        let t258 = 0.24 * c_cross_leg2;
-        let c_arm_leg2 = (t251 * t231 - t11 * t234) / t229;
+        let t256 = 4.166666666666667 / s_cross_leg2;
+        let t257 = minus_s_rod_leg2 / c_rod_leg2;
+        let t259 = 0.48 * t232;
+        let c_arm_leg2 = (t259 * t247 - t11 * t250) / t235;
+        let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
+        let t266 = (-0.0576 + t246) * minus_grod_vy_leg2;
+        let c_cross_leg2 = 4.166666666666667 * t266;
+        let minus_s_arm_leg2 = (t11 * t247 + t259 * t250) / t235;
+        let t273 = minus_s_arm_leg2 * s_cross_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 + t273;
+        let t275 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t256 * (0.8660254037844387 * t257 - t275);
+        let t278 = 0.8660254037844387 * c_armcross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t243;
-        let c_armcross_leg2 = t255 + t258 * minus_garm_vz_leg2;
-        let t269 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t243 * (0.8660254037844387 * t245 - t269);
-        let t272 = 0.8660254037844387 * c_armcross_leg2;
-        let t283 = 0.8660254037844387 * twist[0];
-        let t284 = 0.5 * twist[1];
-        let t285 = t283 + t284;
-        let t286 = t245 * t285;
-        let t287 = t272 * twist[1] - t269 * twist[0] - s_armcross_leg2 * twist[2] + t286;
-        let rate_arm_leg2 = t243 * t287;
-        let t289 = t258 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t244 * t285;
-        let t293 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t294 = 0.5 * s_armcross_leg2;
-        let t296 = 0.8660254037844387 * s_armcross_leg2;
-        let t301 = t294 * twist[0] - t296 * twist[1] - c_armcross_leg2 * twist[2] - t289;
-        let rate_cross_leg2 = t244 * t301;
-        let t303 = rate_cross_leg2 * rate_cross_leg2;
-        let t304 = t293 + t303;
-        let t307 = t272 * acceleration[1] - t269 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t289
-            + 0.56 * c_rod_leg2 * t304;
-        let t308 = 0.8660254037844387 * acceleration[0];
-        let t309 = 0.5 * acceleration[1];
-        let t310 = t308 + t309;
-        let t312 = t310 + t286 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t243 * (t307 + t245 * t312);
-        let t316 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t243 * (t272 + 0.5 * t245);
-        let t320 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let t321 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t322 = 9.81 * c_arm_leg2;
-        let t326 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t244 * (t294 - garm_vx_leg2 * t258);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t226;
-        let t341 = minus_rate_rod_leg2 * (1.7857142857142858 * t301);
-        let t347 = t287 * rate_arm_leg2;
-        let t348 = t286 * rate_cross_leg2;
-        let t352 = 0.24 * rate_dot_arm_leg2;
-        let t354 = t294 * acceleration[0] - t296 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t347 - (t348 + t348))
-            - c_cross_leg2 * t352;
-        let rate_dot_cross_leg2 = t244 * t354;
-        let t356 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t358 = t341 + t356 + t341;
-        let t359 = minus_s_rod_leg2 * t358;
-        let t361 = t236 * t303;
-        let t362 = t245 * t361;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t239;
-        let t364 = t362 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = t244 * (t296 + t258 * garm_vy_leg2);
-        let t370 = t362 * minus_grod_vy_leg2;
-        let minus_gcross_vz_leg2 = t244 * t255;
-        let t374 = rate_dot_cross_leg2 - t359;
-        let t377 = t245 * t374 + c_rod_leg2 * t358;
-        let t381 = t239 * (t303 * (t227 - t235));
-        let minus_rate_dot_rod_leg2 = t244 * t312;
-        let t389 = t362 + minus_rate_dot_rod_leg2;
-        let t391 = t361 + t293;
-        let t394 = minus_s_rod_leg2 * t389 + c_rod_leg2 * (t391 - t303);
-        let t407 = 1.7857142857142858 * t310;
-        let t417 = t352 - t322;
-        let t420 = t326 - t347 / s_cross_leg2;
-        let t423 = c_rod_leg2 * (c_cross_leg2 * t417 - s_cross_leg2 * t420);
-        let t424 = gcross_vx_leg2 * t423;
-        let t425 = 0.8928571428571429 * t234;
-        let t427 = t245 * t425;
-        let t432 = t425 * t391 + t427 * t389 - t258 * (t239 * t374);
-        let t437 = c_cross_leg2 * t420 + s_cross_leg2 * t417;
-        let t438 = 1.5464739353293548 * t437;
-        let t442 = minus_gcross_vy_leg2 * t423;
-        let t444 = 0.8928571428571429 * t437;
-        let t448 = minus_gcross_vz_leg2 * t423;
-        let t456 = t425 * (minus_rate_dot_rod_leg2 - t362) - t427 * (t304 - t361)
-            + t258 * t358;
-        let t470 = rate_dot_cross_leg2 * t241 + t258 * t303;
-        let t480 = 0.24 * t417;
-        let t486 = t215 + t223 * t223 + t4;
-        let t487 = t225 * t225;
-        let t488 = t486 - t487;
-        let t489 = t486 - 0.3136;
-        let t490 = t488 - t489;
-        let t491 = 3.188775510204082 * t490;
-        ::overact::guard::reach(t491, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t491);
-        let t493 = 0.2688 * c_rod_leg3;
-        let t494 = 0.2688 / t493;
-        let t495 = 0.2304 * t488;
-        let t496 = t489 + 0.0576;
-        let t498 = t495 - t496 * t496;
-        ::overact::guard::reach(t498, "leg3")?;
-        let t499 = ::overact::math::sqrt(t498);
-        let t500 = 0.8928571428571429 * t499;
-        let t501 = t494 * t500;
-        let s_cross_leg3 = 4.166666666666667 * t501;
+        let t292 = 0.8660254037844387 * twist[0];
+        let t293 = 0.5 * twist[1];
+        let t294 = t292 + t293;
+        let t295 = t257 * t294;
+        let t296 = t278 * twist[1] - t275 * twist[0] - s_armcross_leg2 * twist[2] + t295;
+        let rate_arm_leg2 = t256 * t296;
+        let t298 = t266 * rate_arm_leg2;
+        let t300 = minus_grod_vy_leg2 + minus_grod_vy_leg2;
+        let minus_rate_rod_leg2 = t300 * t294;
+        let t302 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t303 = 0.5 * s_armcross_leg2;
+        let t305 = 0.8660254037844387 * s_armcross_leg2;
+        let t310 = t303 * twist[0] - t305 * twist[1] - c_armcross_leg2 * twist[2] - t298;
+        let rate_cross_leg2 = t300 * t310;
+        let t312 = rate_cross_leg2 * rate_cross_leg2;
+        let t316 = t278 * acceleration[1] - t275 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t298
+            + t254 * (t302 + t312);
+        let t317 = 0.8660254037844387 * acceleration[0];
+        let t318 = 0.5 * acceleration[1];
+        let t319 = t317 + t318;
+        let t321 = t319 + t295 * minus_rate_rod_leg2;
+        let t322 = t257 * t321;
+        let rate_dot_arm_leg2 = t256 * (t316 + t322);
+        let t325 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let t327 = t278 + 0.5 * t257;
+        let garm_vy_leg2 = t256 * t327;
+        let t329 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t256;
+        let t331 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t332 = 9.81 * c_arm_leg2;
+        let t336 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t300 * (t303 - garm_vx_leg2 * t266);
+        let t350 = minus_rate_rod_leg2 * (1.7857142857142858 * t310);
+        let t356 = t296 * rate_arm_leg2;
+        let t357 = t295 * rate_cross_leg2;
+        let t361 = c_cross_leg2 / s_cross_leg2;
+        let t363 = t303 * acceleration[0] - t305 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t356 - t357 - t357) - t361 * t316;
+        let rate_dot_cross_leg2 = t300 * (t363 - t361 * t322);
+        let t367 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t369 = t350 + t367 + t350;
+        let t370 = c_rod_leg2 * t369;
+        let t371 = t257 * t370;
+        let t373 = t310 * t310;
+        let t374 = t257 * t373;
+        let t375 = 3.188775510204082 * t374;
+        let minus_grod_vx_leg2 = 1.5464739353293548 / c_rod_leg2;
+        let t377 = t375 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t300 * (t305 + t361 * t327);
+        let t383 = t375 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 / t254 / s_cross_leg2;
+        let t388 = rate_dot_cross_leg2 - t371;
+        let t390 = t257 * t388 + t370;
+        let t392 = t257 * t374;
+        let t394 = (t392 - t373) / c_rod_leg2;
+        let minus_rate_dot_rod_leg2 = t300 * t321;
+        let t404 = 3.188775510204082 * t392;
+        let t407 = minus_s_rod_leg2 * (t375 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t302 - t404);
+        let t416 = gcross_vx_leg2 * t388 + t377;
+        let t418 = t383 - minus_gcross_vy_leg2 * t388;
+        let t419 = minus_gcross_vz_leg2 * t388;
+        let t420 = 1.7857142857142858 * t319;
+        let t428 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t429 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t431 = 0.24 * rate_dot_arm_leg2 - t332;
+        let t432 = 0.24 * t431;
+        let t433 = garm_vx_leg2 * t432;
+        let t441 = garm_vy_leg2 * t432;
+        let t450 = minus_garm_vz_leg2 * t432;
+        let t455 = 0.8928571428571429 * t250;
+        let t463 = t455 * (minus_rate_dot_rod_leg2 - t375) - t257 * t455 * (t404 + t302)
+            + t266 * t369;
+        let t467 = 9.81 * t273 - t356;
+        let t469 = minus_s_rod_leg2 * (c_cross_leg2 * t431 - t467);
+        let t474 = t361 * t467 + s_cross_leg2 * t431;
+        let t488 = rate_dot_cross_leg2 * (t250 * minus_grod_vy_leg2) + t266 * t312;
+        let t499 = t231 + 0.8660254037844387 * t238;
+        let t500 = t499 * t499;
+        let t501 = t500 + t4;
+        let t502 = 0.2304 * t501;
+        let t506 = t500 + t240 * t240 + t4 - 0.3136;
+        let t507 = t506 + 0.0576;
+        let t509 = t502 - t507 * t507;
+        ::overact::guard::reach(t509, "leg3")?;
+        let t510 = ::overact::math::sqrt(t509);
+        let t513 = 3.188775510204082 * (t501 - t506);
+        ::overact::guard::reach(t513, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t513);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t515 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t510 / t515;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t503 = 4.166666666666667 / s_cross_leg3;
-        let t506 = 0.48 * (t249 + 0.8660254037844387 * t223);
-        let s_arm_leg3 = (t506 * t499 - t11 * t496) / t495;
-        let t511 = s_arm_leg3 / s_cross_leg3;
-        let c_cross_leg3 = (-0.0576 + t489) / t493;
-        let minus_c_arm_leg3 = (t506 * t496 + t11 * t499) / t495;
+        let t517 = 1.0 / s_cross_leg3;
+        let t518 = 4.166666666666667 * t517;
+        let t519 = 0.48 * t499;
+        let minus_c_arm_leg3 = (t519 * t507 + t11 * t510) / t502;
+        let minus_grod_vy_leg3 = 0.5 / t515;
+        let t526 = (-0.0576 + t506) * minus_grod_vy_leg3;
+        let c_cross_leg3 = 4.166666666666667 * t526;
+        let s_arm_leg3 = (t519 * t510 - t11 * t507) / t502;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t535 = 0.5 * minus_c_armcross_leg3;
+        let t536 = 1.7857142857142858 / c_rod_leg3;
+        let t537 = t240 * t536;
+        let garm_vx_leg3 = t518 * (t535 + 0.8660254037844387 * t537);
+        let t542 = 0.8660254037844387 * minus_c_armcross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t521 = c_cross_leg3 / s_cross_leg3;
-        let minus_c_armcross_leg3 = t511 - s_armcross_leg3 * t521;
-        let t524 = 0.5 * minus_c_armcross_leg3;
-        let t525 = 1.7857142857142858 * t494;
-        let t526 = t225 * t525;
-        let t528 = t524 + 0.8660254037844387 * t526;
-        let garm_vx_leg3 = t503 * t528;
-        let t531 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t541 = t283 - t284;
-        let t542 = t526 * t541;
-        let t543 = t524 * twist[0] + t531 * twist[1] - s_armcross_leg3 * twist[2] + t542;
-        let rate_arm_leg3 = t503 * t543;
-        let t545 = 0.24 * c_cross_leg3;
-        let t546 = t545 * rate_arm_leg3;
-        let rate_rod_leg3 = t525 * t541;
-        let t550 = rate_rod_leg3 * rate_rod_leg3;
-        let t551 = 0.5 * s_armcross_leg3;
-        let t553 = 0.8660254037844387 * s_armcross_leg3;
-        let t558 = t551 * twist[0] + t553 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t546;
-        let rate_cross_leg3 = t525 * t558;
-        let t560 = rate_cross_leg3 * rate_cross_leg3;
-        let t561 = t550 + t560;
-        let t564 = t524 * acceleration[0] + t531 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + rate_arm_leg3 * t546
-            + 0.56 * c_rod_leg3 * t561;
-        let t565 = t308 - t309;
-        let t567 = t565 + t225 * t550;
-        let t569 = t564 + t526 * t567;
-        let rate_dot_arm_leg3 = t503 * t569;
-        let t571 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t503 * (t531 - 0.5 * t526);
-        let t575 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t503;
-        let t577 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t578 = 9.81 * minus_c_arm_leg3;
-        let t582 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t525 * (t551 - t528 * t521);
-        let t595 = 1.7857142857142858 * t558;
-        let t596 = rate_rod_leg3 * t595;
-        let s_rod_leg3 = 1.7857142857142858 * t225;
-        let t603 = t543 * rate_arm_leg3;
-        let t604 = t542 * rate_cross_leg3;
-        let t609 = t551 * acceleration[0] + t553 * acceleration[1]
-            + minus_c_armcross_leg3 * acceleration[2] - (t603 - (t604 + t604))
-            - t521 * t569;
-        let rate_dot_cross_leg3 = t525 * t609;
-        let t611 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t613 = t596 + t611 + t596;
-        let t614 = c_rod_leg3 * t613;
-        let t615 = t526 * t614;
-        let t617 = t595 * t595;
-        let t618 = t526 * t617;
-        let grod_vx_leg3 = 1.5464739353293548 * t494;
-        let t620 = t618 * grod_vx_leg3;
-        let gcross_vy_leg3 = t525 * (t553 - t545 * garm_vy_leg3);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t494;
-        let t627 = t618 * minus_grod_vy_leg3;
-        let gcross_vz_leg3 = t525 * t511;
-        let t631 = rate_dot_cross_leg3 - t615;
-        let t633 = t614 + t526 * t631;
-        let t637 = t494 * (t560 * (t487 - t490));
-        let rate_dot_rod_leg3 = t525 * t567;
-        let t645 = t618 + rate_dot_rod_leg3;
-        let t647 = t617 + t550;
-        let t650 = s_rod_leg3 * t645 + c_rod_leg3 * (t647 - t560);
-        let t663 = 1.7857142857142858 * t565;
-        let t674 = t603 + s_cross_leg3 * t582;
-        let t676 = t578 + 0.24 * rate_dot_arm_leg3;
-        let t679 = c_rod_leg3 * (t674 + c_cross_leg3 * t676);
-        let t680 = gcross_vx_leg3 * t679;
-        let t682 = s_rod_leg3 * t501;
-        let t687 = t500 * t647 + t682 * t645 - t545 * (t494 * t631);
-        let t692 = s_cross_leg3 * t676 - t521 * t674;
-        let t693 = 1.5464739353293548 * t692;
-        let t696 = gcross_vy_leg3 * t679;
-        let t699 = 0.8928571428571429 * t692;
-        let t703 = gcross_vz_leg3 * t679;
-        let t711 = t500 * (t618 - rate_dot_rod_leg3) + t682 * (t561 - t617)
-            - t545 * t613;
-        let t725 = rate_dot_cross_leg3 * t501 + t545 * t560;
-        let t735 = 0.24 * t676;
+        let t555 = t292 - t293;
+        let t557 = t535 * twist[0] + t542 * twist[1] - s_armcross_leg3 * twist[2]
+            + t537 * t555;
+        let rate_arm_leg3 = t518 * t557;
+        let t559 = t557 * rate_arm_leg3;
+        let t560 = t517 * t559;
+        let t562 = 0.5 * s_armcross_leg3;
+        let t564 = 0.8660254037844387 * s_armcross_leg3;
+        let t569 = c_cross_leg3 * t517;
+        let t571 = t562 * twist[0] + t564 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t557 * t569;
+        let t572 = t571 * t571;
+        let t573 = 3.188775510204082 * t572;
+        let t574 = t537 * t573;
+        let t575 = t537 * t574;
+        let rate_rod_leg3 = t536 * t555;
+        let t577 = rate_rod_leg3 * rate_rod_leg3;
+        let t578 = t575 + t577;
+        let t579 = t578 + t573;
+        let t583 = t317 - t318;
+        let t585 = t583 + t240 * t577;
+        let t587 = t535 * acceleration[0] + t542 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + c_cross_leg3 * t560 + t515 * t579
+            + t537 * t585;
+        let rate_dot_arm_leg3 = t518 * t587;
+        let t589 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let t591 = t542 - 0.5 * t537;
+        let garm_vy_leg3 = t518 * t591;
+        let t593 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t518;
+        let t595 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t596 = 9.81 * minus_c_arm_leg3;
+        let t600 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t536 * (t562 - garm_vx_leg3 * t526);
+        let t613 = rate_rod_leg3 * t571;
+        let t614 = 1.7857142857142858 * t613;
+        let t620 = t537 * t613;
+        let t624 = 0.24 * rate_dot_arm_leg3;
+        let t626 = t562 * acceleration[0] + t564 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2] - (t559 - t620 - t620)
+            - c_cross_leg3 * t624;
+        let rate_dot_cross_leg3 = t536 * t626;
+        let t628 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t630 = t614 + t628 + t614;
+        let t631 = s_rod_leg3 * t630;
+        let grod_vx_leg3 = 0.8660254037844387 * t536;
+        let t634 = t574 * grod_vx_leg3;
+        let gcross_vy_leg3 = t536 * (t564 - t569 * t591);
+        let t640 = t574 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t517 * (s_arm_leg3 * t536);
+        let t646 = rate_dot_cross_leg3 - t631;
+        let t648 = c_rod_leg3 * t630 + t537 * t646;
+        let t652 = (0.3136 * t575 - t572) / c_rod_leg3;
+        let rate_dot_rod_leg3 = t536 * t585;
+        let t664 = s_rod_leg3 * (t574 + rate_dot_rod_leg3) + c_rod_leg3 * (t577 - t575);
+        let t673 = gcross_vx_leg3 * t646 + t634;
+        let t675 = gcross_vy_leg3 * t646 - t640;
+        let t676 = gcross_vz_leg3 * t646;
+        let t677 = 1.7857142857142858 * t583;
+        let t685 = grod_vx_leg3 * rate_dot_rod_leg3;
+        let t686 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t687 = t596 + t624;
+        let t688 = 0.24 * t687;
+        let t689 = garm_vx_leg3 * t688;
+        let t697 = garm_vy_leg3 * t688;
+        let t706 = minus_garm_vz_leg3 * t688;
+        let t711 = 0.8928571428571429 * t510;
+        let t718 = t711 * (t574 - rate_dot_rod_leg3) + t537 * t711 * t578 - t526 * t630;
+        let t720 = t600 + t560;
+        let t724 = s_rod_leg3 * (s_cross_leg3 * t720 + c_cross_leg3 * t687);
+        let t729 = s_cross_leg3 * t687 - c_cross_leg3 * t720;
+        let t744 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t526 * (t579 - t577);
         Ok([
             [
-                t70, -(garm_vx_leg1 * t75), -(garm_vx_leg1 * t79), t70,
+                t74, -(garm_vx_leg1 * t79), -(garm_vx_leg1 * t83), t74,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t110, -(minus_gcross_vx_leg1 * t122),
-                -(minus_gcross_vx_leg1 * t138), -(minus_gcross_vx_leg1 * t120),
-                -(minus_gcross_vx_leg1 * t148), 0.0,
-                garm_vx_leg1 * t162 - minus_gcross_vx_leg1 * t170,
-                garm_vx_leg1 * t184 + minus_gcross_vx_leg1 * t186,
-                garm_vx_leg1 * t202 - minus_gcross_vx_leg1 * t194, garm_vx_leg1 * t174, t316,
-                -(garm_vx_leg2 * t322), -(garm_vx_leg2 * t326), t316, garm_vx_leg2 * rate_arm_leg2,
-                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                gcross_vx_leg2 * t359 - t364, -(gcross_vx_leg2 * t377 + 4.9313582121471775 * t381),
-                gcross_vx_leg2 * t394 + minus_grod_vx_leg2 * t356, gcross_vx_leg2 * t374 + t364,
-                -(gcross_vx_leg2 * t407 + 1.5464739353293548 * rate_dot_cross_leg2),
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                t424 - garm_vx_leg2 * t432 - t245 * t438, garm_vx_leg2 * t456 + t245 * t424 + t438,
-                garm_vx_leg2 * t470 + gcross_vx_leg2 * t437, garm_vx_leg2 * t480, t571,
-                garm_vx_leg3 * t578, garm_vx_leg3 * t582, t571, garm_vx_leg3 * rate_arm_leg3,
-                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg3,
-                gcross_vx_leg3 * t615 - t620, gcross_vx_leg3 * t633 + 4.9313582121471775 * t637,
-                gcross_vx_leg3 * t650 + grod_vx_leg3 * t611, gcross_vx_leg3 * t631 + t620,
-                gcross_vx_leg3 * t663 + 1.5464739353293548 * rate_dot_cross_leg3,
-                grod_vx_leg3 * rate_dot_rod_leg3, t680 - garm_vx_leg3 * t687 - t526 * t693,
-                garm_vx_leg3 * t711 - t526 * t680 - t693,
-                garm_vx_leg3 * t725 + gcross_vx_leg3 * t692, garm_vx_leg3 * t735, acceleration[0],
+                garm_vx_leg1, minus_gcross_vx_leg1 * t115, -(minus_gcross_vx_leg1 * t127),
+                -(minus_gcross_vx_leg1 * t144), -t150, -(minus_gcross_vx_leg1 * t154), 0.0,
+                t161
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t164 - 5.444444444444445 * t150),
+                garm_vx_leg1 * t194 + minus_gcross_vx_leg1 * t201,
+                garm_vx_leg1 * t217 - minus_gcross_vx_leg1 * t209,
+                t164,
+                t325,
+                -(garm_vx_leg2 * t332),
+                -(garm_vx_leg2 * t336),
+                t325,
+                garm_vx_leg2 * rate_arm_leg2,
+                ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
+                garm_vx_leg2,
+                gcross_vx_leg2 * t371 - t377,
+                -(gcross_vx_leg2 * t390 + 4.9313582121471775 * t394),
+                gcross_vx_leg2 * t407 + minus_grod_vx_leg2 * t367,
+                t416,
+                -(gcross_vx_leg2 * t420 + 1.5464739353293548 * rate_dot_cross_leg2),
+                t428,
+                t161
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t433 + 5.444444444444445 * t416
+                            + 5.444444444444445 * t428),
+                garm_vx_leg2 * t463 + gcross_vx_leg2 * t469 + 1.5464739353293548 * t474,
+                garm_vx_leg2 * t488 + gcross_vx_leg2 * t474,
+                t433,
+                t589,
+                garm_vx_leg3 * t596,
+                garm_vx_leg3 * t600,
+                t589,
+                garm_vx_leg3 * rate_arm_leg3,
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
+                garm_vx_leg3,
+                gcross_vx_leg3 * t631 - t634,
+                gcross_vx_leg3 * t648 + 4.9313582121471775 * t652,
+                gcross_vx_leg3 * t664 + grod_vx_leg3 * t628,
+                t673,
+                gcross_vx_leg3 * t677 + 1.5464739353293548 * rate_dot_cross_leg3,
+                t685,
+                t161
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t689 + 5.444444444444445 * t673
+                            + 5.444444444444445 * t685),
+                garm_vx_leg3 * t718 - gcross_vx_leg3 * t724 - 1.5464739353293548 * t729,
+                garm_vx_leg3 * t744 + gcross_vx_leg3 * t729,
+                t689,
+                acceleration[0],
             ],
             [
-                t72, -(garm_vy_leg1 * t75), -(garm_vy_leg1 * t79), t72,
+                t76, -(garm_vy_leg1 * t79), -(garm_vy_leg1 * t83), t76,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t110 - t116,
-                -(grod_vy_leg1 * (t126 - (t125 + t60)) + minus_gcross_vy_leg1 * t122),
-                -(minus_gcross_vy_leg1 * t138 + grod_vy_leg1 * t106),
-                t116 - minus_gcross_vy_leg1 * t120,
-                -(minus_gcross_vy_leg1 * t148
+                garm_vy_leg1, minus_gcross_vy_leg1 * t115 - t121,
+                5.694241982507289 * (t48 * (t129 - t60 * t60))
+                    - minus_gcross_vy_leg1 * t127,
+                -(minus_gcross_vy_leg1 * t144 + grod_vy_leg1 * t111),
+                t152,
+                -(minus_gcross_vy_leg1 * t154
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                grod_vy_leg1 * rate_dot_rod_leg1,
-                garm_vy_leg1 * t162 - 1.7857142857142858 * t175,
-                garm_vy_leg1 * t184 + minus_gcross_vy_leg1 * t186
-                    - 1.7857142857142858 * t194,
-                garm_vy_leg1 * t202 - minus_gcross_vy_leg1 * t194,
-                t175,
-                t320,
-                -(garm_vy_leg2 * t322),
-                -(garm_vy_leg2 * t326),
-                t320,
+                t160,
+                t154
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t170 + 5.444444444444445 * t152
+                            + 5.444444444444445 * t160),
+                garm_vy_leg1 * t194 + minus_gcross_vy_leg1 * t201
+                    - 1.7857142857142858 * t209,
+                garm_vy_leg1 * t217 - minus_gcross_vy_leg1 * t209,
+                t170,
+                t329,
+                -(garm_vy_leg2 * t332),
+                -(garm_vy_leg2 * t336),
+                t329,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t359 + t370),
-                -(2.8471209912536444 * t381 - minus_gcross_vy_leg2 * t377),
-                minus_grod_vy_leg2 * t356 - minus_gcross_vy_leg2 * t394,
-                t370 - minus_gcross_vy_leg2 * t374,
-                minus_gcross_vy_leg2 * t407 - 0.8928571428571429 * rate_dot_cross_leg2,
-                minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(garm_vy_leg2 * t432 + t442 + t245 * t444),
-                garm_vy_leg2 * t456 - t245 * t442 + t444,
-                garm_vy_leg2 * t470 - minus_gcross_vy_leg2 * t437,
-                garm_vy_leg2 * t480,
-                t575,
-                garm_vy_leg3 * t578,
-                garm_vy_leg3 * t582,
-                t575,
+                -(minus_gcross_vy_leg2 * t371 + t383),
+                -(2.8471209912536444 * t394 - minus_gcross_vy_leg2 * t390),
+                minus_grod_vy_leg2 * t367 - minus_gcross_vy_leg2 * t407,
+                t418,
+                minus_gcross_vy_leg2 * t420 - 0.8928571428571429 * rate_dot_cross_leg2,
+                t429,
+                t154
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t441 + 5.444444444444445 * t418
+                            + 5.444444444444445 * t429),
+                garm_vy_leg2 * t463 - minus_gcross_vy_leg2 * t469
+                    + 0.8928571428571429 * t474,
+                garm_vy_leg2 * t488 - minus_gcross_vy_leg2 * t474,
+                t441,
+                t593,
+                garm_vy_leg3 * t596,
+                garm_vy_leg3 * t600,
+                t593,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t615 + t627,
-                gcross_vy_leg3 * t633 - 2.8471209912536444 * t637,
-                gcross_vy_leg3 * t650 - minus_grod_vy_leg3 * t611,
-                gcross_vy_leg3 * t631 - t627,
-                gcross_vy_leg3 * t663 - 0.8928571428571429 * rate_dot_cross_leg3,
-                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                t696 - garm_vy_leg3 * t687 + t526 * t699,
-                garm_vy_leg3 * t711 - t526 * t696 + t699,
-                garm_vy_leg3 * t725 + gcross_vy_leg3 * t692,
-                garm_vy_leg3 * t735,
+                gcross_vy_leg3 * t631 + t640,
+                gcross_vy_leg3 * t648 - 2.8471209912536444 * t652,
+                gcross_vy_leg3 * t664 - minus_grod_vy_leg3 * t628,
+                t675,
+                gcross_vy_leg3 * t677 - 0.8928571428571429 * rate_dot_cross_leg3,
+                -t686,
+                t154
+                    - 0.10285714285714286
+                        * (17.36111111111111 * t697 + 5.444444444444445 * t675
+                            - 5.444444444444445 * t686),
+                garm_vy_leg3 * t718 - gcross_vy_leg3 * t724 + 0.8928571428571429 * t729,
+                garm_vy_leg3 * t744 + gcross_vy_leg3 * t729,
+                t697,
                 acceleration[1],
             ],
             [
-                -t74, minus_garm_vz_leg1 * t75, minus_garm_vz_leg1 * t79, -t74,
+                -t78, minus_garm_vz_leg1 * t79, minus_garm_vz_leg1 * t83, -t78,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t110, -(minus_gcross_vz_leg1 * t122),
-                -(minus_gcross_vz_leg1 * t138), -(minus_gcross_vz_leg1 * t120),
-                -(minus_gcross_vz_leg1 * t148), 0.0,
-                -(minus_garm_vz_leg1 * t162 + minus_gcross_vz_leg1 * t170),
-                minus_gcross_vz_leg1 * t186 - minus_garm_vz_leg1 * t184,
-                -(minus_garm_vz_leg1 * t202 + minus_gcross_vz_leg1 * t194),
-                -(minus_garm_vz_leg1 * t174), -t321, minus_garm_vz_leg2 * t322,
-                minus_garm_vz_leg2 * t326, -t321, -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                -(minus_gcross_vz_leg2 * t359), minus_gcross_vz_leg2 * t377,
-                -(minus_gcross_vz_leg2 * t394), -(minus_gcross_vz_leg2 * t374),
-                minus_gcross_vz_leg2 * t407, 0.0, minus_garm_vz_leg2 * t432 - t448,
-                -(t245 * t448 + minus_garm_vz_leg2 * t456),
-                -(minus_gcross_vz_leg2 * t437 + minus_garm_vz_leg2 * t470),
-                -(minus_garm_vz_leg2 * t480), -t577, -(minus_garm_vz_leg3 * t578),
-                -(minus_garm_vz_leg3 * t582), -t577, -(minus_garm_vz_leg3 * rate_arm_leg3),
-                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t615, gcross_vz_leg3 * t633, gcross_vz_leg3 * t650,
-                gcross_vz_leg3 * t631, gcross_vz_leg3 * t663, 0.0, minus_garm_vz_leg3 * t687 + t703,
-                -(minus_garm_vz_leg3 * t711 + t526 * t703),
-                gcross_vz_leg3 * t692 - minus_garm_vz_leg3 * t725, -(minus_garm_vz_leg3 * t735),
-                acceleration[2] + 9.81,
+                minus_gcross_vz_leg1 * t115, -(minus_gcross_vz_leg1 * t127),
+                -(minus_gcross_vz_leg1 * t144), -t153, -(minus_gcross_vz_leg1 * t154), 0.0,
+                t179
+                    + 0.10285714285714286
+                        * (17.36111111111111 * t180 + 5.444444444444445 * t153),
+                minus_gcross_vz_leg1 * t201 - minus_garm_vz_leg1 * t194,
+                -(minus_garm_vz_leg1 * t217 + minus_gcross_vz_leg1 * t209),
+                -t180,
+                -t331,
+                minus_garm_vz_leg2 * t332,
+                minus_garm_vz_leg2 * t336,
+                -t331,
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
+                -minus_garm_vz_leg2,
+                -(minus_gcross_vz_leg2 * t371),
+                minus_gcross_vz_leg2 * t390,
+                -(minus_gcross_vz_leg2 * t407),
+                -t419,
+                minus_gcross_vz_leg2 * t420,
+                0.0,
+                t179
+                    + 0.10285714285714286
+                        * (5.444444444444445 * t419 + 17.36111111111111 * t450),
+                -(minus_gcross_vz_leg2 * t469 + minus_garm_vz_leg2 * t463),
+                -(minus_gcross_vz_leg2 * t474 + minus_garm_vz_leg2 * t488),
+                -t450,
+                -t595,
+                -(minus_garm_vz_leg3 * t596),
+                -(minus_garm_vz_leg3 * t600),
+                -t595,
+                -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
+                -minus_garm_vz_leg3,
+                gcross_vz_leg3 * t631,
+                gcross_vz_leg3 * t648,
+                gcross_vz_leg3 * t664,
+                t676,
+                gcross_vz_leg3 * t677,
+                0.0,
+                t179
+                    - 0.10285714285714286
+                        * (5.444444444444445 * t676 - 17.36111111111111 * t706),
+                -(minus_garm_vz_leg3 * t718 + gcross_vz_leg3 * t724),
+                gcross_vz_leg3 * t729 - minus_garm_vz_leg3 * t744,
+                -t706,
+                t178,
             ],
         ])
     }
@@ -2082,7 +2147,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 636 operations (194 additions, 420 multiplications, 22 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 522 intermediates.
+    /// 642 operations (195 additions, 431 multiplications, 16 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 528 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2121,10 +2186,9 @@ impl Delta {
         let t34 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
         let t36 = rate_rod_leg1 * rate_rod_leg1;
-        let t37 = t34 + t36;
         let t42 = acceleration[1] + t21 * rate_rod_leg1;
         let t44 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + rate_arm_leg1 * t25 + 0.56 * c_rod_leg1 * t37 + t20 * t42;
+            + rate_arm_leg1 * t25 + 0.56 * c_rod_leg1 * (t34 + t36) + t20 * t42;
         let rate_dot_arm_leg1 = t10 * t44;
         let t46 = garm_vx_leg1 * rate_dot_arm_leg1;
         let garm_vy_leg1 = t10 * t20;
@@ -2137,319 +2201,321 @@ impl Delta {
         let minus_gcross_vx_leg1 = c_arm_leg1 * t65;
         let t67 = 1.7857142857142858 * t32;
         let t68 = rate_rod_leg1 * t67;
-        let t73 = t22 * rate_arm_leg1;
-        let t74 = t21 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t24 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t73 + t74 + t74);
-        let t80 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t82 = t68 + t80 + t68;
-        let t83 = c_rod_leg1 * t82;
-        let t84 = t20 * t83;
+        let t69 = 0.24 * rate_dot_arm_leg1;
+        let t74 = t22 * rate_arm_leg1;
+        let t75 = t21 * minus_rate_cross_leg1;
+        let t76 = t75 + t75;
+        let t79 = c_cross_leg1 * t69 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t74 + t76;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t79;
+        let t81 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t83 = t68 + t81 + t68;
+        let t84 = s_rod_leg1 * t83;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t24 * garm_vy_leg1);
         let t89 = t67 * t67;
         let t90 = t20 * t89;
         let t91 = grod_vy_leg1 * t90;
         let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t65;
-        let t95 = t84 - minus_rate_dot_cross_leg1;
-        let t96 = t95 / c_rod_leg1;
-        let t98 = s_rod_leg1 * t96 - t83;
-        let t100 = t89 + t36;
-        let t101 = t37 - t89;
+        let t96 = 1.7857142857142858 * (t76 - t79);
+        let t97 = c_rod_leg1 * t96;
+        let t100 = t20 * t97 - c_rod_leg1 * t83;
+        let t102 = t20 * t90;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t42;
-        let t108 = t90 + rate_dot_rod_leg1;
-        let t112 = s_rod_leg1 * t108 + c_rod_leg1 * (t100 - t34);
-        let t122 = 1.7857142857142858 * acceleration[1];
-        let t130 = 0.24 * s_cross_leg1;
-        let t131 = c_rod_leg1 * t130;
-        let t133 = t130 * s_rod_leg1;
-        let t136 = t24 * t96 - (t131 * t100 + t133 * t108);
-        let t139 = t55 + t73 / s_cross_leg1;
-        let t142 = 0.24 * rate_dot_arm_leg1 - t51;
-        let t144 = s_cross_leg1 * t139 + c_cross_leg1 * t142;
-        let t145 = c_rod_leg1 * t144;
-        let t149 = 0.24 * t142;
-        let t150 = garm_vy_leg1 * t149;
-        let t161 = t131 * (t90 - rate_dot_rod_leg1) + t133 * t101 + t24 * t82;
-        let t163 = s_rod_leg1 * t144;
-        let t171 = s_cross_leg1 * t142 - c_cross_leg1 * t139;
-        let t179 = t24 * t34 - t130 * minus_rate_dot_cross_leg1;
-        let t193 = 4.166666666666667 / s_cross_leg2;
+        let t109 = t90 + rate_dot_rod_leg1;
+        let t113 = s_rod_leg1 * t109 + c_rod_leg1 * (t36 - t102);
+        let t123 = 1.7857142857142858 * acceleration[1];
+        let t131 = 0.24 * s_cross_leg1;
+        let t132 = c_rod_leg1 * t131;
+        let t135 = t131 * s_rod_leg1;
+        let t138 = t24 * t96 - (t132 * (t89 + t36) + t135 * t109);
+        let t141 = t55 + t74 / s_cross_leg1;
+        let t143 = t69 - t51;
+        let t145 = s_cross_leg1 * t141 + c_cross_leg1 * t143;
+        let t146 = c_rod_leg1 * t145;
+        let t150 = 0.24 * t143;
+        let t151 = garm_vy_leg1 * t150;
+        let t163 = t132 * (t90 - rate_dot_rod_leg1) + t135 * (t102 + t36) + t24 * t83;
+        let t165 = s_rod_leg1 * t145;
+        let t173 = s_cross_leg1 * t143 - c_cross_leg1 * t141;
+        let t181 = t24 * t34 - t131 * minus_rate_dot_cross_leg1;
+        let t195 = 4.166666666666667 / s_cross_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t202 = 0.5 * c_armcross_leg2;
-        let t205 = s_rod_leg2 / c_rod_leg2;
-        let minus_garm_vx_leg2 = t193 * (t202 + 0.8660254037844387 * t205);
-        let t209 = 0.8660254037844387 * c_armcross_leg2;
-        let t220 = 0.8660254037844387 * twist[0];
-        let t221 = 0.5 * twist[1];
-        let t222 = t220 + t221;
-        let t223 = t205 * t222;
-        let t224 = t209 * twist[1] - t202 * twist[0] - s_armcross_leg2 * twist[2] - t223;
-        let rate_arm_leg2 = t193 * t224;
-        let t226 = 0.24 * c_cross_leg2;
-        let t227 = t226 * rate_arm_leg2;
-        let t230 = 0.5 * s_armcross_leg2;
-        let t232 = 0.8660254037844387 * s_armcross_leg2;
-        let t237 = t230 * twist[0] - t232 * twist[1] - c_armcross_leg2 * twist[2] - t227;
-        let t238 = t237 * t237;
-        let t239 = 3.188775510204082 * t238;
-        let t240 = t205 * t237;
-        let t241 = t240 * t240;
-        let t242 = 3.188775510204082 * t241;
-        let t243 = 1.7857142857142858 / c_rod_leg2;
-        let minus_rate_rod_leg2 = t243 * t222;
-        let t245 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t246 = t242 + t245;
-        let t247 = t239 + t246;
-        let t250 = t209 * acceleration[1] - t202 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t227
-            + 0.56 * c_rod_leg2 * t247;
-        let t251 = 0.8660254037844387 * acceleration[0];
-        let t252 = 0.5 * acceleration[1];
-        let t253 = t251 + t252;
-        let t255 = t253 - t223 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t193 * (t250 - t205 * t255);
-        let t259 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = t193 * (t209 - 0.5 * t205);
-        let t263 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t193;
-        let t265 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t266 = 9.81 * c_arm_leg2;
-        let t270 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = t243 * (t230 + minus_garm_vx_leg2 * t226);
-        let t288 = t224 * rate_arm_leg2;
-        let t289 = minus_rate_rod_leg2 * t240;
-        let t293 = 0.24 * rate_dot_arm_leg2;
-        let t295 = t230 * acceleration[0] - t232 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t288 + t289 + t289)
-            - c_cross_leg2 * t293;
-        let rate_dot_cross_leg2 = t243 * t295;
-        let t297 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t299 = minus_rate_rod_leg2 * (1.7857142857142858 * t237);
-        let t301 = t297 - t299 - t299;
-        let t302 = s_rod_leg2 * t301;
-        let t304 = t205 * t239;
-        let minus_grod_vx_leg2 = 1.5464739353293548 / c_rod_leg2;
-        let t306 = t304 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = t243 * (t232 + t226 * garm_vy_leg2);
+        let t204 = 0.5 * c_armcross_leg2;
+        let t207 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t195 * (t204 + 0.8660254037844387 * t207);
+        let t211 = 0.8660254037844387 * c_armcross_leg2;
+        let t222 = 0.8660254037844387 * twist[0];
+        let t223 = 0.5 * twist[1];
+        let t224 = t222 + t223;
+        let t225 = t207 * t224;
+        let t226 = t211 * twist[1] - t204 * twist[0] - s_armcross_leg2 * twist[2] - t225;
+        let rate_arm_leg2 = t195 * t226;
+        let t228 = 0.24 * c_cross_leg2;
+        let t229 = t228 * rate_arm_leg2;
+        let t232 = 1.7857142857142858 / c_rod_leg2;
+        let minus_rate_rod_leg2 = t232 * t224;
+        let t234 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t235 = 0.5 * s_armcross_leg2;
+        let t237 = 0.8660254037844387 * s_armcross_leg2;
+        let t242 = t235 * twist[0] - t237 * twist[1] - c_armcross_leg2 * twist[2] - t229;
+        let t243 = t207 * t242;
+        let t244 = t243 * t243;
+        let t245 = 3.188775510204082 * t244;
+        let t246 = t242 * t242;
+        let t247 = 3.188775510204082 * t246;
+        let t248 = t245 + t247;
+        let t252 = t211 * acceleration[1] - t204 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t229
+            + 0.56 * c_rod_leg2 * (t234 + t248);
+        let t253 = 0.8660254037844387 * acceleration[0];
+        let t254 = 0.5 * acceleration[1];
+        let t255 = t253 + t254;
+        let t257 = t255 - t225 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t195 * (t252 - t207 * t257);
+        let t261 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = t195 * (t211 - 0.5 * t207);
+        let t265 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t195;
+        let t267 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t268 = 9.81 * c_arm_leg2;
+        let t272 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = t232 * (t235 + minus_garm_vx_leg2 * t228);
+        let t290 = t226 * rate_arm_leg2;
+        let t291 = minus_rate_rod_leg2 * t243;
+        let t292 = t291 + t291;
+        let t296 = t235 * acceleration[0] - t237 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t290 + t292)
+            - t228 * rate_dot_arm_leg2;
+        let rate_dot_cross_leg2 = t232 * t296;
+        let t298 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t300 = minus_rate_rod_leg2 * (1.7857142857142858 * t242);
+        let t302 = t298 - t300 - t300;
+        let t303 = c_rod_leg2 * t302;
+        let t304 = t207 * t303;
+        let t306 = t207 * t247;
+        let minus_grod_vx_leg2 = 0.8660254037844387 * t232;
+        let t308 = t306 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t232 * (t237 + t228 * garm_vy_leg2);
         let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
-        let t313 = t304 * minus_grod_vy_leg2;
-        let gcross_vz_leg2 = t243 * (s_arm_leg2 / s_cross_leg2);
-        let t318 = rate_dot_cross_leg2 - t302;
-        let t321 = t205 * t318 + c_rod_leg2 * t301;
-        let t324 = (t241 - t238) / c_rod_leg2;
-        let minus_rate_dot_rod_leg2 = t243 * t255;
-        let t332 = t304 - minus_rate_dot_rod_leg2;
-        let t336 = s_rod_leg2 * t332 + c_rod_leg2 * (t245 - t242);
-        let t349 = 1.7857142857142858 * t253;
-        let t360 = t270 + t288 / s_cross_leg2;
-        let t362 = t293 - t266;
-        let t365 = c_rod_leg2 * (s_cross_leg2 * t360 + c_cross_leg2 * t362);
-        let t366 = gcross_vx_leg2 * t365;
-        let t369 = 0.24 * s_cross_leg2;
-        let t370 = c_rod_leg2 * t369;
-        let t373 = t369 * s_rod_leg2;
-        let t376 = t226 * (t318 / c_rod_leg2) - (t370 * (t239 + t245) + t373 * t332);
-        let t381 = s_cross_leg2 * t362 - c_cross_leg2 * t360;
-        let t382 = 1.5464739353293548 * t381;
-        let t386 = minus_gcross_vy_leg2 * t365;
-        let t388 = 0.8928571428571429 * t381;
-        let t391 = gcross_vz_leg2 * t365;
-        let t399 = t370 * (t304 + minus_rate_dot_rod_leg2) + t373 * t246 - t226 * t301;
-        let t415 = t369 * rate_dot_cross_leg2 + t226 * (t247 - t245);
-        let t424 = 0.24 * t362;
-        let t430 = 4.166666666666667 / s_cross_leg3;
-        let t433 = s_rod_leg3 / c_rod_leg3;
+        let t315 = t306 * minus_grod_vy_leg2;
+        let gcross_vz_leg2 = t232 * (s_arm_leg2 / s_cross_leg2);
+        let t321 = 1.7857142857142858 * (t296 + t292);
+        let t322 = c_rod_leg2 * t321;
+        let t324 = t207 * t322 + t303;
+        let t327 = (t244 - t246) / c_rod_leg2;
+        let minus_rate_dot_rod_leg2 = t232 * t257;
+        let t335 = t306 - minus_rate_dot_rod_leg2;
+        let t339 = s_rod_leg2 * t335 + c_rod_leg2 * (t234 - t245);
+        let t352 = 1.7857142857142858 * t255;
+        let t363 = t272 + t290 / s_cross_leg2;
+        let t366 = 0.24 * rate_dot_arm_leg2 - t268;
+        let t369 = c_rod_leg2 * (s_cross_leg2 * t363 + c_cross_leg2 * t366);
+        let t370 = gcross_vx_leg2 * t369;
+        let t372 = 0.24 * s_cross_leg2;
+        let t373 = c_rod_leg2 * t372;
+        let t376 = t372 * s_rod_leg2;
+        let t379 = t228 * t321 - (t373 * (t247 + t234) + t376 * t335);
+        let t384 = s_cross_leg2 * t366 - c_cross_leg2 * t363;
+        let t385 = 1.5464739353293548 * t384;
+        let t389 = minus_gcross_vy_leg2 * t369;
+        let t391 = 0.8928571428571429 * t384;
+        let t394 = gcross_vz_leg2 * t369;
+        let t403 = t373 * (t306 + minus_rate_dot_rod_leg2) + t376 * (t245 + t234)
+            - t228 * t302;
+        let t418 = t372 * rate_dot_cross_leg2 + t228 * t248;
+        let t427 = 0.24 * t366;
+        let t433 = 4.166666666666667 / s_cross_leg3;
+        let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
+        let t437 = minus_grod_vy_leg3 + minus_grod_vy_leg3;
+        let t438 = 0.56 * t437;
+        let t439 = s_rod_leg3 * t438;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t443 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t430 * (0.8660254037844387 * t433 - t443);
-        let t446 = t220 - t221;
-        let t447 = t433 * t446;
-        let t449 = 0.8660254037844387 * c_armcross_leg3;
-        let t454 = t447
-            - (t443 * twist[0] + t449 * twist[1] + s_armcross_leg3 * twist[2]);
-        let rate_arm_leg3 = t430 * t454;
-        let t456 = t454 * rate_arm_leg3;
-        let t457 = t456 / s_cross_leg3;
-        let t460 = 1.7857142857142858 / c_rod_leg3;
-        let rate_rod_leg3 = t460 * t446;
-        let t462 = rate_rod_leg3 * rate_rod_leg3;
-        let t463 = 0.5 * s_armcross_leg3;
-        let t465 = 0.8660254037844387 * s_armcross_leg3;
-        let t470 = 0.24 * c_cross_leg3;
-        let t472 = t463 * twist[0] + t465 * twist[1] - c_armcross_leg3 * twist[2]
-            - t470 * rate_arm_leg3;
-        let rate_cross_leg3 = t460 * t472;
-        let t474 = rate_cross_leg3 * rate_cross_leg3;
-        let t475 = t462 + t474;
-        let t483 = c_cross_leg3 * t457 + 0.56 * c_rod_leg3 * t475
-            - (t443 * acceleration[0] + t449 * acceleration[1]
+        let t449 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t433 * (0.8660254037844387 * t439 - t449);
+        let t452 = t222 - t223;
+        let t453 = t439 * t452;
+        let t455 = 0.8660254037844387 * c_armcross_leg3;
+        let t460 = t453
+            - (t449 * twist[0] + t455 * twist[1] + s_armcross_leg3 * twist[2]);
+        let rate_arm_leg3 = t433 * t460;
+        let t462 = t460 * rate_arm_leg3;
+        let t463 = t462 / s_cross_leg3;
+        let rate_rod_leg3 = t437 * t452;
+        let t467 = rate_rod_leg3 * rate_rod_leg3;
+        let t468 = 0.5 * s_armcross_leg3;
+        let t470 = 0.8660254037844387 * s_armcross_leg3;
+        let t475 = 0.24 * c_cross_leg3;
+        let t477 = t468 * twist[0] + t470 * twist[1] - c_armcross_leg3 * twist[2]
+            - t475 * rate_arm_leg3;
+        let rate_cross_leg3 = t437 * t477;
+        let t479 = rate_cross_leg3 * rate_cross_leg3;
+        let t488 = c_cross_leg3 * t463 + 0.56 * c_rod_leg3 * (t467 + t479)
+            - (t449 * acceleration[0] + t455 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t484 = t251 - t252;
-        let t486 = t484 + t447 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t430 * (t483 + t433 * t486);
-        let t490 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t430 * (t449 + 0.5 * t433);
-        let t494 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t430;
-        let t496 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t497 = 9.81 * c_arm_leg3;
-        let t501 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t460 * (t463 - garm_vx_leg3 * t470);
-        let t515 = rate_rod_leg3 * (1.7857142857142858 * t472);
-        let t521 = t433 * t472;
-        let t522 = rate_rod_leg3 * t521;
-        let t523 = t522 + t522;
-        let t527 = t463 * acceleration[0] + t465 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t456 - t523)
-            - t470 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = t460 * t527;
-        let t529 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t531 = t515 + t529 + t515;
-        let t532 = s_rod_leg3 * t531;
-        let t534 = t472 * t472;
-        let t535 = 3.188775510204082 * t534;
-        let t536 = t433 * t535;
-        let grod_vx_leg3 = 1.5464739353293548 / c_rod_leg3;
-        let t538 = t536 * grod_vx_leg3;
-        let gcross_vy_leg3 = t460 * (t465 + t470 * minus_garm_vy_leg3);
-        let minus_grod_vy_leg3 = 0.5 * t460;
-        let t545 = t536 * minus_grod_vy_leg3;
-        let gcross_vz_leg3 = t460 * (s_arm_leg3 / s_cross_leg3);
-        let t552 = 1.7857142857142858 * (t523 - t527);
-        let t553 = c_rod_leg3 * t552;
-        let t555 = c_rod_leg3 * t531 - t433 * t553;
-        let t559 = (t521 * t521 - t534) / c_rod_leg3;
-        let rate_dot_rod_leg3 = t460 * t486;
-        let t567 = t536 + rate_dot_rod_leg3;
-        let t569 = t535 + t462;
-        let t572 = s_rod_leg3 * t567 + c_rod_leg3 * (t569 - t474);
-        let t585 = 1.7857142857142858 * t484;
-        let t595 = t501 + t457;
-        let t598 = 0.24 * rate_dot_arm_leg3 - t497;
-        let t601 = c_rod_leg3 * (s_cross_leg3 * t595 + c_cross_leg3 * t598);
-        let t602 = gcross_vx_leg3 * t601;
-        let t603 = 0.24 * s_cross_leg3;
-        let t604 = c_rod_leg3 * t603;
-        let t606 = t603 * s_rod_leg3;
-        let t610 = t604 * t569 + t606 * t567 + t470 * t552;
-        let t615 = s_cross_leg3 * t598 - c_cross_leg3 * t595;
-        let t616 = 1.5464739353293548 * t615;
-        let t620 = gcross_vy_leg3 * t601;
-        let t622 = 0.8928571428571429 * t615;
-        let t626 = gcross_vz_leg3 * t601;
-        let t634 = t604 * (t536 - rate_dot_rod_leg3) + t606 * (t475 - t535)
-            - t470 * t531;
-        let t648 = t603 * rate_dot_cross_leg3 + t470 * t474;
-        let t658 = 0.24 * t598;
+        let t489 = t253 - t254;
+        let t491 = t489 + t453 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t433 * (t488 + t439 * t491);
+        let t495 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t433 * (t455 + 0.5 * t439);
+        let t499 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t433;
+        let t501 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t502 = 9.81 * c_arm_leg3;
+        let t506 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t437 * (t468 - garm_vx_leg3 * t475);
+        let t520 = rate_rod_leg3 * (1.7857142857142858 * t477);
+        let t526 = t439 * t477;
+        let t527 = rate_rod_leg3 * t526;
+        let t532 = t468 * acceleration[0] + t470 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t462 - (t527 + t527))
+            - t475 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = t437 * t532;
+        let t534 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t536 = t520 + t534 + t520;
+        let t537 = s_rod_leg3 * t536;
+        let t539 = rate_cross_leg3 * t526;
+        let t540 = 2.76156059880242 * t539;
+        let gcross_vy_leg3 = t437 * (t470 + t475 * minus_garm_vy_leg3);
+        let t546 = 1.594387755102041 * t539;
+        let gcross_vz_leg3 = t437 * (s_arm_leg3 / s_cross_leg3);
+        let t552 = rate_dot_cross_leg3 - t537;
+        let t553 = t438 * t552;
+        let t555 = c_rod_leg3 * t536 + s_rod_leg3 * t553;
+        let t557 = t526 * t526;
+        let t558 = t477 * t477;
+        let t560 = t438 * (t557 - t558);
+        let t567 = 3.188775510204082 * t558;
+        let t568 = t439 * t567;
+        let rate_dot_rod_leg3 = t437 * t491;
+        let t570 = t568 + rate_dot_rod_leg3;
+        let t572 = 3.188775510204082 * t557;
+        let t575 = s_rod_leg3 * t570 + c_rod_leg3 * (t467 - t572);
+        let grod_vx_leg3 = 1.5464739353293548 * t438;
+        let t589 = 1.7857142857142858 * t489;
+        let t599 = t506 + t463;
+        let t602 = 0.24 * rate_dot_arm_leg3 - t502;
+        let t605 = c_rod_leg3 * (s_cross_leg3 * t599 + c_cross_leg3 * t602);
+        let t606 = gcross_vx_leg3 * t605;
+        let t607 = 0.24 * s_cross_leg3;
+        let t608 = c_rod_leg3 * t607;
+        let t611 = t607 * s_rod_leg3;
+        let t615 = t608 * (t567 + t467) + t611 * t570 - t475 * t553;
+        let t620 = s_cross_leg3 * t602 - c_cross_leg3 * t599;
+        let t621 = s_rod_leg3 * t620;
+        let t625 = gcross_vy_leg3 * t605;
+        let t630 = gcross_vz_leg3 * t605;
+        let t638 = t608 * (t568 - rate_dot_rod_leg3) + t611 * (t572 + t467)
+            - t475 * t536;
+        let t654 = t607 * rate_dot_cross_leg3 + t475 * t479;
+        let t664 = 0.24 * t602;
         Ok([
             [
                 t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t84, -(minus_gcross_vx_leg1 * t98),
-                -(minus_gcross_vx_leg1 * t112), -(minus_gcross_vx_leg1 * t95),
-                -(minus_gcross_vx_leg1 * t122), 0.0,
-                garm_vx_leg1 * t136 - minus_gcross_vx_leg1 * t145,
-                garm_vx_leg1 * t161 + minus_gcross_vx_leg1 * t163,
-                garm_vx_leg1 * t179 - minus_gcross_vx_leg1 * t171, garm_vx_leg1 * t149, -t259,
-                minus_garm_vx_leg2 * t266, -(minus_garm_vx_leg2 * t270), -t259,
+                minus_gcross_vx_leg1 * t84, -(minus_gcross_vx_leg1 * t100),
+                -(minus_gcross_vx_leg1 * t113), -(minus_gcross_vx_leg1 * t97),
+                -(minus_gcross_vx_leg1 * t123), 0.0,
+                garm_vx_leg1 * t138 - minus_gcross_vx_leg1 * t146,
+                garm_vx_leg1 * t163 + minus_gcross_vx_leg1 * t165,
+                garm_vx_leg1 * t181 - minus_gcross_vx_leg1 * t173, garm_vx_leg1 * t150, -t261,
+                minus_garm_vx_leg2 * t268, -(minus_garm_vx_leg2 * t272), -t261,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t302 + t306, gcross_vx_leg2 * t321 - 4.9313582121471775 * t324,
-                gcross_vx_leg2 * t336 - minus_grod_vx_leg2 * t297, gcross_vx_leg2 * t318 - t306,
-                -(gcross_vx_leg2 * t349 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg2 * t304 + t308, gcross_vx_leg2 * t324 - 4.9313582121471775 * t327,
+                gcross_vx_leg2 * t339 - minus_grod_vx_leg2 * t298, gcross_vx_leg2 * t322 - t308,
+                -(gcross_vx_leg2 * t352 + 1.5464739353293548 * rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                t366 - minus_garm_vx_leg2 * t376 + t205 * t382,
-                t382 - (minus_garm_vx_leg2 * t399 + t205 * t366),
-                gcross_vx_leg2 * t381 - minus_garm_vx_leg2 * t415, -(minus_garm_vx_leg2 * t424),
-                t490, -(garm_vx_leg3 * t497), garm_vx_leg3 * t501, t490,
+                t370 - minus_garm_vx_leg2 * t379 + t207 * t385,
+                t385 - (minus_garm_vx_leg2 * t403 + t207 * t370),
+                gcross_vx_leg2 * t384 - minus_garm_vx_leg2 * t418, -(minus_garm_vx_leg2 * t427),
+                t495, -(garm_vx_leg3 * t502), garm_vx_leg3 * t506, t495,
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
-                garm_vx_leg3, gcross_vx_leg3 * t532 - t538,
-                gcross_vx_leg3 * t555 + 4.9313582121471775 * t559,
-                gcross_vx_leg3 * t572 + grod_vx_leg3 * t529, t538 - gcross_vx_leg3 * t553,
-                gcross_vx_leg3 * t585 + 1.5464739353293548 * rate_dot_cross_leg3,
-                grod_vx_leg3 * rate_dot_rod_leg3, t602 - garm_vx_leg3 * t610 - t433 * t616,
-                garm_vx_leg3 * t634 - t433 * t602 - t616,
-                garm_vx_leg3 * t648 + gcross_vx_leg3 * t615, garm_vx_leg3 * t658, acceleration[0],
+                garm_vx_leg3, gcross_vx_leg3 * t537 - t540,
+                gcross_vx_leg3 * t555 + 4.9313582121471775 * t560,
+                gcross_vx_leg3 * t575 + grod_vx_leg3 * t534, gcross_vx_leg3 * t552 + t540,
+                gcross_vx_leg3 * t589 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3, t606 - garm_vx_leg3 * t615 - grod_vx_leg3 * t621,
+                garm_vx_leg3 * t638 - t439 * t606 - 1.5464739353293548 * t620,
+                garm_vx_leg3 * t654 + gcross_vx_leg3 * t620, garm_vx_leg3 * t664, acceleration[0],
             ],
             [
                 t48, -(garm_vy_leg1 * t51), garm_vy_leg1 * t55, t48, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
                 minus_gcross_vy_leg1 * t84 - t91,
-                grod_vy_leg1 * (t101 - t100) - minus_gcross_vy_leg1 * t98,
-                -(minus_gcross_vy_leg1 * t112 + grod_vy_leg1 * t80),
-                t91 - minus_gcross_vy_leg1 * t95,
-                -(minus_gcross_vy_leg1 * t122
+                grod_vy_leg1 * (t102 - t89) - minus_gcross_vy_leg1 * t100,
+                -(minus_gcross_vy_leg1 * t113 + grod_vy_leg1 * t81),
+                t91 - minus_gcross_vy_leg1 * t97,
+                -(minus_gcross_vy_leg1 * t123
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                garm_vy_leg1 * t136 - 1.7857142857142858 * t150,
-                garm_vy_leg1 * t161 + minus_gcross_vy_leg1 * t163
-                    - 1.7857142857142858 * t171,
-                garm_vy_leg1 * t179 - minus_gcross_vy_leg1 * t171,
-                t150,
-                t263,
-                -(garm_vy_leg2 * t266),
-                garm_vy_leg2 * t270,
-                t263,
+                garm_vy_leg1 * t138 - 1.7857142857142858 * t151,
+                garm_vy_leg1 * t163 + minus_gcross_vy_leg1 * t165
+                    - 1.7857142857142858 * t173,
+                garm_vy_leg1 * t181 - minus_gcross_vy_leg1 * t173,
+                t151,
+                t265,
+                -(garm_vy_leg2 * t268),
+                garm_vy_leg2 * t272,
+                t265,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                t313 - minus_gcross_vy_leg2 * t302,
-                -(minus_gcross_vy_leg2 * t321 + 2.8471209912536444 * t324),
-                -(minus_gcross_vy_leg2 * t336 + minus_grod_vy_leg2 * t297),
-                -(minus_gcross_vy_leg2 * t318 + t313),
+                t315 - minus_gcross_vy_leg2 * t304,
+                -(minus_gcross_vy_leg2 * t324 + 2.8471209912536444 * t327),
+                -(minus_gcross_vy_leg2 * t339 + minus_grod_vy_leg2 * t298),
+                -(minus_gcross_vy_leg2 * t322 + t315),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t349),
+                    - minus_gcross_vy_leg2 * t352),
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                garm_vy_leg2 * t376 - t386 + t205 * t388,
-                garm_vy_leg2 * t399 + t205 * t386 + t388,
-                garm_vy_leg2 * t415 - minus_gcross_vy_leg2 * t381,
-                garm_vy_leg2 * t424,
-                -t494,
-                minus_garm_vy_leg3 * t497,
-                -(minus_garm_vy_leg3 * t501),
-                -t494,
+                garm_vy_leg2 * t379 - t389 + t207 * t391,
+                garm_vy_leg2 * t403 + t207 * t389 + t391,
+                garm_vy_leg2 * t418 - minus_gcross_vy_leg2 * t384,
+                garm_vy_leg2 * t427,
+                -t499,
+                minus_garm_vy_leg3 * t502,
+                -(minus_garm_vy_leg3 * t506),
+                -t499,
                 -(minus_garm_vy_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t532 + t545,
-                gcross_vy_leg3 * t555 - 2.8471209912536444 * t559,
-                gcross_vy_leg3 * t572 - minus_grod_vy_leg3 * t529,
-                -(gcross_vy_leg3 * t553 + t545),
-                gcross_vy_leg3 * t585 - 0.8928571428571429 * rate_dot_cross_leg3,
+                gcross_vy_leg3 * t537 + t546,
+                gcross_vy_leg3 * t555 - 2.8471209912536444 * t560,
+                gcross_vy_leg3 * t575 - minus_grod_vy_leg3 * t534,
+                gcross_vy_leg3 * t552 - t546,
+                gcross_vy_leg3 * t589 - 0.8928571428571429 * rate_dot_cross_leg3,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                minus_garm_vy_leg3 * t610 + t620 + t433 * t622,
-                t622 - (minus_garm_vy_leg3 * t634 + t433 * t620),
-                gcross_vy_leg3 * t615 - minus_garm_vy_leg3 * t648,
-                -(minus_garm_vy_leg3 * t658),
+                minus_garm_vy_leg3 * t615 + t625 + minus_grod_vy_leg3 * t621,
+                0.8928571428571429 * t620 - (minus_garm_vy_leg3 * t638 + t439 * t625),
+                gcross_vy_leg3 * t620 - minus_garm_vy_leg3 * t654,
+                -(minus_garm_vy_leg3 * t664),
                 acceleration[1],
             ],
             [
                 -t50, minus_garm_vz_leg1 * t51, -(minus_garm_vz_leg1 * t55), -t50,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t84), minus_minus_gcross_vz_leg1 * t98,
-                minus_minus_gcross_vz_leg1 * t112, minus_minus_gcross_vz_leg1 * t95,
-                minus_minus_gcross_vz_leg1 * t122, 0.0,
-                -(minus_garm_vz_leg1 * t136 - minus_minus_gcross_vz_leg1 * t145),
-                -(minus_minus_gcross_vz_leg1 * t163 + minus_garm_vz_leg1 * t161),
-                -(minus_garm_vz_leg1 * t179 - minus_minus_gcross_vz_leg1 * t171),
-                -(minus_garm_vz_leg1 * t149), -t265, minus_garm_vz_leg2 * t266,
-                -(minus_garm_vz_leg2 * t270), -t265, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t84), minus_minus_gcross_vz_leg1 * t100,
+                minus_minus_gcross_vz_leg1 * t113, minus_minus_gcross_vz_leg1 * t97,
+                minus_minus_gcross_vz_leg1 * t123, 0.0,
+                -(minus_garm_vz_leg1 * t138 - minus_minus_gcross_vz_leg1 * t146),
+                -(minus_minus_gcross_vz_leg1 * t165 + minus_garm_vz_leg1 * t163),
+                -(minus_garm_vz_leg1 * t181 - minus_minus_gcross_vz_leg1 * t173),
+                -(minus_garm_vz_leg1 * t150), -t267, minus_garm_vz_leg2 * t268,
+                -(minus_garm_vz_leg2 * t272), -t267, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t302, gcross_vz_leg2 * t321, gcross_vz_leg2 * t336,
-                gcross_vz_leg2 * t318, -(gcross_vz_leg2 * t349), 0.0,
-                t391 - minus_garm_vz_leg2 * t376, -(minus_garm_vz_leg2 * t399 + t205 * t391),
-                gcross_vz_leg2 * t381 - minus_garm_vz_leg2 * t415, -(minus_garm_vz_leg2 * t424),
-                -t496, minus_garm_vz_leg3 * t497, -(minus_garm_vz_leg3 * t501), -t496,
+                gcross_vz_leg2 * t304, gcross_vz_leg2 * t324, gcross_vz_leg2 * t339,
+                gcross_vz_leg2 * t322, -(gcross_vz_leg2 * t352), 0.0,
+                t394 - minus_garm_vz_leg2 * t379, -(minus_garm_vz_leg2 * t403 + t207 * t394),
+                gcross_vz_leg2 * t384 - minus_garm_vz_leg2 * t418, -(minus_garm_vz_leg2 * t427),
+                -t501, minus_garm_vz_leg3 * t502, -(minus_garm_vz_leg3 * t506), -t501,
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t532, gcross_vz_leg3 * t555, gcross_vz_leg3 * t572,
-                -(gcross_vz_leg3 * t553), gcross_vz_leg3 * t585, 0.0,
-                minus_garm_vz_leg3 * t610 + t626, -(minus_garm_vz_leg3 * t634 + t433 * t626),
-                gcross_vz_leg3 * t615 - minus_garm_vz_leg3 * t648, -(minus_garm_vz_leg3 * t658),
+                gcross_vz_leg3 * t537, gcross_vz_leg3 * t555, gcross_vz_leg3 * t575,
+                gcross_vz_leg3 * t552, gcross_vz_leg3 * t589, 0.0, minus_garm_vz_leg3 * t615 + t630,
+                -(minus_garm_vz_leg3 * t638 + t439 * t630),
+                gcross_vz_leg3 * t620 - minus_garm_vz_leg3 * t654, -(minus_garm_vz_leg3 * t664),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2465,7 +2531,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 779 operations (256 additions, 489 multiplications, 34 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 652 intermediates.
+    /// 800 operations (261 additions, 514 multiplications, 25 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 673 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2491,24 +2557,25 @@ impl Delta {
         let t15 = ::overact::math::sqrt(t14);
         let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
         let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
-        let t23 = 0.56 * c_rod_leg1;
-        let t24 = 0.48 * t23;
-        let c_cross_leg1 = (t8 + -0.0576) / t24;
+        ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
+        let t23 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t8 + -0.0576) / t23;
         let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let s_cross_leg1 = t15 / t24;
+        let s_cross_leg1 = t15 / t23;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t34;
-        let t36 = garm_vx_leg1 * actuator_accelerations[0];
-        let grod_vy_leg1 = 0.48 / t24;
+        let t33 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t33;
+        let t35 = garm_vx_leg1 * actuator_accelerations[0];
+        let t36 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7857142857142858 * t36;
         let t38 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t34 * t38;
+        let garm_vy_leg1 = t33 * t38;
         let t40 = garm_vy_leg1 * actuator_accelerations[0];
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t33;
         let t45 = minus_garm_vz_leg1 * actuator_accelerations[0];
         let t46 = 9.81 * c_arm_leg1;
         let t50 = 9.81 * minus_s_arm_leg1;
@@ -2517,412 +2584,419 @@ impl Delta {
         let t56 = minus_garm_vz_leg1 * actuator_velocities[0];
         let t60 = grod_vy_leg1 / s_cross_leg1;
         let minus_gcross_vx_leg1 = c_arm_leg1 * t60;
-        let t65 = t0 + 0.025;
-        let t66 = 0.5 * t65;
-        let t67 = 0.8660254037844387
-            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t66;
-        let t69 = t4 + t67 * t67;
-        let t70 = 0.2304 * t69;
-        let t73 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t75 = 0.8660254037844387 * t65 - 0.5 * t73;
-        let t76 = pose[1] + t75;
-        let t77 = t76 * t76;
-        let t78 = 0.3136 - t77;
-        let t79 = t69 - t78;
-        let t80 = t79 + 0.0576;
-        let t82 = t70 - t80 * t80;
-        ::overact::guard::reach(t82, "leg2")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t84 = 0.8928571428571429 * t83;
-        let t85 = 3.188775510204082 * t78;
-        ::overact::guard::reach(t85, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t85);
+        let t62 = t0 + 0.025;
+        let t63 = t62 * t62;
+        let t65 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t68 = t63 + t65 * t65 + t4;
+        let t71 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t73 = 0.8660254037844387 * t62 - 0.5 * t71;
+        let t74 = pose[1] + t73;
+        let t75 = t74 * t74;
+        let t77 = 0.2304 * (t68 - t75);
+        let t78 = t68 - 0.3136;
+        let t79 = t78 + 0.0576;
+        let t81 = t77 - t79 * t79;
+        ::overact::guard::reach(t81, "leg2")?;
+        let t82 = ::overact::math::sqrt(t81);
+        let t83 = 0.3136 - t75;
+        let t84 = 3.188775510204082 * t83;
+        ::overact::guard::reach(t84, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t84);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t87 = t84 / c_rod_leg2;
-        let s_cross_leg2 = 4.166666666666667 * t87;
+        let t86 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t82 / t86;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t89 = 4.166666666666667 / s_cross_leg2;
-        let t91 = 0.48 * t67;
-        let minus_s_arm_leg2 = (t11 * t80 + t91 * t83) / t70;
-        let t95 = minus_s_arm_leg2 / s_cross_leg2;
-        let c_arm_leg2 = (t91 * t80 - t11 * t83) / t70;
-        let t102 = 1.7857142857142858 / c_rod_leg2;
-        let minus_grod_vy_leg2 = 0.5 * t102;
-        let t104 = (-0.0576 + t79) * minus_grod_vy_leg2;
-        let c_cross_leg2 = 4.166666666666667 * t104;
+        let t88 = 1.0 / s_cross_leg2;
+        let t89 = 4.166666666666667 * t88;
+        let t90 = 1.0 / t77;
+        let t93 = 0.5 * t62;
+        let t95 = 0.48 * (0.8660254037844387 * t65 - t93);
+        let minus_s_arm_leg2 = t90 * (t11 * t79 + t95 * t82);
+        let t99 = t88 * minus_s_arm_leg2;
+        let c_arm_leg2 = t90 * (t95 * t79 - t11 * t82);
+        let c_cross_leg2 = (-0.0576 + t78) / t86;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t89;
-        let c_armcross_leg2 = t95 + minus_garm_vz_leg2 * t104;
-        let t112 = t76 * t102;
-        let t114 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t112;
-        let garm_vy_leg2 = t89 * t114;
-        let t116 = garm_vy_leg2 * actuator_velocities[1];
-        let t119 = t66 + 0.8660254037844387 * t73;
-        let t121 = t4 + t119 * t119;
-        let t122 = 0.2304 * t121;
-        let t123 = t75 * t75;
-        let t124 = 0.3136 - t123;
-        let t125 = t121 - t124;
-        let t126 = t125 + 0.0576;
-        let t128 = t122 - t126 * t126;
-        ::overact::guard::reach(t128, "leg3")?;
-        let t129 = ::overact::math::sqrt(t128);
-        let t130 = 3.188775510204082 * t124;
+        let t109 = c_cross_leg2 * t88;
+        let c_armcross_leg2 = t99 + s_armcross_leg2 * t109;
+        let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
+        let t114 = minus_grod_vy_leg2 + minus_grod_vy_leg2;
+        let t115 = t74 * t114;
+        let t117 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t115;
+        let garm_vy_leg2 = t89 * t117;
+        let t119 = garm_vy_leg2 * actuator_velocities[1];
+        let t123 = t63 + t71 * t71 + t4;
+        let t125 = t123 - t73 * t73;
+        let t126 = 0.2304 * t125;
+        let t127 = t123 - 0.3136;
+        let t128 = t127 + 0.0576;
+        let t130 = t126 - t128 * t128;
         ::overact::guard::reach(t130, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t130);
+        let t131 = ::overact::math::sqrt(t130);
+        let t133 = 3.188775510204082 * (t125 - t127);
+        ::overact::guard::reach(t133, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t133);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
-        let t133 = t129 * minus_grod_vy_leg3;
-        let s_cross_leg3 = 4.166666666666667 * t133;
+        let t135 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t135;
+        let t137 = t131 * minus_grod_vy_leg3;
+        let s_cross_leg3 = 4.166666666666667 * t137;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t135 = 4.166666666666667 / s_cross_leg3;
-        let t136 = 0.48 * t119;
-        let s_arm_leg3 = (t136 * t129 - t11 * t126) / t122;
-        let t141 = s_arm_leg3 / s_cross_leg3;
-        let t143 = (-0.0576 + t125) * minus_grod_vy_leg3;
-        let c_cross_leg3 = 4.166666666666667 * t143;
-        let minus_c_arm_leg3 = (t136 * t126 + t11 * t129) / t122;
+        let t139 = 1.0 / s_cross_leg3;
+        let t140 = 4.166666666666667 * t139;
+        let t143 = 0.48 * (t93 + 0.8660254037844387 * t71);
+        let s_arm_leg3 = (t143 * t131 - t11 * t128) / t126;
+        let t148 = t139 * s_arm_leg3;
+        let t150 = (-0.0576 + t127) * minus_grod_vy_leg3;
+        let c_cross_leg3 = 4.166666666666667 * t150;
+        let minus_c_arm_leg3 = (t143 * t128 + t11 * t131) / t126;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t135;
-        let minus_c_armcross_leg3 = t141 - minus_garm_vz_leg3 * t143;
-        let t156 = minus_grod_vy_leg3 + minus_grod_vy_leg3;
-        let t157 = t75 * t156;
-        let garm_vy_leg3 = t135
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t157);
-        let t161 = garm_vy_leg3 * actuator_velocities[2];
-        let t165 = 0.8660254037844387 * t112 - 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t89 * t165;
-        let t167 = garm_vx_leg2 * actuator_velocities[1];
-        let garm_vx_leg3 = t135
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t157);
-        let t173 = garm_vx_leg3 * actuator_velocities[2];
-        let t174 = t54 + t167 + t173;
-        let t179 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let t159 = c_cross_leg3 * t139;
+        let minus_c_armcross_leg3 = t148 - s_armcross_leg3 * t159;
+        let t163 = 1.7857142857142858 * t135;
+        let t164 = t73 * t163;
+        let t166 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t164;
+        let garm_vy_leg3 = t140 * t166;
+        let t168 = garm_vy_leg3 * actuator_velocities[2];
+        let t172 = 0.8660254037844387 * t115 - 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t89 * t172;
+        let t174 = garm_vx_leg2 * actuator_velocities[1];
+        let t178 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t164;
+        let garm_vx_leg3 = t140 * t178;
+        let t180 = garm_vx_leg3 * actuator_velocities[2];
+        let t181 = t54 + t174 + t180;
+        let t186 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t184 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t191 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t184, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t184, 14.869730172882841, "actuators")?;
-        let t185 = t179 / t184;
-        let t187 = t55 + t116 + t161 - t174 * t185;
-        let t194 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t179 * t185;
-        ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t194, 14.869730172882846, "actuators")?;
-        let t200 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        ::overact::guard::platform(t191, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t191, 14.869730172882841, "actuators")?;
+        let t192 = 1.0 / t191;
+        let t193 = t186 * t192;
+        let t195 = t55 + t119 + t168 - t181 * t193;
+        let t202 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t186 * t193;
+        ::overact::guard::platform(t202, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t202, 14.869730172882846, "actuators")?;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t89;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t140;
+        let t210 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t201 = t200 / t184;
-        let t208 = t179 * t201
+        let t211 = t210 * t192;
+        let t218 = t186 * t211
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t209 = t208 / t194;
-        let t211 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t213 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t226 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t219 = t218 / t202;
+        let t221 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t223 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t236 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t200 * t201 - t208 * t209;
-        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t226, 34.855350201355726, "actuators")?;
-        let t227 = (t174 * t201 - (t56 + t211 + t213) - t209 * t187) / t226;
-        let t229 = t187 / t194 - t209 * t227;
-        let t230 = 0.24 * c_cross_leg1;
-        let t236 = t174 / t184 - t185 * t229 + t201 * t227;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t210 * t211 - t218 * t219;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
+        let t237 = (t181 * t211 - (t56 + t221 + t223) - t219 * t195) / t236;
+        let t239 = t195 / t202 - t219 * t237;
+        let t240 = 0.24 * c_cross_leg1;
+        let t246 = t181 * t192 - t193 * t239 + t211 * t237;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (actuator_velocities[0] * t230 + s_armcross_leg1 * t236
-                + c_armcross_leg1 * t227);
-        let t242 = t229 * minus_rate_cross_leg1;
-        let t243 = 1.7857142857142858 * t242;
+            * (actuator_velocities[0] * t240 + s_armcross_leg1 * t246
+                + c_armcross_leg1 * t237);
+        let t252 = t239 * minus_rate_cross_leg1;
+        let t253 = 1.7857142857142858 * t252;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t245 = 0.24 * actuator_accelerations[0];
-        let t247 = actuator_velocities[0] * actuator_velocities[0];
-        let t249 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t229;
-        let t251 = rate_rod_leg1 * rate_rod_leg1;
-        let t255 = pose[1] * t251;
-        let rate_dot_arm_leg1 = t34 * (t230 * t247 + t23 * (t249 + t251) + t38 * t255);
-        let t259 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t261 = actuator_velocities[1] * actuator_velocities[1];
-        let t264 = 0.8660254037844387 * t236;
-        let t265 = 0.5 * t229;
-        let minus_rate_rod_leg2 = t102 * (t264 + t265);
-        let t268 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t269 = 0.5 * s_armcross_leg2;
-        let t271 = 0.8660254037844387 * s_armcross_leg2;
-        let t277 = t269 * t236 - t271 * t229 - c_armcross_leg2 * t227
-            - actuator_velocities[1] * t104;
-        let rate_cross_leg2 = t102 * t277;
-        let t279 = rate_cross_leg2 * rate_cross_leg2;
-        let t280 = t268 + t279;
-        let t283 = t76 * t268;
+        let t255 = 0.24 * actuator_accelerations[0];
+        let t257 = actuator_velocities[0] * actuator_velocities[0];
+        let t259 = 0.56 * c_rod_leg1;
+        let t260 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t239;
+        let t262 = rate_rod_leg1 * rate_rod_leg1;
+        let t263 = t260 + t262;
+        let t266 = pose[1] * t262;
+        let rate_dot_arm_leg1 = t33 * (t240 * t257 + t259 * t263 + t38 * t266);
+        let t270 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t272 = 0.24 * c_cross_leg2;
+        let t273 = actuator_velocities[1] * actuator_velocities[1];
+        let t276 = 0.8660254037844387 * t246;
+        let t277 = 0.5 * t239;
+        let minus_rate_rod_leg2 = t114 * (t276 + t277);
+        let t280 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t281 = 0.5 * s_armcross_leg2;
+        let t283 = 0.8660254037844387 * s_armcross_leg2;
+        let t289 = t281 * t246 - t283 * t239 - c_armcross_leg2 * t237
+            - actuator_velocities[1] * t272;
+        let t290 = 1.7857142857142858 * t289;
+        let t291 = t290 * t290;
+        let t292 = t115 * t291;
+        let t293 = t115 * t292;
+        let t294 = t293 + t291;
+        let t298 = t74 * t280;
         let rate_dot_arm_leg2 = t89
-            * (t104 * t261 + 0.56 * c_rod_leg2 * t280 + t112 * t283);
-        let t287 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t290 = actuator_velocities[2] * actuator_velocities[2];
-        let t293 = t264 - t265;
-        let rate_rod_leg3 = t156 * t293;
-        let t295 = rate_rod_leg3 * rate_rod_leg3;
-        let t296 = 0.5 * s_armcross_leg3;
-        let t298 = 0.8660254037844387 * s_armcross_leg3;
-        let rate_cross_leg3 = t156
-            * (t296 * t236 + t298 * t229 + minus_c_armcross_leg3 * t227
-                - actuator_velocities[2] * t143);
-        let t306 = rate_cross_leg3 * rate_cross_leg3;
-        let t307 = t295 + t306;
-        let t310 = t75 * t295;
-        let rate_dot_arm_leg3 = t135
-            * (t143 * t290 + 0.56 * c_rod_leg3 * t307 + t157 * t310);
-        let t314 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t316 = garm_vx_leg1 * t259 + garm_vx_leg2 * t287 + garm_vx_leg3 * t314;
-        let t324 = garm_vy_leg1 * t259 + garm_vy_leg2 * t287 + garm_vy_leg3 * t314
-            - t185 * t316;
-        let t335 = (t201 * t316
-            - (minus_garm_vz_leg1 * t259 + minus_garm_vz_leg2 * t287
-                + minus_garm_vz_leg3 * t314) - t209 * t324) / t226;
-        let t337 = t324 / t194 - t209 * t335;
-        let t341 = t316 / t184 - t185 * t337 + t201 * t335;
-        let t345 = 0.24 * t247;
-        let t347 = t38 * t242;
+            * (t272 * t273 + 0.56 * c_rod_leg2 * (t280 + t294) + t115 * t298);
+        let t302 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t305 = actuator_velocities[2] * actuator_velocities[2];
+        let rate_rod_leg3 = t163 * (t276 - t277);
+        let t310 = rate_rod_leg3 * rate_rod_leg3;
+        let t311 = 0.5 * s_armcross_leg3;
+        let t313 = 0.8660254037844387 * s_armcross_leg3;
+        let t319 = t311 * t246 + t313 * t239 + minus_c_armcross_leg3 * t237
+            - actuator_velocities[2] * t150;
+        let rate_cross_leg3 = t163 * t319;
+        let t321 = rate_cross_leg3 * rate_cross_leg3;
+        let t322 = t310 + t321;
+        let t325 = t73 * t310;
+        let rate_dot_arm_leg3 = t140
+            * (t150 * t305 + 0.56 * c_rod_leg3 * t322 + t164 * t325);
+        let t329 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t331 = garm_vx_leg1 * t270 + garm_vx_leg2 * t302 + garm_vx_leg3 * t329;
+        let t339 = garm_vy_leg1 * t270 + garm_vy_leg2 * t302 + garm_vy_leg3 * t329
+            - t193 * t331;
+        let t350 = (t211 * t331
+            - (minus_garm_vz_leg1 * t270 + minus_garm_vz_leg2 * t302
+                + minus_garm_vz_leg3 * t329) - t219 * t339) / t236;
+        let t352 = t339 / t202 - t219 * t350;
+        let t356 = t192 * t331 - t193 * t352 + t211 * t350;
+        let t360 = s_cross_leg1 * 0.24;
+        let t362 = t38 * t252;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t245 + s_armcross_leg1 * t341 + c_armcross_leg1 * t335
-                + s_cross_leg1 * t345 + t347 + t347);
-        let t353 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t355 = t243 + t353 + t243;
-        let t356 = c_rod_leg1 * t355;
-        let t357 = t38 * t356;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t230 * garm_vy_leg1);
-        let t363 = 3.188775510204082 * (pose[1] * t249);
+            * (c_cross_leg1 * t255 + s_armcross_leg1 * t356 + c_armcross_leg1 * t350
+                + t257 * t360 + t362 + t362);
+        let t368 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t370 = t253 + t368 + t253;
+        let t371 = c_rod_leg1 * t370;
+        let t372 = t38 * t371;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t240 * garm_vy_leg1);
+        let t378 = 3.188775510204082 * (pose[1] * t260);
         let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t60;
-        let t367 = t357 - minus_rate_dot_cross_leg1;
-        let t369 = t38 * t367 - t356;
-        let t371 = pose[1] * t363;
-        let t372 = t251 - t371;
-        let t373 = t249 + t372;
-        let t374 = t371 + t251;
-        let t380 = t23 * t363;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t337 + t255);
-        let t383 = t380 + rate_dot_rod_leg1;
-        let t386 = s_rod_leg1 * t383 + c_rod_leg1 * t372;
-        let t396 = 1.7857142857142858 * t337;
-        let t406 = 0.8928571428571429 * t15;
-        let t408 = t38 * t406;
-        let t411 = t230 * (0.56 * grod_vy_leg1 * t367) - (t406 * t373 + t408 * t383);
-        let t413 = t245 - t46;
-        let t415 = t50 - t345;
-        let t417 = c_cross_leg1 * t413 - s_cross_leg1 * t415;
-        let t418 = c_rod_leg1 * t417;
-        let t422 = 0.24 * t413;
-        let t423 = garm_vy_leg1 * t422;
-        let t434 = t406 * (t380 - rate_dot_rod_leg1) + t408 * t374 + t230 * t355;
-        let t436 = s_rod_leg1 * t417;
-        let t444 = c_cross_leg1 * t415 + s_cross_leg1 * t413;
-        let t453 = t230 * t249 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
-        let t465 = garm_vx_leg2 * actuator_accelerations[1];
-        let t466 = garm_vy_leg2 * actuator_accelerations[1];
-        let t467 = minus_garm_vz_leg2 * actuator_accelerations[1];
-        let t468 = 9.81 * c_arm_leg2;
-        let t472 = 9.81 * minus_s_arm_leg2;
-        let t479 = c_cross_leg2 / s_cross_leg2;
-        let gcross_vx_leg2 = t102 * (t269 - t165 * t479);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t76;
-        let t484 = minus_rate_rod_leg2 * t277;
-        let t485 = 1.7857142857142858 * t484;
-        let t491 = t261 * t87;
-        let t492 = t112 * t484;
-        let t497 = t269 * t341 - t271 * t337 - c_armcross_leg2 * t335
-            - (t491 - (t492 + t492)) - actuator_accelerations[1] * t104;
-        let rate_dot_cross_leg2 = t102 * t497;
-        let t499 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t501 = t485 + t499 + t485;
-        let t502 = minus_s_rod_leg2 * t501;
-        let t504 = t85 * t279;
-        let t505 = t112 * t504;
-        let minus_grod_vx_leg2 = 0.8660254037844387 * t102;
-        let t507 = t505 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = t102 * (t271 + t114 * t479);
-        let t513 = t505 * minus_grod_vy_leg2;
-        let minus_gcross_vz_leg2 = t102 * t95;
-        let t517 = rate_dot_cross_leg2 - t502;
-        let t520 = t112 * t517 + c_rod_leg2 * t501;
-        let t524 = t279 * (t77 - t78) / c_rod_leg2;
-        let t531 = 0.8660254037844387 * t341;
-        let t532 = 0.5 * t337;
-        let t533 = t531 + t532;
-        let minus_rate_dot_rod_leg2 = t102 * (t533 + t283);
-        let t536 = t505 + minus_rate_dot_rod_leg2;
-        let t538 = t504 + t268;
-        let t541 = minus_s_rod_leg2 * t536 + c_rod_leg2 * (t538 - t279);
-        let t554 = 1.7857142857142858 * t533;
-        let t565 = 0.24 * actuator_accelerations[1] - t468;
-        let t568 = s_cross_leg2 * t472 - t491;
-        let t570 = c_rod_leg2 * (c_cross_leg2 * t565 - t568);
-        let t571 = gcross_vx_leg2 * t570;
-        let t573 = t112 * t84;
-        let t578 = t84 * t538 + t573 * t536 - t104 * (t517 / c_rod_leg2);
-        let t583 = t479 * t568 + s_cross_leg2 * t565;
-        let t584 = 1.5464739353293548 * t583;
-        let t588 = minus_gcross_vy_leg2 * t570;
-        let t590 = 0.8928571428571429 * t583;
-        let t594 = minus_gcross_vz_leg2 * t570;
-        let t602 = t84 * (minus_rate_dot_rod_leg2 - t505) - t573 * (t280 - t504)
-            + t104 * t501;
-        let t616 = rate_dot_cross_leg2 * t87 + t104 * t279;
-        let t626 = 0.24 * t565;
-        let t630 = garm_vx_leg3 * actuator_accelerations[2];
-        let t631 = garm_vy_leg3 * actuator_accelerations[2];
-        let t632 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t633 = 9.81 * minus_c_arm_leg3;
-        let t637 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t156 * (t296 - garm_vx_leg3 * t143);
-        let t647 = t293 * rate_cross_leg3;
-        let t648 = 1.7857142857142858 * t647;
-        let s_rod_leg3 = 1.7857142857142858 * t75;
-        let t655 = t290 * t133;
-        let t656 = t157 * t647;
-        let t661 = t296 * t341 + t298 * t337 + minus_c_armcross_leg3 * t335
-            - (t655 - (t656 + t656)) - actuator_accelerations[2] * t143;
-        let rate_dot_cross_leg3 = t156 * t661;
-        let t663 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t665 = t648 + t663 + t648;
-        let t666 = c_rod_leg3 * t665;
-        let t667 = t157 * t666;
-        let t669 = t130 * t306;
-        let t670 = t157 * t669;
-        let grod_vx_leg3 = 1.5464739353293548 / c_rod_leg3;
-        let t672 = t670 * grod_vx_leg3;
-        let gcross_vy_leg3 = t156 * (t298 - garm_vy_leg3 * t143);
-        let t678 = t670 * minus_grod_vy_leg3;
-        let gcross_vz_leg3 = t156 * t141;
-        let t682 = rate_dot_cross_leg3 - t667;
-        let t683 = t682 / c_rod_leg3;
-        let t685 = t666 + s_rod_leg3 * t683;
-        let t689 = t306 * (t123 - t124) / c_rod_leg3;
-        let t696 = t531 - t532;
-        let rate_dot_rod_leg3 = t156 * (t696 + t310);
-        let t699 = t670 + rate_dot_rod_leg3;
-        let t701 = t669 + t295;
-        let t704 = s_rod_leg3 * t699 + c_rod_leg3 * (t701 - t306);
-        let t717 = 1.7857142857142858 * t696;
-        let t728 = t655 + s_cross_leg3 * t637;
-        let t730 = t633 + 0.24 * actuator_accelerations[2];
-        let t733 = c_rod_leg3 * (t728 + c_cross_leg3 * t730);
-        let t734 = gcross_vx_leg3 * t733;
-        let t735 = 0.8928571428571429 * t129;
-        let t737 = t157 * t735;
-        let t741 = t735 * t701 + t737 * t699 - t143 * t683;
-        let t747 = s_cross_leg3 * t730 - c_cross_leg3 / s_cross_leg3 * t728;
-        let t748 = 1.5464739353293548 * t747;
-        let t751 = gcross_vy_leg3 * t733;
-        let t754 = 0.8928571428571429 * t747;
-        let t758 = gcross_vz_leg3 * t733;
-        let t766 = t735 * (t670 - rate_dot_rod_leg3) + t737 * (t307 - t669)
-            - t143 * t665;
-        let t780 = rate_dot_cross_leg3 * t133 + t143 * t306;
-        let t790 = 0.24 * t730;
+        let t382 = t372 - minus_rate_dot_cross_leg1;
+        let t384 = t38 * t382 - t371;
+        let t386 = pose[1] * t378;
+        let t387 = t263 - t386;
+        let t388 = t386 + t262;
+        let t394 = t259 * t378;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t352 + t266);
+        let t397 = t394 + rate_dot_rod_leg1;
+        let t401 = s_rod_leg1 * t397 + c_rod_leg1 * (t262 - t386);
+        let t411 = 1.7857142857142858 * t352;
+        let t420 = 0.8928571428571429 * t15;
+        let t422 = t38 * t420;
+        let t425 = t240 * (t36 * t382) - (t420 * t387 + t422 * t397);
+        let t427 = t255 - t46;
+        let t430 = t50 - 0.24 * t257;
+        let t432 = c_cross_leg1 * t427 - s_cross_leg1 * t430;
+        let t433 = c_rod_leg1 * t432;
+        let t437 = 0.24 * t427;
+        let t438 = garm_vy_leg1 * t437;
+        let t449 = t420 * (t394 - rate_dot_rod_leg1) + t422 * t388 + t240 * t370;
+        let t451 = s_rod_leg1 * t432;
+        let t459 = c_cross_leg1 * t430 + s_cross_leg1 * t427;
+        let t467 = t240 * t260 - minus_rate_dot_cross_leg1 * t360;
+        let t479 = garm_vx_leg2 * actuator_accelerations[1];
+        let t480 = garm_vy_leg2 * actuator_accelerations[1];
+        let t481 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t482 = 9.81 * c_arm_leg2;
+        let t486 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t114 * (t281 - t172 * t109);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t74;
+        let t497 = minus_rate_rod_leg2 * t290;
+        let t503 = 0.24 * t273;
+        let t506 = minus_rate_rod_leg2 * (t115 * t289);
+        let t510 = 0.24 * actuator_accelerations[1];
+        let t512 = t281 * t356 - t283 * t352 - c_armcross_leg2 * t350
+            - (s_cross_leg2 * t503 - (t506 + t506)) - c_cross_leg2 * t510;
+        let rate_dot_cross_leg2 = t114 * t512;
+        let t514 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t516 = t497 + t514 + t497;
+        let t517 = minus_s_rod_leg2 * t516;
+        let minus_grod_vx_leg2 = 1.5464739353293548 / c_rod_leg2;
+        let t520 = t292 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t114 * (t283 + t117 * t109);
+        let t526 = t292 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t114 * t99;
+        let t530 = rate_dot_cross_leg2 - t517;
+        let t531 = t530 / c_rod_leg2;
+        let t534 = minus_s_rod_leg2 * t531 + c_rod_leg2 * t516;
+        let t538 = t294 * (t75 - t83) / c_rod_leg2;
+        let t545 = 0.8660254037844387 * t356;
+        let t546 = 0.5 * t352;
+        let t547 = t545 + t546;
+        let minus_rate_dot_rod_leg2 = t114 * (t547 + t298);
+        let t550 = t292 + minus_rate_dot_rod_leg2;
+        let t554 = minus_s_rod_leg2 * t550 + c_rod_leg2 * (t280 - t293);
+        let t567 = 1.7857142857142858 * t547;
+        let t577 = t510 - t482;
+        let t579 = t486 - t503;
+        let t581 = c_cross_leg2 * t577 - s_cross_leg2 * t579;
+        let t582 = c_rod_leg2 * t581;
+        let t584 = 0.8928571428571429 * t82;
+        let t587 = t115 * t584;
+        let t591 = t584 * (t291 + t280) + t587 * t550 - t272 * t531;
+        let t596 = c_cross_leg2 * t579 + s_cross_leg2 * t577;
+        let t597 = minus_s_rod_leg2 * t596;
+        let t614 = t584 * (minus_rate_dot_rod_leg2 - t292) - t587 * (t293 + t280)
+            + t272 * t516;
+        let t616 = minus_s_rod_leg2 * t581;
+        let t632 = rate_dot_cross_leg2 * (t82 * minus_grod_vy_leg2) + t272 * t294;
+        let t642 = 0.24 * t577;
+        let t646 = garm_vx_leg3 * actuator_accelerations[2];
+        let t647 = garm_vy_leg3 * actuator_accelerations[2];
+        let t648 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t649 = 9.81 * minus_c_arm_leg3;
+        let t653 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t163 * (t311 - t178 * t159);
+        let s_rod_leg3 = 1.7857142857142858 * t73;
+        let t665 = rate_rod_leg3 * (1.7857142857142858 * t319);
+        let t671 = 0.24 * t305;
+        let t673 = t73 * rate_cross_leg3;
+        let t674 = rate_rod_leg3 * t673;
+        let t679 = t311 * t356 + t313 * t352 + minus_c_armcross_leg3 * t350
+            - (s_cross_leg3 * t671 - (t674 + t674)) - actuator_accelerations[2] * t150;
+        let rate_dot_cross_leg3 = t163 * t679;
+        let t681 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t683 = t665 + t681 + t665;
+        let t684 = s_rod_leg3 * t683;
+        let t686 = rate_cross_leg3 * t673;
+        let t687 = 2.76156059880242 * t686;
+        let gcross_vy_leg3 = t163 * (t313 - t166 * t159);
+        let t693 = 1.594387755102041 * t686;
+        let gcross_vz_leg3 = t163 * t148;
+        let t698 = rate_dot_cross_leg3 - t684;
+        let t699 = t135 * t698;
+        let t701 = c_rod_leg3 * t683 + s_rod_leg3 * t699;
+        let t704 = t319 * t319;
+        let t706 = t135 * (t673 * t673 - t704);
+        let t713 = 3.188775510204082 * t704;
+        let t714 = t164 * t713;
+        let t715 = t545 - t546;
+        let rate_dot_rod_leg3 = t163 * (t715 + t325);
+        let t718 = t714 + rate_dot_rod_leg3;
+        let t720 = t713 + t310;
+        let t723 = s_rod_leg3 * t718 + c_rod_leg3 * (t720 - t321);
+        let grod_vx_leg3 = 1.5464739353293548 * t135;
+        let t737 = 1.7857142857142858 * t715;
+        let t747 = t653 + t671;
+        let t750 = t649 + 0.24 * actuator_accelerations[2];
+        let t752 = s_cross_leg3 * t747 + c_cross_leg3 * t750;
+        let t753 = c_rod_leg3 * t752;
+        let t755 = 0.8928571428571429 * t131;
+        let t757 = t164 * t755;
+        let t761 = t755 * t720 + t757 * t718 - t150 * t699;
+        let t766 = s_cross_leg3 * t750 - c_cross_leg3 * t747;
+        let t767 = s_rod_leg3 * t766;
+        let t784 = t755 * (t714 - rate_dot_rod_leg3) + t757 * (t322 - t713)
+            - t150 * t683;
+        let t786 = s_rod_leg3 * t752;
+        let t801 = rate_dot_cross_leg3 * t137 + t150 * t321;
+        let t811 = 0.24 * t750;
         Ok([
             [
-                t36, -(garm_vx_leg1 * t46), -(garm_vx_leg1 * t50), t36, t54,
+                t35, -(garm_vx_leg1 * t46), -(garm_vx_leg1 * t50), t35, t54,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t357, -(minus_gcross_vx_leg1 * t369),
-                -(minus_gcross_vx_leg1 * t386), -(minus_gcross_vx_leg1 * t367),
-                -(minus_gcross_vx_leg1 * t396), 0.0,
-                garm_vx_leg1 * t411 - minus_gcross_vx_leg1 * t418,
-                garm_vx_leg1 * t434 + minus_gcross_vx_leg1 * t436,
-                garm_vx_leg1 * t453 - minus_gcross_vx_leg1 * t444, garm_vx_leg1 * t422, t465,
-                -(garm_vx_leg2 * t468), -(garm_vx_leg2 * t472), t465, t167,
+                minus_gcross_vx_leg1 * t372, -(minus_gcross_vx_leg1 * t384),
+                -(minus_gcross_vx_leg1 * t401), -(minus_gcross_vx_leg1 * t382),
+                -(minus_gcross_vx_leg1 * t411), 0.0,
+                garm_vx_leg1 * t425 - minus_gcross_vx_leg1 * t433,
+                garm_vx_leg1 * t449 + minus_gcross_vx_leg1 * t451,
+                garm_vx_leg1 * t467 - minus_gcross_vx_leg1 * t459, garm_vx_leg1 * t437, t479,
+                -(garm_vx_leg2 * t482), -(garm_vx_leg2 * t486), t479, t174,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]), garm_vx_leg2,
-                gcross_vx_leg2 * t502 - t507, -(gcross_vx_leg2 * t520 + 4.9313582121471775 * t524),
-                gcross_vx_leg2 * t541 + minus_grod_vx_leg2 * t499, gcross_vx_leg2 * t517 + t507,
-                -(gcross_vx_leg2 * t554 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg2 * t517 - t520, -(gcross_vx_leg2 * t534 + 4.9313582121471775 * t538),
+                gcross_vx_leg2 * t554 + minus_grod_vx_leg2 * t514, gcross_vx_leg2 * t530 + t520,
+                -(gcross_vx_leg2 * t567 + 1.5464739353293548 * rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                t571 - garm_vx_leg2 * t578 - t112 * t584, garm_vx_leg2 * t602 + t112 * t571 + t584,
-                garm_vx_leg2 * t616 + gcross_vx_leg2 * t583, garm_vx_leg2 * t626, t630,
-                garm_vx_leg3 * t633, garm_vx_leg3 * t637, t630, t173,
+                gcross_vx_leg2 * t582 - garm_vx_leg2 * t591 - minus_grod_vx_leg2 * t597,
+                garm_vx_leg2 * t614 + gcross_vx_leg2 * t616 + 1.5464739353293548 * t596,
+                garm_vx_leg2 * t632 + gcross_vx_leg2 * t596, garm_vx_leg2 * t642, t646,
+                garm_vx_leg3 * t649, garm_vx_leg3 * t653, t646, t180,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg3,
-                gcross_vx_leg3 * t667 - t672, gcross_vx_leg3 * t685 + 4.9313582121471775 * t689,
-                gcross_vx_leg3 * t704 + grod_vx_leg3 * t663, gcross_vx_leg3 * t682 + t672,
-                gcross_vx_leg3 * t717 + 1.5464739353293548 * rate_dot_cross_leg3,
-                grod_vx_leg3 * rate_dot_rod_leg3, t734 - garm_vx_leg3 * t741 - t157 * t748,
-                garm_vx_leg3 * t766 - t157 * t734 - t748,
-                garm_vx_leg3 * t780 + gcross_vx_leg3 * t747, garm_vx_leg3 * t790, t341,
+                gcross_vx_leg3 * t684 - t687, gcross_vx_leg3 * t701 + 4.9313582121471775 * t706,
+                gcross_vx_leg3 * t723 + grod_vx_leg3 * t681, gcross_vx_leg3 * t698 + t687,
+                gcross_vx_leg3 * t737 + 1.5464739353293548 * rate_dot_cross_leg3,
+                grod_vx_leg3 * rate_dot_rod_leg3,
+                gcross_vx_leg3 * t753 - garm_vx_leg3 * t761 - grod_vx_leg3 * t767,
+                garm_vx_leg3 * t784 - gcross_vx_leg3 * t786 - 1.5464739353293548 * t766,
+                garm_vx_leg3 * t801 + gcross_vx_leg3 * t766, garm_vx_leg3 * t811, t356,
             ],
             [
                 t40, -(garm_vy_leg1 * t46), -(garm_vy_leg1 * t50), t40, t55,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t357 - t363,
-                -(grod_vy_leg1 * (t373 - t374) + minus_gcross_vy_leg1 * t369),
-                -(minus_gcross_vy_leg1 * t386 + grod_vy_leg1 * t353),
-                t363 - minus_gcross_vy_leg1 * t367,
-                -(minus_gcross_vy_leg1 * t396
+                minus_gcross_vy_leg1 * t372 - t378,
+                -(grod_vy_leg1 * (t387 - t388) + minus_gcross_vy_leg1 * t384),
+                -(minus_gcross_vy_leg1 * t401 + grod_vy_leg1 * t368),
+                t378 - minus_gcross_vy_leg1 * t382,
+                -(minus_gcross_vy_leg1 * t411
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                garm_vy_leg1 * t411 - 1.7857142857142858 * t423,
-                garm_vy_leg1 * t434 + minus_gcross_vy_leg1 * t436
-                    - 1.7857142857142858 * t444,
-                garm_vy_leg1 * t453 - minus_gcross_vy_leg1 * t444,
-                t423,
-                t466,
-                -(garm_vy_leg2 * t468),
-                -(garm_vy_leg2 * t472),
-                t466,
-                t116,
+                garm_vy_leg1 * t425 - 1.7857142857142858 * t438,
+                garm_vy_leg1 * t449 + minus_gcross_vy_leg1 * t451
+                    - 1.7857142857142858 * t459,
+                garm_vy_leg1 * t467 - minus_gcross_vy_leg1 * t459,
+                t438,
+                t480,
+                -(garm_vy_leg2 * t482),
+                -(garm_vy_leg2 * t486),
+                t480,
+                t119,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t502 + t513),
-                -(2.8471209912536444 * t524 - minus_gcross_vy_leg2 * t520),
-                minus_grod_vy_leg2 * t499 - minus_gcross_vy_leg2 * t541,
-                t513 - minus_gcross_vy_leg2 * t517,
-                minus_gcross_vy_leg2 * t554 - 0.8928571428571429 * rate_dot_cross_leg2,
+                -(minus_gcross_vy_leg2 * t517 + t526),
+                -(2.8471209912536444 * t538 - minus_gcross_vy_leg2 * t534),
+                minus_grod_vy_leg2 * t514 - minus_gcross_vy_leg2 * t554,
+                t526 - minus_gcross_vy_leg2 * t530,
+                minus_gcross_vy_leg2 * t567 - 0.8928571428571429 * rate_dot_cross_leg2,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(garm_vy_leg2 * t578 + t588 + t112 * t590),
-                garm_vy_leg2 * t602 - t112 * t588 + t590,
-                garm_vy_leg2 * t616 - minus_gcross_vy_leg2 * t583,
-                garm_vy_leg2 * t626,
-                t631,
-                garm_vy_leg3 * t633,
-                garm_vy_leg3 * t637,
-                t631,
-                t161,
+                -(garm_vy_leg2 * t591 + minus_gcross_vy_leg2 * t582
+                    + minus_grod_vy_leg2 * t597),
+                garm_vy_leg2 * t614 - minus_gcross_vy_leg2 * t616
+                    + 0.8928571428571429 * t596,
+                garm_vy_leg2 * t632 - minus_gcross_vy_leg2 * t596,
+                garm_vy_leg2 * t642,
+                t647,
+                garm_vy_leg3 * t649,
+                garm_vy_leg3 * t653,
+                t647,
+                t168,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 garm_vy_leg3,
-                gcross_vy_leg3 * t667 + t678,
-                gcross_vy_leg3 * t685 - 2.8471209912536444 * t689,
-                gcross_vy_leg3 * t704 - minus_grod_vy_leg3 * t663,
-                gcross_vy_leg3 * t682 - t678,
-                gcross_vy_leg3 * t717 - 0.8928571428571429 * rate_dot_cross_leg3,
+                gcross_vy_leg3 * t684 + t693,
+                gcross_vy_leg3 * t701 - 2.8471209912536444 * t706,
+                gcross_vy_leg3 * t723 - minus_grod_vy_leg3 * t681,
+                gcross_vy_leg3 * t698 - t693,
+                gcross_vy_leg3 * t737 - 0.8928571428571429 * rate_dot_cross_leg3,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                t751 - garm_vy_leg3 * t741 + t157 * t754,
-                garm_vy_leg3 * t766 - t157 * t751 + t754,
-                garm_vy_leg3 * t780 + gcross_vy_leg3 * t747,
-                garm_vy_leg3 * t790,
-                t337,
+                gcross_vy_leg3 * t753 - garm_vy_leg3 * t761 + minus_grod_vy_leg3 * t767,
+                garm_vy_leg3 * t784 - gcross_vy_leg3 * t786 + 0.8928571428571429 * t766,
+                garm_vy_leg3 * t801 + gcross_vy_leg3 * t766,
+                garm_vy_leg3 * t811,
+                t352,
             ],
             [
                 -t45, minus_garm_vz_leg1 * t46, minus_garm_vz_leg1 * t50, -t45, -t56,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t357, -(minus_gcross_vz_leg1 * t369),
-                -(minus_gcross_vz_leg1 * t386), -(minus_gcross_vz_leg1 * t367),
-                -(minus_gcross_vz_leg1 * t396), 0.0,
-                -(minus_garm_vz_leg1 * t411 + minus_gcross_vz_leg1 * t418),
-                minus_gcross_vz_leg1 * t436 - minus_garm_vz_leg1 * t434,
-                -(minus_garm_vz_leg1 * t453 + minus_gcross_vz_leg1 * t444),
-                -(minus_garm_vz_leg1 * t422), -t467, minus_garm_vz_leg2 * t468,
-                minus_garm_vz_leg2 * t472, -t467, -t211,
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t372, -(minus_gcross_vz_leg1 * t384),
+                -(minus_gcross_vz_leg1 * t401), -(minus_gcross_vz_leg1 * t382),
+                -(minus_gcross_vz_leg1 * t411), 0.0,
+                -(minus_garm_vz_leg1 * t425 + minus_gcross_vz_leg1 * t433),
+                minus_gcross_vz_leg1 * t451 - minus_garm_vz_leg1 * t449,
+                -(minus_garm_vz_leg1 * t467 + minus_gcross_vz_leg1 * t459),
+                -(minus_garm_vz_leg1 * t437), -t481, minus_garm_vz_leg2 * t482,
+                minus_garm_vz_leg2 * t486, -t481, -t221,
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
-                -minus_garm_vz_leg2, -(minus_gcross_vz_leg2 * t502), minus_gcross_vz_leg2 * t520,
-                -(minus_gcross_vz_leg2 * t541), -(minus_gcross_vz_leg2 * t517),
-                minus_gcross_vz_leg2 * t554, 0.0, minus_garm_vz_leg2 * t578 - t594,
-                -(t112 * t594 + minus_garm_vz_leg2 * t602),
-                -(minus_gcross_vz_leg2 * t583 + minus_garm_vz_leg2 * t616),
-                -(minus_garm_vz_leg2 * t626), -t632, -(minus_garm_vz_leg3 * t633),
-                -(minus_garm_vz_leg3 * t637), -t632, -t213,
+                -minus_garm_vz_leg2, -(minus_gcross_vz_leg2 * t517), minus_gcross_vz_leg2 * t534,
+                -(minus_gcross_vz_leg2 * t554), -(minus_gcross_vz_leg2 * t530),
+                minus_gcross_vz_leg2 * t567, 0.0,
+                minus_garm_vz_leg2 * t591 - minus_gcross_vz_leg2 * t582,
+                -(minus_gcross_vz_leg2 * t616 + minus_garm_vz_leg2 * t614),
+                -(minus_gcross_vz_leg2 * t596 + minus_garm_vz_leg2 * t632),
+                -(minus_garm_vz_leg2 * t642), -t648, -(minus_garm_vz_leg3 * t649),
+                -(minus_garm_vz_leg3 * t653), -t648, -t223,
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t667, gcross_vz_leg3 * t685,
-                gcross_vz_leg3 * t704, gcross_vz_leg3 * t682, gcross_vz_leg3 * t717, 0.0,
-                minus_garm_vz_leg3 * t741 + t758, -(minus_garm_vz_leg3 * t766 + t157 * t758),
-                gcross_vz_leg3 * t747 - minus_garm_vz_leg3 * t780, -(minus_garm_vz_leg3 * t790),
-                t335 + 9.81,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t684, gcross_vz_leg3 * t701,
+                gcross_vz_leg3 * t723, gcross_vz_leg3 * t698, gcross_vz_leg3 * t737, 0.0,
+                minus_garm_vz_leg3 * t761 + gcross_vz_leg3 * t753,
+                -(minus_garm_vz_leg3 * t784 + gcross_vz_leg3 * t786),
+                gcross_vz_leg3 * t766 - minus_garm_vz_leg3 * t801, -(minus_garm_vz_leg3 * t811),
+                t350 + 9.81,
             ],
         ])
     }
@@ -2936,7 +3010,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 869 operations (299 additions, 554 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 776 intermediates.
+    /// 872 operations (301 additions, 555 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 779 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2945,8 +3019,7 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
         let t5 = 0.2304 * t4;
@@ -2994,338 +3067,340 @@ impl Delta {
         let rate_dot_arm_leg1 = t19 * t70;
         let t72 = 9.81 * c_arm_leg1;
         let t73 = 9.81 * minus_s_arm_leg1;
-        let t75 = t0 + 0.025;
-        let t76 = t75 * t75;
-        let t78 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t81 = t76 + t78 * t78 + t3;
-        let t84 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t86 = 0.8660254037844387 * t75 - 0.5 * t84;
-        let t87 = pose[1] + t86;
-        let t88 = t87 * t87;
-        let t90 = 0.2304 * (t81 - t88);
-        let t91 = 1.0 / t90;
-        let t93 = 0.5 * t75;
-        let t95 = 0.48 * (0.8660254037844387 * t78 - t93);
-        let t96 = t81 - 0.3136;
-        let t97 = t96 + 0.0576;
-        let t100 = t90 - t97 * t97;
-        ::overact::guard::reach(t100, "leg2")?;
-        let t101 = ::overact::math::sqrt(t100);
-        let c_arm_leg2 = t91 * (t95 * t97 - t23 * t101);
-        let t106 = 1.0 - 3.188775510204082 * t88;
-        ::overact::guard::reach(t106, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t106);
+        let t76 = pose[0] - 0.025 + 0.1;
+        let t77 = t76 * t76;
+        let t79 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t82 = t77 + t79 * t79 + t3;
+        let t85 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t87 = 0.8660254037844387 * t76 - 0.5 * t85;
+        let t88 = pose[1] + t87;
+        let t89 = t88 * t88;
+        let t91 = 0.2304 * (t82 - t89);
+        let t92 = 1.0 / t91;
+        let t94 = 0.5 * t76;
+        let t96 = 0.48 * (0.8660254037844387 * t79 - t94);
+        let t97 = t82 - 0.3136;
+        let t98 = t97 + 0.0576;
+        let t101 = t91 - t98 * t98;
+        ::overact::guard::reach(t101, "leg2")?;
+        let t102 = ::overact::math::sqrt(t101);
+        let c_arm_leg2 = t92 * (t96 * t98 - t23 * t102);
+        let t107 = 1.0 - 3.188775510204082 * t89;
+        ::overact::guard::reach(t107, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t107);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t108 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t101 / t108;
+        let t109 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t102 / t109;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t91 * (t23 * t97 + t95 * t101);
-        let c_cross_leg2 = (-0.0576 + t96) / t108;
+        let minus_s_arm_leg2 = t92 * (t23 * t98 + t96 * t102);
+        let c_cross_leg2 = (-0.0576 + t97) / t109;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t119 = 1.0 / s_cross_leg2;
-        let t120 = 4.166666666666667 * t119;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t120;
-        let t124 = t76 + t84 * t84 + t3;
-        let t125 = t86 * t86;
-        let t127 = 0.2304 * (t124 - t125);
-        let t128 = t124 - 0.3136;
-        let t129 = t128 + 0.0576;
-        let t131 = t127 - t129 * t129;
-        ::overact::guard::reach(t131, "leg3")?;
-        let t132 = ::overact::math::sqrt(t131);
-        let t134 = 1.0 - 3.188775510204082 * t125;
-        ::overact::guard::reach(t134, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t134);
+        let t120 = 1.0 / s_cross_leg2;
+        let t121 = 4.166666666666667 * t120;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t121;
+        let t125 = t77 + t85 * t85 + t3;
+        let t126 = t87 * t87;
+        let t128 = 0.2304 * (t125 - t126);
+        let t129 = t125 - 0.3136;
+        let t130 = t129 + 0.0576;
+        let t132 = t128 - t130 * t130;
+        ::overact::guard::reach(t132, "leg3")?;
+        let t133 = ::overact::math::sqrt(t132);
+        let t135 = 1.0 - 3.188775510204082 * t126;
+        ::overact::guard::reach(t135, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t135);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t136 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t132 / t136;
+        let t137 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t133 / t137;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t138 = 1.0 / s_cross_leg3;
-        let t139 = 4.166666666666667 * t138;
-        let t140 = 1.0 / t127;
-        let t143 = 0.48 * (t93 + 0.8660254037844387 * t84);
-        let minus_c_arm_leg3 = t140 * (t143 * t129 + t23 * t132);
-        let c_cross_leg3 = (-0.0576 + t128) / t136;
-        let s_arm_leg3 = t140 * (t143 * t132 - t23 * t129);
+        let t139 = 1.0 / s_cross_leg3;
+        let t140 = 4.166666666666667 * t139;
+        let t141 = 1.0 / t128;
+        let t144 = 0.48 * (t94 + 0.8660254037844387 * t85);
+        let minus_c_arm_leg3 = t141 * (t144 * t130 + t23 * t133);
+        let c_cross_leg3 = (-0.0576 + t129) / t137;
+        let s_arm_leg3 = t141 * (t144 * t133 - t23 * t130);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t157 = 0.5 * minus_c_armcross_leg3;
-        let t158 = 1.0 / c_rod_leg3;
-        let t159 = 1.7857142857142858 * t158;
-        let t160 = t86 * t159;
-        let garm_vx_leg3 = t139 * (t157 + 0.8660254037844387 * t160);
-        let t165 = 1.0 / c_rod_leg2;
-        let t166 = 1.7857142857142858 * t165;
-        let t167 = t87 * t166;
+        let t158 = 0.5 * minus_c_armcross_leg3;
+        let t159 = 1.0 / c_rod_leg3;
+        let t160 = 1.7857142857142858 * t159;
+        let t161 = t87 * t160;
+        let garm_vx_leg3 = t140 * (t158 + 0.8660254037844387 * t161);
+        let t166 = 1.0 / c_rod_leg2;
+        let t167 = 1.7857142857142858 * t166;
+        let t168 = t88 * t167;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t172 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t120 * (0.8660254037844387 * t167 - t172);
+        let t173 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t121 * (0.8660254037844387 * t168 - t173);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t139;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t140;
         let garm_vy_leg1 = t19 * t47;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t19;
-        let t184 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t139 * (t184 - 0.5 * t160);
-        let t189 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
-        let t191 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t120 * (t191 + 0.5 * t167);
+        let t185 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t140 * (t185 - 0.5 * t161);
+        let t190 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t192 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t121 * (t192 + 0.5 * t168);
         let garm_vx_leg1 = c_armcross_leg1 * t19;
-        let t198 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t203 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t205 = garm_vx_leg2 * t189 - garm_vy_leg2 * t198 - minus_garm_vz_leg2 * t203;
-        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t205, 87.78853732233405, "kept actuators")?;
-        let t206 = 1.0 / t205;
-        let t207 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t206;
-        let t208 = grod_vy_leg1 * t207;
-        let t209 = pose[1] * minus_rate_cross_leg1;
-        let t211 = 3.188775510204082 * (t58 * t209);
-        let t212 = t208 * t211;
+        let t199 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t204 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t206 = garm_vx_leg2 * t190 - garm_vy_leg2 * t199 - minus_garm_vz_leg2 * t204;
+        ::overact::guard::platform(t206, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t206, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t206, 87.78853732233405, "kept actuators")?;
+        let t207 = 1.0 / t206;
+        let t208 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t207;
+        let t209 = grod_vy_leg1 * t208;
+        let t210 = pose[1] * minus_rate_cross_leg1;
+        let t212 = 3.188775510204082 * (t58 * t210);
+        let t213 = t209 * t212;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t42 * garm_vy_leg1);
         let minus_gcross_vx_leg1 = grod_vy_leg1 * (t18 * c_arm_leg1);
-        let t221 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t206;
+        let t222 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t207;
         let minus_gcross_vz_leg1 = grod_vy_leg1 * (t18 * minus_s_arm_leg1);
-        let t229 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t206;
-        let t231 = minus_gcross_vy_leg1 * t207 - minus_gcross_vx_leg1 * t221
-            - minus_gcross_vz_leg1 * t229;
-        let t233 = rate_rod_leg1 * (1.7857142857142858 * t58);
-        let t234 = 0.24 * rate_dot_arm_leg1;
-        let t239 = 0.24 * t51;
-        let t241 = t48 * minus_rate_cross_leg1;
-        let t245 = c_cross_leg1 * t234 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t239 + t241 + t241;
-        let t246 = 1.7857142857142858 * t245;
-        let t247 = t47 * t246;
-        let t249 = t233 + t247 + t233;
-        let t250 = c_rod_leg1 * t249;
-        let t251 = t47 * t250;
-        let t254 = t198 * t206;
-        let t255 = grod_vy_leg1 * t254;
-        let t256 = t255 * t211;
-        let t258 = t189 * t206;
-        let t261 = t203 * t206;
-        let t263 = minus_gcross_vy_leg1 * t254 - minus_gcross_vx_leg1 * t258
-            - minus_gcross_vz_leg1 * t261;
-        let t269 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t206;
-        let t274 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t206;
-        let t280 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t206;
-        let t282 = minus_gcross_vx_leg1 * t269 - minus_gcross_vy_leg1 * t274
-            + minus_gcross_vz_leg1 * t280;
-        let t284 = grod_vy_leg1 * t274;
-        let t285 = t284 * t211;
+        let t230 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t207;
+        let t232 = minus_gcross_vy_leg1 * t208 - minus_gcross_vx_leg1 * t222
+            - minus_gcross_vz_leg1 * t230;
+        let t234 = rate_rod_leg1 * (1.7857142857142858 * t58);
+        let t235 = 0.24 * rate_dot_arm_leg1;
+        let t240 = 0.24 * t51;
+        let t242 = t48 * minus_rate_cross_leg1;
+        let t246 = c_cross_leg1 * t235 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t240 + t242 + t242;
+        let t247 = 1.7857142857142858 * t246;
+        let t248 = t47 * t247;
+        let t250 = t234 + t248 + t234;
+        let t251 = c_rod_leg1 * t250;
+        let t252 = t47 * t251;
+        let t255 = t199 * t207;
+        let t256 = grod_vy_leg1 * t255;
+        let t257 = t256 * t212;
+        let t259 = t190 * t207;
+        let t262 = t204 * t207;
+        let t264 = minus_gcross_vy_leg1 * t255 - minus_gcross_vx_leg1 * t259
+            - minus_gcross_vz_leg1 * t262;
+        let t270 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t207;
+        let t275 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t207;
+        let t281 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t207;
+        let t283 = minus_gcross_vx_leg1 * t270 - minus_gcross_vy_leg1 * t275
+            + minus_gcross_vz_leg1 * t281;
+        let t285 = grod_vy_leg1 * t275;
+        let t286 = t285 * t212;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t292 = s_rod_leg1 * t233 + c_rod_leg1 * (1.7857142857142858 * (t241 - t245));
-        let t294 = t47 * t292 - t250;
-        let t296 = t209 * t209;
-        let t299 = 3.188775510204082 * (t296 - t58 * t58);
+        let t293 = s_rod_leg1 * t234 + c_rod_leg1 * (1.7857142857142858 * (t242 - t246));
+        let t295 = t47 * t293 - t251;
+        let t297 = t210 * t210;
+        let t300 = 3.188775510204082 * (t297 - t58 * t58);
         let rate_dot_rod_leg1 = grod_vy_leg1 * t68;
-        let t311 = 3.188775510204082 * t296;
-        let t314 = s_rod_leg1 * (t211 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t311);
-        let t325 = t231 * t292 - t212;
-        let t327 = t263 * t292 - t256;
-        let t329 = t282 * t292 + t285;
-        let t330 = 1.7857142857142858 * acceleration[1];
-        let t340 = t208 * rate_dot_rod_leg1;
-        let t341 = t255 * rate_dot_rod_leg1;
-        let t342 = t284 * rate_dot_rod_leg1;
-        let t346 = acceleration[2] + 9.81;
-        let t348 = t221 * acceleration[0] - t207 * acceleration[1] + t229 * t346;
-        let t349 = 1.7857142857142858 * t348;
-        let t350 = t234 - t72;
-        let t362 = t258 * acceleration[0] - t254 * acceleration[1] + t261 * t346;
-        let t363 = 1.7857142857142858 * t362;
-        let t371 = t274 * acceleration[1] - t269 * acceleration[0] - t280 * t346;
-        let t372 = 1.7857142857142858 * t371;
-        let t376 = 0.8928571428571429 * t12;
-        let t379 = t47 * t376;
-        let t386 = t73 - t239;
-        let t389 = s_rod_leg1 * (c_cross_leg1 * t350 - s_cross_leg1 * t386);
-        let t394 = c_cross_leg1 * t386 + s_cross_leg1 * t350;
-        let t395 = c_rod_leg1 * t394;
-        let t397 = t376 * (t211 - rate_dot_rod_leg1) + t379 * (t311 + t62) + t42 * t249
-            - t231 * t389 + t208 * t395;
-        let t419 = 0.24 * c_cross_leg2;
-        let t424 = t191 * twist[1] - t172 * twist[0] - s_armcross_leg2 * twist[2];
-        let t425 = 0.8660254037844387 * twist[0];
-        let t426 = 0.5 * twist[1];
-        let t427 = t425 + t426;
-        let t428 = t167 * t427;
-        let rate_arm_leg2 = t120 * (t424 + t428);
-        let t431 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t166 * t427;
-        let t435 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t436 = 0.5 * s_armcross_leg2;
-        let t438 = 0.8660254037844387 * s_armcross_leg2;
-        let t443 = c_cross_leg2 * t119;
-        let t446 = t167 * t443;
-        let t448 = t436 * twist[0] - t438 * twist[1] - c_armcross_leg2 * twist[2]
-            - t443 * t424 - t446 * t427;
-        let rate_cross_leg2 = t166 * t448;
-        let t450 = rate_cross_leg2 * rate_cross_leg2;
-        let t454 = t191 * acceleration[1] - t172 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t419 * t431
-            + 0.56 * c_rod_leg2 * (t435 + t450);
-        let t455 = 0.8660254037844387 * acceleration[0];
-        let t456 = 0.5 * acceleration[1];
-        let t457 = t455 + t456;
-        let t459 = t457 + t87 * t435;
-        let rate_dot_arm_leg2 = t120 * (t454 + t167 * t459);
-        let t463 = 9.81 * c_arm_leg2;
-        let t464 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t166 * (t172 * t443 + t436 - 0.8660254037844387 * t446);
-        let minus_gcross_vy_leg2 = t166 * (t191 * t443 + t438 + 0.5 * t446);
-        let minus_gcross_vz_leg2 = t166 * (minus_s_arm_leg2 * t119);
-        let t482 = gcross_vx_leg2 * t221 + minus_gcross_vy_leg2 * t207
-            - minus_gcross_vz_leg2 * t229;
-        let t484 = minus_rate_rod_leg2 * (1.7857142857142858 * t448);
-        let t490 = 0.24 * t431;
-        let t492 = t428 * rate_cross_leg2;
-        let t497 = t436 * acceleration[0] - t438 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t490 - t492 - t492)
-            - t443 * t454;
-        let t499 = t497 - t446 * t459;
-        let t500 = 1.7857142857142858 * t499;
-        let t501 = t167 * t500;
-        let t503 = t484 + t501 + t484;
-        let t504 = c_rod_leg2 * t503;
-        let t505 = t167 * t504;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t165;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t165;
-        let t511 = minus_grod_vy_leg2 * t207 - minus_grod_vx_leg2 * t221;
-        let t512 = t87 * rate_cross_leg2;
-        let t514 = 3.188775510204082 * (t448 * t512);
-        let t515 = t511 * t514;
-        let t521 = gcross_vx_leg2 * t258 + minus_gcross_vy_leg2 * t254
-            - minus_gcross_vz_leg2 * t261;
-        let t525 = minus_grod_vy_leg2 * t254 - minus_grod_vx_leg2 * t258;
-        let t526 = t525 * t514;
-        let t530 = minus_grod_vx_leg2 * t269 - minus_grod_vy_leg2 * t274;
-        let t531 = t530 * t514;
-        let t536 = gcross_vx_leg2 * t269 + minus_gcross_vy_leg2 * t274
-            - minus_gcross_vz_leg2 * t280;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t87;
-        let t544 = c_rod_leg2 * (1.7857142857142858 * (t499 - t492))
-            - minus_s_rod_leg2 * t484;
-        let t546 = t167 * t544 + t504;
-        let t548 = t512 * t512;
-        let t551 = 3.188775510204082 * (t548 - t448 * t448);
-        let minus_rate_dot_rod_leg2 = t166 * t459;
-        let t563 = 3.188775510204082 * t548;
-        let t566 = minus_s_rod_leg2 * (t514 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t435 - t563);
-        let t577 = t482 * t544 - t515;
-        let t579 = t521 * t544 - t526;
-        let t581 = t536 * t544 + t531;
-        let t583 = 1.7857142857142858 * t457;
-        let t592 = t511 * minus_rate_dot_rod_leg2;
-        let t593 = t525 * minus_rate_dot_rod_leg2;
-        let t594 = t530 * minus_rate_dot_rod_leg2;
-        let t599 = 0.24 * rate_dot_arm_leg2 - t463;
-        let t611 = t464 - t490;
-        let t614 = minus_s_rod_leg2 * (c_cross_leg2 * t599 - s_cross_leg2 * t611);
-        let t618 = c_cross_leg2 * t611 + s_cross_leg2 * t599;
-        let t619 = c_rod_leg2 * t618;
-        let t622 = 0.8928571428571429 * t101;
-        let t625 = t167 * t622;
-        let t634 = t622 * (minus_rate_dot_rod_leg2 - t514) - t625 * (t563 + t435)
-            + t419 * t503 + t521 * t614 - t525 * t619;
-        let t653 = 0.24 * c_cross_leg3;
-        let t658 = t157 * twist[0] + t184 * twist[1] - s_armcross_leg3 * twist[2];
-        let t659 = t425 - t426;
-        let t660 = t160 * t659;
-        let rate_arm_leg3 = t139 * (t658 + t660);
-        let t663 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t159 * t659;
-        let t667 = rate_rod_leg3 * rate_rod_leg3;
-        let t668 = 0.5 * s_armcross_leg3;
-        let t670 = 0.8660254037844387 * s_armcross_leg3;
-        let t675 = c_cross_leg3 * t138;
-        let t678 = t160 * t675;
-        let t680 = t668 * twist[0] + t670 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t675 * t658 - t678 * t659;
-        let rate_cross_leg3 = t159 * t680;
-        let t682 = rate_cross_leg3 * rate_cross_leg3;
-        let t686 = t157 * acceleration[0] + t184 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t653 * t663
-            + 0.56 * c_rod_leg3 * (t667 + t682);
-        let t687 = t455 - t456;
-        let t689 = t687 + t86 * t667;
-        let rate_dot_arm_leg3 = t139 * (t686 + t160 * t689);
-        let t693 = 9.81 * minus_c_arm_leg3;
-        let t694 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t159 * (t668 - t157 * t675 - 0.8660254037844387 * t678);
-        let gcross_vy_leg3 = t159 * (t670 - t184 * t675 + 0.5 * t678);
-        let gcross_vz_leg3 = t159 * (t138 * s_arm_leg3);
-        let t712 = gcross_vx_leg3 * t221 - gcross_vy_leg3 * t207 + gcross_vz_leg3 * t229;
-        let t714 = rate_rod_leg3 * (1.7857142857142858 * t680);
-        let t720 = 0.24 * t663;
-        let t722 = t660 * rate_cross_leg3;
-        let t727 = t668 * acceleration[0] + t670 * acceleration[1]
+        let t312 = 3.188775510204082 * t297;
+        let t315 = s_rod_leg1 * (t212 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t312);
+        let t326 = t232 * t293 - t213;
+        let t328 = t264 * t293 - t257;
+        let t330 = t283 * t293 + t286;
+        let t331 = 1.7857142857142858 * acceleration[1];
+        let t341 = t209 * rate_dot_rod_leg1;
+        let t342 = t256 * rate_dot_rod_leg1;
+        let t343 = t285 * rate_dot_rod_leg1;
+        let t347 = acceleration[2] + 9.81;
+        let t349 = t222 * acceleration[0] - t208 * acceleration[1] + t230 * t347;
+        let t350 = 1.7857142857142858 * t349;
+        let t351 = t235 - t72;
+        let t363 = t259 * acceleration[0] - t255 * acceleration[1] + t262 * t347;
+        let t364 = 1.7857142857142858 * t363;
+        let t372 = t275 * acceleration[1] - t270 * acceleration[0] - t281 * t347;
+        let t373 = 1.7857142857142858 * t372;
+        let t377 = 0.8928571428571429 * t12;
+        let t380 = t47 * t377;
+        let t387 = t73 - t240;
+        let t390 = s_rod_leg1 * (c_cross_leg1 * t351 - s_cross_leg1 * t387);
+        let t395 = c_cross_leg1 * t387 + s_cross_leg1 * t351;
+        let t396 = c_rod_leg1 * t395;
+        let t398 = t377 * (t212 - rate_dot_rod_leg1) + t380 * (t312 + t62) + t42 * t250
+            - t232 * t390 + t209 * t396;
+        let t420 = 0.24 * c_cross_leg2;
+        let t425 = t192 * twist[1] - t173 * twist[0] - s_armcross_leg2 * twist[2];
+        let t426 = 0.8660254037844387 * twist[0];
+        let t427 = 0.5 * twist[1];
+        let t428 = t426 + t427;
+        let t429 = t168 * t428;
+        let rate_arm_leg2 = t121 * (t425 + t429);
+        let t432 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t167 * t428;
+        let t436 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t437 = 0.5 * s_armcross_leg2;
+        let t439 = 0.8660254037844387 * s_armcross_leg2;
+        let t444 = c_cross_leg2 * t120;
+        let t447 = t168 * t444;
+        let t449 = t437 * twist[0] - t439 * twist[1] - c_armcross_leg2 * twist[2]
+            - t444 * t425 - t447 * t428;
+        let rate_cross_leg2 = t167 * t449;
+        let t451 = rate_cross_leg2 * rate_cross_leg2;
+        let t455 = t192 * acceleration[1] - t173 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t420 * t432
+            + 0.56 * c_rod_leg2 * (t436 + t451);
+        let t456 = 0.8660254037844387 * acceleration[0];
+        let t457 = 0.5 * acceleration[1];
+        let t458 = t456 + t457;
+        let t460 = t458 + t88 * t436;
+        let rate_dot_arm_leg2 = t121 * (t455 + t168 * t460);
+        let t464 = 9.81 * c_arm_leg2;
+        let t465 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t167 * (t173 * t444 + t437 - 0.8660254037844387 * t447);
+        let minus_gcross_vy_leg2 = t167 * (t192 * t444 + t439 + 0.5 * t447);
+        let minus_gcross_vz_leg2 = t167 * (minus_s_arm_leg2 * t120);
+        let t483 = gcross_vx_leg2 * t222 + minus_gcross_vy_leg2 * t208
+            - minus_gcross_vz_leg2 * t230;
+        let t485 = minus_rate_rod_leg2 * (1.7857142857142858 * t449);
+        let t491 = 0.24 * t432;
+        let t493 = t429 * rate_cross_leg2;
+        let t498 = t437 * acceleration[0] - t439 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t491 - t493 - t493)
+            - t444 * t455;
+        let t500 = t498 - t447 * t460;
+        let t501 = 1.7857142857142858 * t500;
+        let t502 = t168 * t501;
+        let t504 = t485 + t502 + t485;
+        let t505 = c_rod_leg2 * t504;
+        let t506 = t168 * t505;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t166;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t166;
+        let t512 = minus_grod_vy_leg2 * t208 - minus_grod_vx_leg2 * t222;
+        let t513 = t88 * rate_cross_leg2;
+        let t515 = 3.188775510204082 * (t449 * t513);
+        let t516 = t512 * t515;
+        let t522 = gcross_vx_leg2 * t259 + minus_gcross_vy_leg2 * t255
+            - minus_gcross_vz_leg2 * t262;
+        let t526 = minus_grod_vy_leg2 * t255 - minus_grod_vx_leg2 * t259;
+        let t527 = t526 * t515;
+        let t531 = minus_grod_vx_leg2 * t270 - minus_grod_vy_leg2 * t275;
+        let t532 = t531 * t515;
+        let t537 = gcross_vx_leg2 * t270 + minus_gcross_vy_leg2 * t275
+            - minus_gcross_vz_leg2 * t281;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t88;
+        let t545 = c_rod_leg2 * (1.7857142857142858 * (t500 - t493))
+            - minus_s_rod_leg2 * t485;
+        let t547 = t168 * t545 + t505;
+        let t549 = t513 * t513;
+        let t552 = 3.188775510204082 * (t549 - t449 * t449);
+        let minus_rate_dot_rod_leg2 = t167 * t460;
+        let t564 = 3.188775510204082 * t549;
+        let t567 = minus_s_rod_leg2 * (t515 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t436 - t564);
+        let t578 = t483 * t545 - t516;
+        let t580 = t522 * t545 - t527;
+        let t582 = t537 * t545 + t532;
+        let t584 = 1.7857142857142858 * t458;
+        let t593 = t512 * minus_rate_dot_rod_leg2;
+        let t594 = t526 * minus_rate_dot_rod_leg2;
+        let t595 = t531 * minus_rate_dot_rod_leg2;
+        let t600 = 0.24 * rate_dot_arm_leg2 - t464;
+        let t612 = t465 - t491;
+        let t615 = minus_s_rod_leg2 * (c_cross_leg2 * t600 - s_cross_leg2 * t612);
+        let t619 = c_cross_leg2 * t612 + s_cross_leg2 * t600;
+        let t620 = c_rod_leg2 * t619;
+        let t623 = 0.8928571428571429 * t102;
+        let t626 = t168 * t623;
+        let t635 = t623 * (minus_rate_dot_rod_leg2 - t515) - t626 * (t564 + t436)
+            + t420 * t504 + t522 * t615 - t526 * t620;
+        let t654 = 0.24 * c_cross_leg3;
+        let t659 = t158 * twist[0] + t185 * twist[1] - s_armcross_leg3 * twist[2];
+        let t660 = t426 - t427;
+        let t661 = t161 * t660;
+        let rate_arm_leg3 = t140 * (t659 + t661);
+        let t664 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t160 * t660;
+        let t668 = rate_rod_leg3 * rate_rod_leg3;
+        let t669 = 0.5 * s_armcross_leg3;
+        let t671 = 0.8660254037844387 * s_armcross_leg3;
+        let t676 = c_cross_leg3 * t139;
+        let t679 = t161 * t676;
+        let t681 = t669 * twist[0] + t671 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t676 * t659 - t679 * t660;
+        let rate_cross_leg3 = t160 * t681;
+        let t683 = rate_cross_leg3 * rate_cross_leg3;
+        let t687 = t158 * acceleration[0] + t185 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t654 * t664
+            + 0.56 * c_rod_leg3 * (t668 + t683);
+        let t688 = t456 - t457;
+        let t690 = t688 + t87 * t668;
+        let rate_dot_arm_leg3 = t140 * (t687 + t161 * t690);
+        let t694 = 9.81 * minus_c_arm_leg3;
+        let t695 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t160 * (t669 - t158 * t676 - 0.8660254037844387 * t679);
+        let gcross_vy_leg3 = t160 * (t671 - t185 * t676 + 0.5 * t679);
+        let gcross_vz_leg3 = t160 * (t139 * s_arm_leg3);
+        let t713 = gcross_vx_leg3 * t222 - gcross_vy_leg3 * t208 + gcross_vz_leg3 * t230;
+        let s_rod_leg3 = 1.7857142857142858 * t87;
+        let t720 = 0.24 * t664;
+        let t722 = t661 * rate_cross_leg3;
+        let t727 = t669 * acceleration[0] + t671 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t720 - t722 - t722) - t675 * t686;
-        let t729 = t727 - t678 * t689;
-        let t730 = 1.7857142857142858 * t729;
-        let t731 = t160 * t730;
-        let t733 = t714 + t731 + t714;
-        let t734 = c_rod_leg3 * t733;
-        let t735 = t160 * t734;
-        let grod_vx_leg3 = 1.5464739353293548 * t158;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t158;
-        let t741 = grod_vx_leg3 * t221 + minus_grod_vy_leg3 * t207;
-        let t742 = t86 * rate_cross_leg3;
-        let t744 = 3.188775510204082 * (t680 * t742);
-        let t745 = t741 * t744;
-        let t751 = gcross_vx_leg3 * t258 - gcross_vy_leg3 * t254 + gcross_vz_leg3 * t261;
-        let t755 = grod_vx_leg3 * t258 + minus_grod_vy_leg3 * t254;
-        let t756 = t755 * t744;
-        let t762 = gcross_vy_leg3 * t274 - gcross_vx_leg3 * t269 - gcross_vz_leg3 * t280;
-        let t766 = grod_vx_leg3 * t269 + minus_grod_vy_leg3 * t274;
-        let t767 = t766 * t744;
-        let s_rod_leg3 = 1.7857142857142858 * t86;
-        let t774 = c_rod_leg3 * (1.7857142857142858 * (t729 - t722)) - s_rod_leg3 * t714;
-        let t776 = t734 + t160 * t774;
-        let t778 = t742 * t742;
-        let t781 = 3.188775510204082 * (t778 - t680 * t680);
-        let rate_dot_rod_leg3 = t159 * t689;
-        let t793 = 3.188775510204082 * t778;
-        let t796 = s_rod_leg3 * (t744 + rate_dot_rod_leg3) + c_rod_leg3 * (t667 - t793);
-        let t807 = t712 * t774 + t745;
-        let t809 = t751 * t774 + t756;
-        let t811 = t762 * t774 - t767;
-        let t812 = 1.7857142857142858 * t687;
-        let t822 = t741 * rate_dot_rod_leg3;
-        let t823 = t755 * rate_dot_rod_leg3;
-        let t824 = t766 * rate_dot_rod_leg3;
-        let t832 = t693 + 0.24 * rate_dot_arm_leg3;
-        let t840 = t694 + t720;
-        let t844 = s_rod_leg3 * (s_cross_leg3 * t840 + c_cross_leg3 * t832);
-        let t848 = s_cross_leg3 * t832 - c_cross_leg3 * t840;
-        let t849 = c_rod_leg3 * t848;
-        let t855 = 0.8928571428571429 * t132;
-        let t858 = t160 * t855;
-        let t867 = t855 * (t744 - rate_dot_rod_leg3) + t858 * (t793 + t667) - t653 * t733
-            - t762 * t844 + t766 * t849;
+            - (s_cross_leg3 * t720 - t722 - t722) - t676 * t687;
+        let t729 = t727 - t679 * t690;
+        let rate_dot_cross_leg3 = t160 * t729;
+        let t731 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t733 = rate_rod_leg3 * (1.7857142857142858 * t681);
+        let t734 = t731 + t733;
+        let t736 = s_rod_leg3 * t733;
+        let t737 = s_rod_leg3 * t734 + t736;
+        let grod_vx_leg3 = 1.5464739353293548 * t159;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t159;
+        let t743 = grod_vx_leg3 * t222 + minus_grod_vy_leg3 * t208;
+        let t744 = t87 * rate_cross_leg3;
+        let t746 = 3.188775510204082 * (t681 * t744);
+        let t747 = t743 * t746;
+        let t753 = gcross_vx_leg3 * t259 - gcross_vy_leg3 * t255 + gcross_vz_leg3 * t262;
+        let t757 = grod_vx_leg3 * t259 + minus_grod_vy_leg3 * t255;
+        let t758 = t757 * t746;
+        let t764 = gcross_vy_leg3 * t275 - gcross_vx_leg3 * t270 - gcross_vz_leg3 * t281;
+        let t768 = grod_vx_leg3 * t270 + minus_grod_vy_leg3 * t275;
+        let t769 = t768 * t746;
+        let t771 = t733 + t734;
+        let t776 = c_rod_leg3 * (1.7857142857142858 * (t729 - t722)) - t736;
+        let t778 = c_rod_leg3 * t771 + t161 * t776;
+        let t780 = t744 * t744;
+        let t783 = 3.188775510204082 * (t780 - t681 * t681);
+        let rate_dot_rod_leg3 = t160 * t690;
+        let t795 = 3.188775510204082 * t780;
+        let t798 = s_rod_leg3 * (t746 + rate_dot_rod_leg3) + c_rod_leg3 * (t668 - t795);
+        let t809 = t713 * t776 + t747;
+        let t811 = t753 * t776 + t758;
+        let t813 = t764 * t776 - t769;
+        let t814 = 1.7857142857142858 * t688;
+        let t816 = 1.7857142857142858 * t729;
+        let t825 = t743 * rate_dot_rod_leg3;
+        let t826 = t757 * rate_dot_rod_leg3;
+        let t827 = t768 * rate_dot_rod_leg3;
+        let t835 = t694 + 0.24 * rate_dot_arm_leg3;
+        let t843 = t695 + t720;
+        let t847 = s_rod_leg3 * (s_cross_leg3 * t843 + c_cross_leg3 * t835);
+        let t851 = s_cross_leg3 * t835 - c_cross_leg3 * t843;
+        let t852 = c_rod_leg3 * t851;
+        let t858 = 0.8928571428571429 * t133;
+        let t861 = t161 * t858;
+        let t870 = t858 * (t746 - rate_dot_rod_leg3) + t861 * (t795 + t668) - t654 * t771
+            - t764 * t847 + t768 * t852;
         Ok([
             [
                 rate_dot_arm_leg1, -t72, -t73, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t212 - t231 * t251,
-                t231 * t294 - t208 * t299, t231 * t314 + t208 * t247, t325,
-                t231 * t330 + t208 * t246, -t340,
-                t349
+                ::overact::math::sign(rate_arm_leg1), 1.0, t213 - t232 * t252,
+                t232 * t295 - t209 * t300, t232 * t315 + t209 * t248, t326,
+                t232 * t331 + t209 * t247, -t341,
+                t350
                     - 0.10285714285714286
-                        * (4.166666666666667 * t350 + 5.444444444444445 * t325
-                            - 5.444444444444445 * t340),
-                t397,
-                t42 * t60 - (t246 * t376 + t247 * t379) + t231 * t394,
-                0.24 * t350,
+                        * (4.166666666666667 * t351 + 5.444444444444445 * t326
+                            - 5.444444444444445 * t341),
+                t398,
+                t42 * t60 - (t247 * t377 + t248 * t380) + t232 * t395,
+                0.24 * t351,
                 0.0,
                 0.0,
                 0.0,
@@ -3333,15 +3408,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t482 * t505 + t515,
-                t511 * t551 - t482 * t546,
-                t482 * t566 - t511 * t501,
-                t577,
-                t511 * t500 - t482 * t583,
-                -t592,
-                t349 - 0.56 * (t577 - t592),
-                t482 * t614 - t511 * t619,
-                t482 * t618,
+                t483 * t506 + t516,
+                t512 * t552 - t483 * t547,
+                t483 * t567 - t512 * t502,
+                t578,
+                t512 * t501 - t483 * t584,
+                -t593,
+                t350 - 0.56 * (t578 - t593),
+                t483 * t615 - t512 * t620,
+                t483 * t619,
                 0.0,
                 0.0,
                 0.0,
@@ -3350,71 +3425,71 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t712 * t735 - t745,
-                t712 * t776 + t741 * t781,
-                t712 * t796 + t741 * t731,
-                t807,
-                t712 * t812 + t741 * t730,
-                t822,
-                t349 - 0.56 * (t807 + t822),
-                -(t712 * t844 + t741 * t849),
-                t712 * t848,
-                0.0,
-                t348,
-            ],
-            [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t256 - t263 * t251, t263 * t294 - t255 * t299,
-                t263 * t314 + t255 * t247, t327, t263 * t330 + t255 * t246, -t341,
-                t363 - 0.56 * (t327 - t341), t255 * t395 - t263 * t389, t263 * t394, 0.0,
-                rate_dot_arm_leg2, -t463, -t464, rate_dot_arm_leg2, rate_arm_leg2,
-                ::overact::math::sign(rate_arm_leg2), 1.0, t521 * t505 + t526,
-                t525 * t551 - t521 * t546, t521 * t566 - t525 * t501, t579,
-                t525 * t500 - t521 * t583, -t593,
-                t363
-                    - 0.10285714285714286
-                        * (4.166666666666667 * t599 + 5.444444444444445 * t579
-                            - 5.444444444444445 * t593),
-                t634,
-                t500 * t622 + t501 * t625 + t419 * t450 + t521 * t618,
-                0.24 * t599,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                0.0,
-                t751 * t735 - t756,
-                t751 * t776 + t755 * t781,
-                t751 * t796 + t755 * t731,
+                t713 * t737 - t747,
+                t713 * t778 + t743 * t783,
+                t713 * t798 + t743 * t731,
                 t809,
-                t751 * t812 + t755 * t730,
-                t823,
-                t363 - 0.56 * (t809 + t823),
-                -(t751 * t844 + t755 * t849),
-                t751 * t848,
+                t713 * t814 + t743 * t816,
+                t825,
+                t350 - 0.56 * (t809 + t825),
+                -(t713 * t847 + t743 * t852),
+                t713 * t851,
                 0.0,
-                t362,
+                t349,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t282 * t251 + t285), t282 * t294 + t284 * t299,
-                t282 * t314 - t284 * t247, t329, t282 * t330 - t284 * t246, t342,
-                t372 - 0.56 * (t329 + t342), -(t282 * t389 + t284 * t395), t282 * t394, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t531 - t536 * t505, t530 * t551 + t536 * t546,
-                -(t536 * t566 + t530 * t501), -t581, t536 * t583 + t530 * t500, -t594,
-                t372 + 0.56 * (t581 + t594), -(t536 * t614 + t530 * t619), -(t536 * t618), 0.0,
-                rate_dot_arm_leg3, t693, t694, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t762 * t735 + t767,
-                t762 * t776 - t766 * t781, t762 * t796 - t766 * t731, t811,
-                t762 * t812 - t766 * t730, -t824,
-                t372
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t257 - t264 * t252, t264 * t295 - t256 * t300,
+                t264 * t315 + t256 * t248, t328, t264 * t331 + t256 * t247, -t342,
+                t364 - 0.56 * (t328 - t342), t256 * t396 - t264 * t390, t264 * t395, 0.0,
+                rate_dot_arm_leg2, -t464, -t465, rate_dot_arm_leg2, rate_arm_leg2,
+                ::overact::math::sign(rate_arm_leg2), 1.0, t522 * t506 + t527,
+                t526 * t552 - t522 * t547, t522 * t567 - t526 * t502, t580,
+                t526 * t501 - t522 * t584, -t594,
+                t364
                     - 0.10285714285714286
-                        * (4.166666666666667 * t832 + 5.444444444444445 * t811
-                            - 5.444444444444445 * t824),
-                t867,
-                t730 * t855 + t731 * t858 + t653 * t682 + t762 * t848,
-                0.24 * t832,
-                t371,
+                        * (4.166666666666667 * t600 + 5.444444444444445 * t580
+                            - 5.444444444444445 * t594),
+                t635,
+                t501 * t623 + t502 * t626 + t420 * t451 + t522 * t619,
+                0.24 * t600,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t753 * t737 - t758,
+                t753 * t778 + t757 * t783,
+                t753 * t798 + t757 * t731,
+                t811,
+                t753 * t814 + t757 * t816,
+                t826,
+                t364 - 0.56 * (t811 + t826),
+                -(t753 * t847 + t757 * t852),
+                t753 * t851,
+                0.0,
+                t363,
+            ],
+            [
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t283 * t252 + t286), t283 * t295 + t285 * t300,
+                t283 * t315 - t285 * t248, t330, t283 * t331 - t285 * t247, t343,
+                t373 - 0.56 * (t330 + t343), -(t283 * t390 + t285 * t396), t283 * t395, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t532 - t537 * t506, t531 * t552 + t537 * t547,
+                -(t537 * t567 + t531 * t502), -t582, t537 * t584 + t531 * t501, -t595,
+                t373 + 0.56 * (t582 + t595), -(t537 * t615 + t531 * t620), -(t537 * t619), 0.0,
+                rate_dot_arm_leg3, t694, t695, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t764 * t737 + t769,
+                t764 * t778 - t768 * t783, t764 * t798 - t768 * t731, t813,
+                t764 * t814 - t768 * t816, -t827,
+                t373
+                    - 0.10285714285714286
+                        * (4.166666666666667 * t835 + 5.444444444444445 * t813
+                            - 5.444444444444445 * t827),
+                t870,
+                t816 * t858 + t731 * t861 + t654 * t683 + t764 * t851,
+                0.24 * t835,
+                t372,
             ],
         ])
     }
@@ -3854,7 +3929,7 @@ impl Delta {
     /// Output: 3 x 52.
     /// Columns: `PARAMETERS`.
     ///
-    /// 960 operations (336 additions, 605 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 873 intermediates.
+    /// 963 operations (337 additions, 607 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 876 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3865,8 +3940,7 @@ impl Delta {
         start: &[f64; 3],
     ) -> Result<[[f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[0] + 0.05;
-        let t1 = t0 - 0.2;
+        let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
         let t5 = 0.2304 * t4;
@@ -3888,404 +3962,403 @@ impl Delta {
         let c_rod_leg1 = ::overact::math::sqrt(t28);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t31 = t0 + 0.025;
-        let t32 = t31 * t31;
-        let t34 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t37 = t32 + t34 * t34 + t3;
-        let t40 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t42 = 0.8660254037844387 * t31 - 0.5 * t40;
-        let t43 = pose[1] + t42;
-        let t44 = t43 * t43;
-        let t46 = 0.2304 * (t37 - t44);
-        let t47 = 1.0 / t46;
-        let t49 = 0.5 * t31;
-        let t51 = 0.48 * (0.8660254037844387 * t34 - t49);
-        let t52 = t37 - 0.3136;
-        let t53 = t52 + 0.0576;
-        let t56 = t46 - t53 * t53;
-        ::overact::guard::reach(t56, "leg2")?;
-        let t57 = ::overact::math::sqrt(t56);
-        let c_arm_leg2 = t47 * (t51 * t53 - t13 * t57);
-        let t62 = 1.0 - 3.188775510204082 * t44;
-        ::overact::guard::reach(t62, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t62);
+        let t32 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
+        let t35 = pose[0] - 0.025 + 0.1;
+        let t36 = 0.5 * t35;
+        let t37 = 0.8660254037844387 * t32 - t36;
+        let t40 = 0.2304 * (t37 * t37 + t3);
+        let t41 = 1.0 / t40;
+        let t42 = 0.48 * t37;
+        let t43 = t35 * t35;
+        let t47 = t43 + t32 * t32 + t3 - 0.3136;
+        let t48 = t47 + 0.0576;
+        let t51 = t40 - t48 * t48;
+        ::overact::guard::reach(t51, "leg2")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let c_arm_leg2 = t41 * (t42 * t48 - t13 * t52);
+        let t59 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t61 = 0.8660254037844387 * t35 - 0.5 * t59;
+        let t62 = pose[1] + t61;
+        let t65 = 1.0 - 3.188775510204082 * (t62 * t62);
+        ::overact::guard::reach(t65, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t65);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t64 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t57 / t64;
+        let t67 = 0.56 * c_rod_leg2;
+        let s_cross_leg2 = 2.0833333333333335 * t52 / t67;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let minus_s_arm_leg2 = t47 * (t13 * t53 + t51 * t57);
-        let c_cross_leg2 = (-0.0576 + t52) / t64;
+        let minus_s_arm_leg2 = t41 * (t13 * t48 + t42 * t52);
+        let c_cross_leg2 = (-0.0576 + t47) / (0.2688 * c_rod_leg2);
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t75 = 1.0 / s_cross_leg2;
-        let t76 = 4.166666666666667 * t75;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t76;
-        let t80 = t32 + t40 * t40 + t3;
-        let t81 = t42 * t42;
-        let t83 = 0.2304 * (t80 - t81);
-        let t84 = t80 - 0.3136;
-        let t85 = t84 + 0.0576;
-        let t87 = t83 - t85 * t85;
-        ::overact::guard::reach(t87, "leg3")?;
-        let t88 = ::overact::math::sqrt(t87);
-        let t90 = 1.0 - 3.188775510204082 * t81;
-        ::overact::guard::reach(t90, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t90);
+        let t79 = 1.0 / s_cross_leg2;
+        let t80 = 4.166666666666667 * t79;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t80;
+        let t84 = t43 + t59 * t59 + t3;
+        let t85 = t61 * t61;
+        let t87 = 0.2304 * (t84 - t85);
+        let t88 = t84 - 0.3136;
+        let t89 = t88 + 0.0576;
+        let t91 = t87 - t89 * t89;
+        ::overact::guard::reach(t91, "leg3")?;
+        let t92 = ::overact::math::sqrt(t91);
+        let t94 = 1.0 - 3.188775510204082 * t85;
+        ::overact::guard::reach(t94, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t94);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t92 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t88 / t92;
+        let t96 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t92 / t96;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t94 = 1.0 / s_cross_leg3;
-        let t95 = 4.166666666666667 * t94;
-        let t96 = 1.0 / t83;
-        let t99 = 0.48 * (t49 + 0.8660254037844387 * t40);
-        let minus_c_arm_leg3 = t96 * (t99 * t85 + t13 * t88);
-        let c_cross_leg3 = (-0.0576 + t84) / t92;
-        let s_arm_leg3 = t96 * (t99 * t88 - t13 * t85);
+        let t98 = 1.0 / s_cross_leg3;
+        let t99 = 4.166666666666667 * t98;
+        let t100 = 1.0 / t87;
+        let t103 = 0.48 * (t36 + 0.8660254037844387 * t59);
+        let minus_c_arm_leg3 = t100 * (t103 * t89 + t13 * t92);
+        let c_cross_leg3 = (-0.0576 + t88) / t96;
+        let s_arm_leg3 = t100 * (t103 * t92 - t13 * t89);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t113 = 0.5 * minus_c_armcross_leg3;
-        let t114 = 1.0 / c_rod_leg3;
-        let t115 = 1.7857142857142858 * t114;
-        let t116 = t42 * t115;
-        let garm_vx_leg3 = t95 * (t113 + 0.8660254037844387 * t116);
-        let t121 = 1.0 / c_rod_leg2;
-        let t122 = 1.7857142857142858 * t121;
-        let t123 = t43 * t122;
+        let t117 = 0.5 * minus_c_armcross_leg3;
+        let t118 = 1.0 / c_rod_leg3;
+        let t119 = 1.7857142857142858 * t118;
+        let t120 = t61 * t119;
+        let garm_vx_leg3 = t99 * (t117 + 0.8660254037844387 * t120);
+        let t125 = 1.0 / c_rod_leg2;
+        let t126 = 1.7857142857142858 * t125;
+        let t127 = t62 * t126;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t128 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t76 * (0.8660254037844387 * t123 - t128);
+        let t132 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t80 * (0.8660254037844387 * t127 - t132);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t95;
-        let t137 = 0.2688 * c_rod_leg1;
-        let s_cross_leg1 = t16 / t137;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t99;
+        let t141 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t16 / t141;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t139 = 1.0 / s_cross_leg1;
-        let t140 = 4.166666666666667 * t139;
-        let t141 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t140 * t141;
-        let c_cross_leg1 = (t10 + -0.0576) / t137;
+        let t143 = 1.0 / s_cross_leg1;
+        let t144 = 4.166666666666667 * t143;
+        let t145 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t144 * t145;
+        let c_cross_leg1 = (t10 + -0.0576) / t141;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t140;
-        let t150 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t95 * (t150 - 0.5 * t116);
-        let t155 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
-        let t157 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t76 * (t157 + 0.5 * t123);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t144;
+        let t154 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t99 * (t154 - 0.5 * t120);
+        let t159 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let t161 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t80 * (t161 + 0.5 * t127);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t140;
-        let t167 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t172 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t174 = garm_vx_leg2 * t155 - garm_vy_leg2 * t167 - minus_garm_vz_leg2 * t172;
-        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t174, 87.78853732233405, "kept actuators")?;
-        let t175 = 1.0 / t174;
-        let t176 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t175;
-        let t177 = grod_vy_leg1 * t176;
-        let t178 = 0.24 * c_cross_leg1;
-        let t184 = garm_vx_leg1 * actuator_velocities[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t144;
+        let t171 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t176 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t178 = garm_vx_leg2 * t159 - garm_vy_leg2 * t171 - minus_garm_vz_leg2 * t176;
+        ::overact::guard::platform(t178, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t178, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t178, 87.78853732233405, "kept actuators")?;
+        let t179 = 1.0 / t178;
+        let t180 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t179;
+        let t181 = grod_vy_leg1 * t180;
+        let t182 = 0.24 * c_cross_leg1;
+        let t188 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t189 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t193 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t189, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t189, 14.869730172882841, "actuators")?;
-        let t190 = 1.0 / t189;
-        let t196 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t193, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t193, 14.869730172882841, "actuators")?;
+        let t194 = 1.0 / t193;
+        let t200 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t197 = t196 * t190;
-        let t204 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t196 * t197;
-        ::overact::guard::platform(t204, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t204, 14.869730172882846, "actuators")?;
-        let t205 = 1.0 / t204;
-        let t212 = garm_vy_leg1 * actuator_velocities[0]
+        let t201 = t200 * t194;
+        let t208 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t200 * t201;
+        ::overact::guard::platform(t208, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t208, 14.869730172882846, "actuators")?;
+        let t209 = 1.0 / t208;
+        let t216 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t184 * t197;
-        let t218 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+            + garm_vy_leg3 * actuator_velocities[2] - t188 * t201;
+        let t222 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t219 = t218 * t190;
-        let t226 = t196 * t219
+        let t223 = t222 * t194;
+        let t230 = t200 * t223
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t227 = t226 * t205;
-        let t236 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t231 = t230 * t209;
+        let t240 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t218 * t219 - t226 * t227;
-        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t236, 34.855350201355726, "actuators")?;
-        let t237 = 1.0 / t236;
-        let t247 = t237
-            * (t184 * t219
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t222 * t223 - t230 * t231;
+        ::overact::guard::platform(t240, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t240, 34.855350201355726, "actuators")?;
+        let t241 = 1.0 / t240;
+        let t251 = t241
+            * (t188 * t223
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t227 * t212);
-        let t249 = t205 * t212 - t227 * t247;
-        let t253 = t184 * t190 - t197 * t249 + t219 * t247;
-        let t257 = actuator_velocities[0] * t178 + s_armcross_leg1 * t253
-            + c_armcross_leg1 * t247;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t257;
-        let t259 = pose[1] * minus_rate_cross_leg1;
-        let t261 = 3.188775510204082 * (t257 * t259);
-        let t262 = t177 * t261;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t178 * garm_vy_leg1);
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t139);
-        let t271 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t175;
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t139);
-        let t279 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t175;
-        let t281 = minus_gcross_vy_leg1 * t176 - minus_gcross_vx_leg1 * t271
-            - minus_gcross_vz_leg1 * t279;
-        let rate_rod_leg1 = grod_vy_leg1 * t249;
-        let t284 = rate_rod_leg1 * (1.7857142857142858 * t257);
-        let t286 = actuator_velocities[0] * actuator_velocities[0];
-        let t289 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t290 = rate_rod_leg1 * rate_rod_leg1;
-        let t294 = pose[1] * t290;
-        let rate_dot_arm_leg1 = t140
-            * (t178 * t286 + 0.56 * c_rod_leg1 * (t289 + t290) + t141 * t294);
-        let t298 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t300 = 0.24 * c_cross_leg2;
-        let t301 = actuator_velocities[1] * actuator_velocities[1];
-        let t304 = 0.8660254037844387 * t253;
-        let t305 = 0.5 * t249;
-        let t306 = t304 + t305;
-        let minus_rate_rod_leg2 = t122 * t306;
-        let t308 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t309 = 0.5 * s_armcross_leg2;
-        let t311 = 0.8660254037844387 * s_armcross_leg2;
-        let t316 = c_cross_leg2 * t75;
-        let t323 = t309 * t253 - t311 * t249 - c_armcross_leg2 * t247
-            - t316 * (t157 * t249 - t128 * t253 - s_armcross_leg2 * t247);
-        let t324 = t123 * t316;
-        let t326 = t323 - t324 * t306;
-        let rate_cross_leg2 = t122 * t326;
-        let t328 = rate_cross_leg2 * rate_cross_leg2;
-        let t331 = t300 * t301 + 0.56 * c_rod_leg2 * (t308 + t328);
-        let t332 = t43 * t308;
-        let rate_dot_arm_leg2 = t76 * (t331 + t123 * t332);
-        let t336 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t339 = 0.24 * c_cross_leg3;
-        let t340 = actuator_velocities[2] * actuator_velocities[2];
-        let t343 = t304 - t305;
-        let rate_rod_leg3 = t115 * t343;
-        let t345 = rate_rod_leg3 * rate_rod_leg3;
-        let t346 = 0.5 * s_armcross_leg3;
-        let t348 = 0.8660254037844387 * s_armcross_leg3;
-        let t353 = c_cross_leg3 * t94;
-        let t360 = t346 * t253 + t348 * t249 + minus_c_armcross_leg3 * t247
-            - t353 * (t113 * t253 + t150 * t249 - s_armcross_leg3 * t247);
-        let t361 = t116 * t353;
-        let t363 = t360 - t361 * t343;
-        let rate_cross_leg3 = t115 * t363;
-        let t365 = rate_cross_leg3 * rate_cross_leg3;
-        let t368 = t339 * t340 + 0.56 * c_rod_leg3 * (t345 + t365);
-        let t369 = t42 * t345;
-        let rate_dot_arm_leg3 = t95 * (t368 + t116 * t369);
-        let t373 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t375 = garm_vx_leg1 * t298 + garm_vx_leg2 * t336 + garm_vx_leg3 * t373;
-        let t383 = garm_vy_leg1 * t298 + garm_vy_leg2 * t336 + garm_vy_leg3 * t373
-            - t197 * t375;
-        let t394 = t237
-            * (t219 * t375
-                - (minus_garm_vz_leg1 * t298 + minus_garm_vz_leg2 * t336
-                    + minus_garm_vz_leg3 * t373) - t227 * t383);
-        let t396 = t205 * t383 - t227 * t394;
-        let t400 = t190 * t375 - t197 * t396 + t219 * t394;
-        let t404 = 0.24 * t286;
-        let t406 = t259 * rate_rod_leg1;
-        let t410 = actuator_accelerations[0] * t178 + s_armcross_leg1 * t400
-            + c_armcross_leg1 * t394 + s_cross_leg1 * t404 + t406 + t406;
-        let t411 = 1.7857142857142858 * t410;
-        let t412 = t141 * t411;
-        let t414 = t284 + t412 + t284;
-        let t415 = c_rod_leg1 * t414;
-        let t416 = t141 * t415;
-        let t419 = t167 * t175;
-        let t420 = grod_vy_leg1 * t419;
-        let t421 = t420 * t261;
-        let t423 = t155 * t175;
-        let t426 = t172 * t175;
-        let t428 = minus_gcross_vy_leg1 * t419 - minus_gcross_vx_leg1 * t423
-            - minus_gcross_vz_leg1 * t426;
-        let t434 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t175;
-        let t439 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t175;
-        let t445 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t175;
-        let t447 = minus_gcross_vx_leg1 * t434 - minus_gcross_vy_leg1 * t439
-            + minus_gcross_vz_leg1 * t445;
-        let t449 = grod_vy_leg1 * t439;
-        let t450 = t449 * t261;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t231 * t216);
+        let t253 = t209 * t216 - t231 * t251;
+        let t257 = t188 * t194 - t201 * t253 + t223 * t251;
+        let t261 = actuator_velocities[0] * t182 + s_armcross_leg1 * t257
+            + c_armcross_leg1 * t251;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t261;
+        let t263 = pose[1] * minus_rate_cross_leg1;
+        let t265 = 3.188775510204082 * (t261 * t263);
+        let t266 = t181 * t265;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t182 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t143);
+        let t275 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t179;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t143);
+        let t283 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t179;
+        let t285 = minus_gcross_vy_leg1 * t180 - minus_gcross_vx_leg1 * t275
+            - minus_gcross_vz_leg1 * t283;
+        let rate_rod_leg1 = grod_vy_leg1 * t253;
+        let t288 = rate_rod_leg1 * (1.7857142857142858 * t261);
+        let t290 = actuator_velocities[0] * actuator_velocities[0];
+        let t293 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t294 = rate_rod_leg1 * rate_rod_leg1;
+        let t298 = pose[1] * t294;
+        let rate_dot_arm_leg1 = t144
+            * (t182 * t290 + 0.56 * c_rod_leg1 * (t293 + t294) + t145 * t298);
+        let t302 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t304 = 0.24 * c_cross_leg2;
+        let t305 = actuator_velocities[1] * actuator_velocities[1];
+        let t307 = 0.8660254037844387 * t257;
+        let t308 = 0.5 * t253;
+        let t309 = t307 + t308;
+        let minus_rate_rod_leg2 = t126 * t309;
+        let t311 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t312 = 0.5 * s_armcross_leg2;
+        let t314 = 0.8660254037844387 * s_armcross_leg2;
+        let t319 = c_cross_leg2 * t79;
+        let t326 = t312 * t257 - t314 * t253 - c_armcross_leg2 * t251
+            - t319 * (t161 * t253 - t132 * t257 - s_armcross_leg2 * t251);
+        let t327 = t127 * t319;
+        let t329 = t326 - t327 * t309;
+        let rate_cross_leg2 = t126 * t329;
+        let t331 = rate_cross_leg2 * rate_cross_leg2;
+        let t334 = t304 * t305 + t67 * (t311 + t331);
+        let t335 = t62 * t311;
+        let rate_dot_arm_leg2 = t80 * (t334 + t127 * t335);
+        let t339 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t342 = 0.24 * c_cross_leg3;
+        let t343 = actuator_velocities[2] * actuator_velocities[2];
+        let t346 = t307 - t308;
+        let rate_rod_leg3 = t119 * t346;
+        let t348 = rate_rod_leg3 * rate_rod_leg3;
+        let t349 = 0.5 * s_armcross_leg3;
+        let t351 = 0.8660254037844387 * s_armcross_leg3;
+        let t356 = c_cross_leg3 * t98;
+        let t363 = t349 * t257 + t351 * t253 + minus_c_armcross_leg3 * t251
+            - t356 * (t117 * t257 + t154 * t253 - s_armcross_leg3 * t251);
+        let t364 = t120 * t356;
+        let t366 = t363 - t364 * t346;
+        let rate_cross_leg3 = t119 * t366;
+        let t368 = rate_cross_leg3 * rate_cross_leg3;
+        let t371 = t342 * t343 + 0.56 * c_rod_leg3 * (t348 + t368);
+        let t372 = t61 * t348;
+        let rate_dot_arm_leg3 = t99 * (t371 + t120 * t372);
+        let t376 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t378 = garm_vx_leg1 * t302 + garm_vx_leg2 * t339 + garm_vx_leg3 * t376;
+        let t386 = garm_vy_leg1 * t302 + garm_vy_leg2 * t339 + garm_vy_leg3 * t376
+            - t201 * t378;
+        let t397 = t241
+            * (t223 * t378
+                - (minus_garm_vz_leg1 * t302 + minus_garm_vz_leg2 * t339
+                    + minus_garm_vz_leg3 * t376) - t231 * t386);
+        let t399 = t209 * t386 - t231 * t397;
+        let t403 = t194 * t378 - t201 * t399 + t223 * t397;
+        let t407 = 0.24 * t290;
+        let t409 = t263 * rate_rod_leg1;
+        let t413 = actuator_accelerations[0] * t182 + s_armcross_leg1 * t403
+            + c_armcross_leg1 * t397 + s_cross_leg1 * t407 + t409 + t409;
+        let t414 = 1.7857142857142858 * t413;
+        let t415 = t145 * t414;
+        let t417 = t288 + t415 + t288;
+        let t418 = c_rod_leg1 * t417;
+        let t419 = t145 * t418;
+        let t422 = t171 * t179;
+        let t423 = grod_vy_leg1 * t422;
+        let t424 = t423 * t265;
+        let t426 = t159 * t179;
+        let t429 = t176 * t179;
+        let t431 = minus_gcross_vy_leg1 * t422 - minus_gcross_vx_leg1 * t426
+            - minus_gcross_vz_leg1 * t429;
+        let t437 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t179;
+        let t442 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t179;
+        let t448 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t179;
+        let t450 = minus_gcross_vx_leg1 * t437 - minus_gcross_vy_leg1 * t442
+            + minus_gcross_vz_leg1 * t448;
+        let t452 = grod_vy_leg1 * t442;
+        let t453 = t452 * t265;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t457 = s_rod_leg1 * t284 + c_rod_leg1 * (1.7857142857142858 * (t406 - t410));
-        let t459 = t141 * t457 - t415;
-        let t461 = t259 * t259;
-        let t464 = 3.188775510204082 * (t461 - t257 * t257);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t396 + t294);
-        let t477 = 3.188775510204082 * t461;
-        let t480 = s_rod_leg1 * (t261 + rate_dot_rod_leg1) + c_rod_leg1 * (t290 - t477);
-        let t491 = t281 * t457 - t262;
-        let t493 = t428 * t457 - t421;
-        let t495 = t447 * t457 + t450;
-        let t496 = 1.7857142857142858 * t396;
-        let t506 = t177 * rate_dot_rod_leg1;
-        let t507 = t420 * rate_dot_rod_leg1;
-        let t508 = t449 * rate_dot_rod_leg1;
-        let t512 = t394 + 9.81;
-        let t514 = t271 * t400 - t176 * t396 + t279 * t512;
-        let t515 = 1.7857142857142858 * t514;
-        let t517 = 0.24 * actuator_accelerations[0] - t20;
-        let t529 = t423 * t400 - t419 * t396 + t426 * t512;
-        let t530 = 1.7857142857142858 * t529;
-        let t538 = t439 * t396 - t434 * t400 - t445 * t512;
-        let t539 = 1.7857142857142858 * t538;
-        let t543 = 0.8928571428571429 * t16;
-        let t546 = t141 * t543;
-        let t553 = t25 - t404;
-        let t556 = s_rod_leg1 * (c_cross_leg1 * t517 - s_cross_leg1 * t553);
-        let t561 = c_cross_leg1 * t553 + s_cross_leg1 * t517;
-        let t562 = c_rod_leg1 * t561;
-        let t564 = t543 * (t261 - rate_dot_rod_leg1) + t546 * (t477 + t290) + t178 * t414
-            - t281 * t556 + t177 * t562;
-        let t581 = 9.81 * c_arm_leg2;
-        let t582 = 9.81 * minus_s_arm_leg2;
-        let gcross_vx_leg2 = t122 * (t128 * t316 + t309 - 0.8660254037844387 * t324);
-        let minus_gcross_vy_leg2 = t122 * (t157 * t316 + t311 + 0.5 * t324);
-        let minus_gcross_vz_leg2 = t122 * (minus_s_arm_leg2 * t75);
-        let t600 = gcross_vx_leg2 * t271 + minus_gcross_vy_leg2 * t176
-            - minus_gcross_vz_leg2 * t279;
-        let t602 = minus_rate_rod_leg2 * (1.7857142857142858 * t326);
-        let t608 = 0.24 * t301;
-        let t610 = t43 * rate_cross_leg2;
-        let t611 = minus_rate_rod_leg2 * t610;
-        let t622 = t309 * t400 - t311 * t396 - c_armcross_leg2 * t394
-            - (s_cross_leg2 * t608 - t611 - t611)
-            - t316 * (t157 * t396 - t128 * t400 - s_armcross_leg2 * t394 + t331);
-        let t623 = 0.8660254037844387 * t400;
-        let t624 = 0.5 * t396;
-        let t625 = t623 + t624;
-        let t626 = t625 + t332;
-        let t628 = t622 - t324 * t626;
-        let t629 = 1.7857142857142858 * t628;
-        let t630 = t123 * t629;
-        let t632 = t602 + t630 + t602;
-        let t633 = c_rod_leg2 * t632;
-        let t634 = t123 * t633;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t121;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t121;
-        let t640 = minus_grod_vy_leg2 * t176 - minus_grod_vx_leg2 * t271;
-        let t642 = 3.188775510204082 * (t326 * t610);
-        let t643 = t640 * t642;
-        let t649 = gcross_vx_leg2 * t423 + minus_gcross_vy_leg2 * t419
-            - minus_gcross_vz_leg2 * t426;
-        let t653 = minus_grod_vy_leg2 * t419 - minus_grod_vx_leg2 * t423;
-        let t654 = t653 * t642;
-        let t658 = minus_grod_vx_leg2 * t434 - minus_grod_vy_leg2 * t439;
-        let t659 = t658 * t642;
-        let t664 = gcross_vx_leg2 * t434 + minus_gcross_vy_leg2 * t439
-            - minus_gcross_vz_leg2 * t445;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t43;
-        let t672 = c_rod_leg2 * (1.7857142857142858 * (t628 - t611))
-            - minus_s_rod_leg2 * t602;
-        let t674 = t123 * t672 + t633;
-        let t676 = t610 * t610;
-        let t679 = 3.188775510204082 * (t676 - t326 * t326);
-        let minus_rate_dot_rod_leg2 = t122 * t626;
-        let t691 = 3.188775510204082 * t676;
-        let t694 = minus_s_rod_leg2 * (t642 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t308 - t691);
-        let t705 = t600 * t672 - t643;
-        let t707 = t649 * t672 - t654;
-        let t709 = t664 * t672 + t659;
-        let t711 = 1.7857142857142858 * t625;
-        let t720 = t640 * minus_rate_dot_rod_leg2;
-        let t721 = t653 * minus_rate_dot_rod_leg2;
-        let t722 = t658 * minus_rate_dot_rod_leg2;
-        let t727 = 0.24 * actuator_accelerations[1] - t581;
-        let t739 = t582 - t608;
-        let t742 = minus_s_rod_leg2 * (c_cross_leg2 * t727 - s_cross_leg2 * t739);
-        let t746 = c_cross_leg2 * t739 + s_cross_leg2 * t727;
-        let t747 = c_rod_leg2 * t746;
-        let t750 = 0.8928571428571429 * t57;
-        let t753 = t123 * t750;
-        let t762 = t750 * (minus_rate_dot_rod_leg2 - t642) - t753 * (t691 + t308)
-            + t300 * t632 + t649 * t742 - t653 * t747;
-        let t776 = 9.81 * minus_c_arm_leg3;
-        let t777 = 9.81 * s_arm_leg3;
-        let gcross_vx_leg3 = t115 * (t346 - t113 * t353 - 0.8660254037844387 * t361);
-        let gcross_vy_leg3 = t115 * (t348 - t150 * t353 + 0.5 * t361);
-        let gcross_vz_leg3 = t115 * (t94 * s_arm_leg3);
-        let t795 = gcross_vx_leg3 * t271 - gcross_vy_leg3 * t176 + gcross_vz_leg3 * t279;
-        let t797 = rate_rod_leg3 * (1.7857142857142858 * t363);
-        let t803 = 0.24 * t340;
-        let t805 = t42 * rate_cross_leg3;
-        let t806 = rate_rod_leg3 * t805;
-        let t817 = t346 * t400 + t348 * t396 + minus_c_armcross_leg3 * t394
-            - (s_cross_leg3 * t803 - t806 - t806)
-            - t353 * (t113 * t400 + t150 * t396 - s_armcross_leg3 * t394 + t368);
-        let t818 = t623 - t624;
-        let t819 = t818 + t369;
-        let t821 = t817 - t361 * t819;
-        let t822 = 1.7857142857142858 * t821;
-        let t823 = t116 * t822;
-        let t825 = t797 + t823 + t797;
-        let t826 = c_rod_leg3 * t825;
-        let t827 = t116 * t826;
-        let grod_vx_leg3 = 1.5464739353293548 * t114;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t114;
-        let t833 = grod_vx_leg3 * t271 + minus_grod_vy_leg3 * t176;
-        let t835 = 3.188775510204082 * (t363 * t805);
-        let t836 = t833 * t835;
-        let t842 = gcross_vx_leg3 * t423 - gcross_vy_leg3 * t419 + gcross_vz_leg3 * t426;
-        let t846 = grod_vx_leg3 * t423 + minus_grod_vy_leg3 * t419;
-        let t847 = t846 * t835;
-        let t853 = gcross_vy_leg3 * t439 - gcross_vx_leg3 * t434 - gcross_vz_leg3 * t445;
-        let t857 = grod_vx_leg3 * t434 + minus_grod_vy_leg3 * t439;
-        let t858 = t857 * t835;
-        let s_rod_leg3 = 1.7857142857142858 * t42;
-        let t865 = c_rod_leg3 * (1.7857142857142858 * (t821 - t806)) - s_rod_leg3 * t797;
-        let t867 = t826 + t116 * t865;
-        let t869 = t805 * t805;
-        let t872 = 3.188775510204082 * (t869 - t363 * t363);
-        let rate_dot_rod_leg3 = t115 * t819;
-        let t884 = 3.188775510204082 * t869;
-        let t887 = s_rod_leg3 * (t835 + rate_dot_rod_leg3) + c_rod_leg3 * (t345 - t884);
-        let t898 = t795 * t865 + t836;
-        let t900 = t842 * t865 + t847;
-        let t902 = t853 * t865 - t858;
-        let t903 = 1.7857142857142858 * t818;
-        let t913 = t833 * rate_dot_rod_leg3;
-        let t914 = t846 * rate_dot_rod_leg3;
-        let t915 = t857 * rate_dot_rod_leg3;
-        let t923 = t776 + 0.24 * actuator_accelerations[2];
-        let t931 = t777 + t803;
-        let t935 = s_rod_leg3 * (s_cross_leg3 * t931 + c_cross_leg3 * t923);
-        let t939 = s_cross_leg3 * t923 - c_cross_leg3 * t931;
-        let t940 = c_rod_leg3 * t939;
-        let t946 = 0.8928571428571429 * t88;
-        let t949 = t116 * t946;
-        let t958 = t946 * (t835 - rate_dot_rod_leg3) + t949 * (t884 + t345) - t339 * t825
-            - t853 * t935 + t857 * t940;
+        let t460 = s_rod_leg1 * t288 + c_rod_leg1 * (1.7857142857142858 * (t409 - t413));
+        let t462 = t145 * t460 - t418;
+        let t464 = t263 * t263;
+        let t467 = 3.188775510204082 * (t464 - t261 * t261);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t399 + t298);
+        let t480 = 3.188775510204082 * t464;
+        let t483 = s_rod_leg1 * (t265 + rate_dot_rod_leg1) + c_rod_leg1 * (t294 - t480);
+        let t494 = t285 * t460 - t266;
+        let t496 = t431 * t460 - t424;
+        let t498 = t450 * t460 + t453;
+        let t499 = 1.7857142857142858 * t399;
+        let t509 = t181 * rate_dot_rod_leg1;
+        let t510 = t423 * rate_dot_rod_leg1;
+        let t511 = t452 * rate_dot_rod_leg1;
+        let t515 = t397 + 9.81;
+        let t517 = t275 * t403 - t180 * t399 + t283 * t515;
+        let t518 = 1.7857142857142858 * t517;
+        let t520 = 0.24 * actuator_accelerations[0] - t20;
+        let t532 = t426 * t403 - t422 * t399 + t429 * t515;
+        let t533 = 1.7857142857142858 * t532;
+        let t541 = t442 * t399 - t437 * t403 - t448 * t515;
+        let t542 = 1.7857142857142858 * t541;
+        let t546 = 0.8928571428571429 * t16;
+        let t549 = t145 * t546;
+        let t556 = t25 - t407;
+        let t559 = s_rod_leg1 * (c_cross_leg1 * t520 - s_cross_leg1 * t556);
+        let t564 = c_cross_leg1 * t556 + s_cross_leg1 * t520;
+        let t565 = c_rod_leg1 * t564;
+        let t567 = t546 * (t265 - rate_dot_rod_leg1) + t549 * (t480 + t294) + t182 * t417
+            - t285 * t559 + t181 * t565;
+        let t584 = 9.81 * c_arm_leg2;
+        let t585 = 9.81 * minus_s_arm_leg2;
+        let gcross_vx_leg2 = t126 * (t132 * t319 + t312 - 0.8660254037844387 * t327);
+        let minus_gcross_vy_leg2 = t126 * (t161 * t319 + t314 + 0.5 * t327);
+        let minus_gcross_vz_leg2 = t126 * (minus_s_arm_leg2 * t79);
+        let t603 = gcross_vx_leg2 * t275 + minus_gcross_vy_leg2 * t180
+            - minus_gcross_vz_leg2 * t283;
+        let t605 = minus_rate_rod_leg2 * (1.7857142857142858 * t329);
+        let t611 = 0.24 * t305;
+        let t613 = t62 * rate_cross_leg2;
+        let t614 = minus_rate_rod_leg2 * t613;
+        let t625 = t312 * t403 - t314 * t399 - c_armcross_leg2 * t397
+            - (s_cross_leg2 * t611 - t614 - t614)
+            - t319 * (t161 * t399 - t132 * t403 - s_armcross_leg2 * t397 + t334);
+        let t626 = 0.8660254037844387 * t403;
+        let t627 = 0.5 * t399;
+        let t628 = t626 + t627;
+        let t629 = t628 + t335;
+        let t631 = t625 - t327 * t629;
+        let t632 = 1.7857142857142858 * t631;
+        let t633 = t127 * t632;
+        let t635 = t605 + t633 + t605;
+        let t636 = c_rod_leg2 * t635;
+        let t637 = t127 * t636;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t125;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t125;
+        let t643 = minus_grod_vy_leg2 * t180 - minus_grod_vx_leg2 * t275;
+        let t645 = 3.188775510204082 * (t329 * t613);
+        let t646 = t643 * t645;
+        let t652 = gcross_vx_leg2 * t426 + minus_gcross_vy_leg2 * t422
+            - minus_gcross_vz_leg2 * t429;
+        let t656 = minus_grod_vy_leg2 * t422 - minus_grod_vx_leg2 * t426;
+        let t657 = t656 * t645;
+        let t661 = minus_grod_vx_leg2 * t437 - minus_grod_vy_leg2 * t442;
+        let t662 = t661 * t645;
+        let t667 = gcross_vx_leg2 * t437 + minus_gcross_vy_leg2 * t442
+            - minus_gcross_vz_leg2 * t448;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t62;
+        let t675 = c_rod_leg2 * (1.7857142857142858 * (t631 - t614))
+            - minus_s_rod_leg2 * t605;
+        let t677 = t127 * t675 + t636;
+        let t679 = t613 * t613;
+        let t682 = 3.188775510204082 * (t679 - t329 * t329);
+        let minus_rate_dot_rod_leg2 = t126 * t629;
+        let t694 = 3.188775510204082 * t679;
+        let t697 = minus_s_rod_leg2 * (t645 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t311 - t694);
+        let t708 = t603 * t675 - t646;
+        let t710 = t652 * t675 - t657;
+        let t712 = t667 * t675 + t662;
+        let t714 = 1.7857142857142858 * t628;
+        let t723 = t643 * minus_rate_dot_rod_leg2;
+        let t724 = t656 * minus_rate_dot_rod_leg2;
+        let t725 = t661 * minus_rate_dot_rod_leg2;
+        let t730 = 0.24 * actuator_accelerations[1] - t584;
+        let t742 = t585 - t611;
+        let t745 = minus_s_rod_leg2 * (c_cross_leg2 * t730 - s_cross_leg2 * t742);
+        let t749 = c_cross_leg2 * t742 + s_cross_leg2 * t730;
+        let t750 = c_rod_leg2 * t749;
+        let t753 = 0.8928571428571429 * t52;
+        let t756 = t127 * t753;
+        let t765 = t753 * (minus_rate_dot_rod_leg2 - t645) - t756 * (t694 + t311)
+            + t304 * t635 + t652 * t745 - t656 * t750;
+        let t779 = 9.81 * minus_c_arm_leg3;
+        let t780 = 9.81 * s_arm_leg3;
+        let gcross_vx_leg3 = t119 * (t349 - t117 * t356 - 0.8660254037844387 * t364);
+        let gcross_vy_leg3 = t119 * (t351 - t154 * t356 + 0.5 * t364);
+        let gcross_vz_leg3 = t119 * (t98 * s_arm_leg3);
+        let t798 = gcross_vx_leg3 * t275 - gcross_vy_leg3 * t180 + gcross_vz_leg3 * t283;
+        let t800 = rate_rod_leg3 * (1.7857142857142858 * t366);
+        let t806 = 0.24 * t343;
+        let t808 = t61 * rate_cross_leg3;
+        let t809 = rate_rod_leg3 * t808;
+        let t820 = t349 * t403 + t351 * t399 + minus_c_armcross_leg3 * t397
+            - (s_cross_leg3 * t806 - t809 - t809)
+            - t356 * (t117 * t403 + t154 * t399 - s_armcross_leg3 * t397 + t371);
+        let t821 = t626 - t627;
+        let t822 = t821 + t372;
+        let t824 = t820 - t364 * t822;
+        let t825 = 1.7857142857142858 * t824;
+        let t826 = t120 * t825;
+        let t828 = t800 + t826 + t800;
+        let t829 = c_rod_leg3 * t828;
+        let t830 = t120 * t829;
+        let grod_vx_leg3 = 1.5464739353293548 * t118;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t118;
+        let t836 = grod_vx_leg3 * t275 + minus_grod_vy_leg3 * t180;
+        let t838 = 3.188775510204082 * (t366 * t808);
+        let t839 = t836 * t838;
+        let t845 = gcross_vx_leg3 * t426 - gcross_vy_leg3 * t422 + gcross_vz_leg3 * t429;
+        let t849 = grod_vx_leg3 * t426 + minus_grod_vy_leg3 * t422;
+        let t850 = t849 * t838;
+        let t856 = gcross_vy_leg3 * t442 - gcross_vx_leg3 * t437 - gcross_vz_leg3 * t448;
+        let t860 = grod_vx_leg3 * t437 + minus_grod_vy_leg3 * t442;
+        let t861 = t860 * t838;
+        let s_rod_leg3 = 1.7857142857142858 * t61;
+        let t868 = c_rod_leg3 * (1.7857142857142858 * (t824 - t809)) - s_rod_leg3 * t800;
+        let t870 = t829 + t120 * t868;
+        let t872 = t808 * t808;
+        let t875 = 3.188775510204082 * (t872 - t366 * t366);
+        let rate_dot_rod_leg3 = t119 * t822;
+        let t887 = 3.188775510204082 * t872;
+        let t890 = s_rod_leg3 * (t838 + rate_dot_rod_leg3) + c_rod_leg3 * (t348 - t887);
+        let t901 = t798 * t868 + t839;
+        let t903 = t845 * t868 + t850;
+        let t905 = t856 * t868 - t861;
+        let t906 = 1.7857142857142858 * t821;
+        let t916 = t836 * rate_dot_rod_leg3;
+        let t917 = t849 * rate_dot_rod_leg3;
+        let t918 = t860 * rate_dot_rod_leg3;
+        let t926 = t779 + 0.24 * actuator_accelerations[2];
+        let t934 = t780 + t806;
+        let t938 = s_rod_leg3 * (s_cross_leg3 * t934 + c_cross_leg3 * t926);
+        let t942 = s_cross_leg3 * t926 - c_cross_leg3 * t934;
+        let t943 = c_rod_leg3 * t942;
+        let t949 = 0.8928571428571429 * t92;
+        let t952 = t120 * t949;
+        let t961 = t949 * (t838 - rate_dot_rod_leg3) + t952 * (t887 + t348) - t342 * t828
+            - t856 * t938 + t860 * t943;
         Ok([
             [
                 actuator_accelerations[0], -t20, -t25, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
-                t262 - t281 * t416, t281 * t459 - t177 * t464, t281 * t480 + t177 * t412, t491,
-                t281 * t496 + t177 * t411, -t506,
-                t515
+                t266 - t285 * t419, t285 * t462 - t181 * t467, t285 * t483 + t181 * t415, t494,
+                t285 * t499 + t181 * t414, -t509,
+                t518
                     - 0.10285714285714286
-                        * (4.166666666666667 * t517 + 5.444444444444445 * t491
-                            - 5.444444444444445 * t506),
-                t564,
-                t178 * t289 - (t411 * t543 + t546 * t412) + t281 * t561,
-                0.24 * t517,
+                        * (4.166666666666667 * t520 + 5.444444444444445 * t494
+                            - 5.444444444444445 * t509),
+                t567,
+                t182 * t293 - (t414 * t546 + t549 * t415) + t285 * t564,
+                0.24 * t520,
                 0.0,
                 0.0,
                 0.0,
@@ -4293,15 +4366,15 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t600 * t634 + t643,
-                t640 * t679 - t600 * t674,
-                t600 * t694 - t640 * t630,
-                t705,
-                t640 * t629 - t600 * t711,
-                -t720,
-                t515 - 0.56 * (t705 - t720),
-                t600 * t742 - t640 * t747,
-                t600 * t746,
+                t603 * t637 + t646,
+                t643 * t682 - t603 * t677,
+                t603 * t697 - t643 * t633,
+                t708,
+                t643 * t632 - t603 * t714,
+                -t723,
+                t518 - 0.56 * (t708 - t723),
+                t603 * t745 - t643 * t750,
+                t603 * t749,
                 0.0,
                 0.0,
                 0.0,
@@ -4310,33 +4383,33 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t795 * t827 - t836,
-                t795 * t867 + t833 * t872,
-                t795 * t887 + t833 * t823,
-                t898,
-                t795 * t903 + t833 * t822,
-                t913,
-                t515 - 0.56 * (t898 + t913),
-                -(t795 * t935 + t833 * t940),
-                t795 * t939,
+                t798 * t830 - t839,
+                t798 * t870 + t836 * t875,
+                t798 * t890 + t836 * t826,
+                t901,
+                t798 * t906 + t836 * t825,
+                t916,
+                t518 - 0.56 * (t901 + t916),
+                -(t798 * t938 + t836 * t943),
+                t798 * t942,
                 0.0,
-                t514,
+                t517,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t421 - t428 * t416, t428 * t459 - t420 * t464,
-                t428 * t480 + t420 * t412, t493, t428 * t496 + t420 * t411, -t507,
-                t530 - 0.56 * (t493 - t507), t420 * t562 - t428 * t556, t428 * t561, 0.0,
-                actuator_accelerations[1], -t581, -t582, actuator_accelerations[1],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t424 - t431 * t419, t431 * t462 - t423 * t467,
+                t431 * t483 + t423 * t415, t496, t431 * t499 + t423 * t414, -t510,
+                t533 - 0.56 * (t496 - t510), t423 * t565 - t431 * t559, t431 * t564, 0.0,
+                actuator_accelerations[1], -t584, -t585, actuator_accelerations[1],
                 actuator_velocities[1], ::overact::math::sign(actuator_velocities[1]), 1.0,
-                t649 * t634 + t654, t653 * t679 - t649 * t674, t649 * t694 - t653 * t630, t707,
-                t653 * t629 - t649 * t711, -t721,
-                t530
+                t652 * t637 + t657, t656 * t682 - t652 * t677, t652 * t697 - t656 * t633, t710,
+                t656 * t632 - t652 * t714, -t724,
+                t533
                     - 0.10285714285714286
-                        * (4.166666666666667 * t727 + 5.444444444444445 * t707
-                            - 5.444444444444445 * t721),
-                t762,
-                t629 * t750 + t753 * t630 + t300 * t328 + t649 * t746,
-                0.24 * t727,
+                        * (4.166666666666667 * t730 + 5.444444444444445 * t710
+                            - 5.444444444444445 * t724),
+                t765,
+                t632 * t753 + t756 * t633 + t304 * t331 + t652 * t749,
+                0.24 * t730,
                 0.0,
                 0.0,
                 0.0,
@@ -4344,37 +4417,37 @@ impl Delta {
                 0.0,
                 0.0,
                 0.0,
-                t842 * t827 - t847,
-                t842 * t867 + t846 * t872,
-                t842 * t887 + t846 * t823,
-                t900,
-                t842 * t903 + t846 * t822,
-                t914,
-                t530 - 0.56 * (t900 + t914),
-                -(t842 * t935 + t846 * t940),
-                t842 * t939,
+                t845 * t830 - t850,
+                t845 * t870 + t849 * t875,
+                t845 * t890 + t849 * t826,
+                t903,
+                t845 * t906 + t849 * t825,
+                t917,
+                t533 - 0.56 * (t903 + t917),
+                -(t845 * t938 + t849 * t943),
+                t845 * t942,
                 0.0,
-                t529,
+                t532,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t447 * t416 + t450), t447 * t459 + t449 * t464,
-                t447 * t480 - t449 * t412, t495, t447 * t496 - t449 * t411, t508,
-                t539 - 0.56 * (t495 + t508), -(t447 * t556 + t449 * t562), t447 * t561, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t659 - t664 * t634, t658 * t679 + t664 * t674,
-                -(t664 * t694 + t658 * t630), -t709, t664 * t711 + t658 * t629, -t722,
-                t539 + 0.56 * (t709 + t722), -(t664 * t742 + t658 * t747), -(t664 * t746), 0.0,
-                actuator_accelerations[2], t776, t777, actuator_accelerations[2],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t450 * t419 + t453), t450 * t462 + t452 * t467,
+                t450 * t483 - t452 * t415, t498, t450 * t499 - t452 * t414, t511,
+                t542 - 0.56 * (t498 + t511), -(t450 * t559 + t452 * t565), t450 * t564, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t662 - t667 * t637, t661 * t682 + t667 * t677,
+                -(t667 * t697 + t661 * t633), -t712, t667 * t714 + t661 * t632, -t725,
+                t542 + 0.56 * (t712 + t725), -(t667 * t745 + t661 * t750), -(t667 * t749), 0.0,
+                actuator_accelerations[2], t779, t780, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0,
-                t853 * t827 + t858, t853 * t867 - t857 * t872, t853 * t887 - t857 * t823, t902,
-                t853 * t903 - t857 * t822, -t915,
-                t539
+                t856 * t830 + t861, t856 * t870 - t860 * t875, t856 * t890 - t860 * t826, t905,
+                t856 * t906 - t860 * t825, -t918,
+                t542
                     - 0.10285714285714286
-                        * (4.166666666666667 * t923 + 5.444444444444445 * t902
-                            - 5.444444444444445 * t915),
-                t958,
-                t822 * t946 + t949 * t823 + t339 * t365 + t853 * t939,
-                0.24 * t923,
-                t538,
+                        * (4.166666666666667 * t926 + 5.444444444444445 * t905
+                            - 5.444444444444445 * t918),
+                t961,
+                t825 * t949 + t952 * t826 + t342 * t368 + t856 * t942,
+                0.24 * t926,
+                t541,
             ],
         ])
     }
@@ -4388,7 +4461,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 664 operations (210 additions, 430 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 557 intermediates.
+    /// 675 operations (211 additions, 443 multiplications, 21 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 568 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4397,368 +4470,379 @@ impl Delta {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let t1 = pose[0] + 0.05;
-        let t2 = t1 - 0.2;
-        let t3 = 0.48 * t2;
-        let t5 = pose[2] * pose[2];
-        let t6 = t2 * t2 + t5;
-        let t7 = pose[1] * pose[1];
-        let t8 = t7 + -0.3136;
-        let t9 = t6 + t8;
-        let t10 = t9 + 0.0576;
-        let t12 = 0.48 * pose[2];
-        let t13 = 0.2304 * t6;
-        let t15 = t13 - t10 * t10;
-        ::overact::guard::reach(t15, "leg1")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let c_arm_leg1 = (t3 * t10 - t12 * t16) / t13;
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t8));
+        let t2 = pose[0] - 0.025 + 0.1;
+        let t4 = -0.025 + t2 - 0.2;
+        let t5 = 0.48 * t4;
+        let t7 = pose[2] * pose[2];
+        let t8 = t4 * t4 + t7;
+        let t11 = t8 + pose[1] * pose[1] - 0.3136;
+        let t12 = t11 + 0.0576;
+        let t14 = 0.48 * pose[2];
+        let t15 = 0.2304 * t8;
+        let t17 = t15 - t12 * t12;
+        ::overact::guard::reach(t17, "leg1")?;
+        let t18 = ::overact::math::sqrt(t17);
+        let c_arm_leg1 = (t5 * t12 - t14 * t18) / t15;
+        let t23 = t11 - t8;
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t23));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t24 = 0.2688 * c_rod_leg1;
-        let c_cross_leg1 = (t9 + -0.0576) / t24;
-        let minus_s_arm_leg1 = (t12 * t10 + t3 * t16) / t13;
-        let s_cross_leg1 = t16 / t24;
+        let t27 = 0.2688 * c_rod_leg1;
+        let c_cross_leg1 = (t11 + -0.0576) / t27;
+        let minus_s_arm_leg1 = (t14 * t12 + t5 * t18) / t15;
+        let s_cross_leg1 = t18 / t27;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t37 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t37;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t42 = 0.24 * c_cross_leg1;
+        let t45 = 0.24 * c_cross_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t47 = pose[1] * grod_vy_leg1;
-        let t48 = t47 * twist[1];
-        let rate_arm_leg1 = t34
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t48);
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t53 = 0.56 * c_rod_leg1;
-        let t58 = t42 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let t50 = pose[1] * grod_vy_leg1;
+        let t51 = t50 * twist[1];
+        let rate_arm_leg1 = t37
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t51);
+        let t54 = rate_arm_leg1 * rate_arm_leg1;
+        let t56 = grod_vy_leg1 * t23;
+        let t61 = t45 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t58;
-        let t60 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t61;
+        let t63 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t62 = rate_rod_leg1 * rate_rod_leg1;
-        let t68 = acceleration[1] + pose[1] * t62;
-        let t70 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t42 * t51 + t53 * (t60 + t62) + t47 * t68;
-        let rate_dot_arm_leg1 = t34 * t70;
-        let garm_vy_leg1 = t34 * t47;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
-        let t77 = t1 + 0.025;
-        let t78 = t77 * t77;
-        let t80 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t83 = t78 + t80 * t80 + t5;
-        let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t87 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t89 = 0.8660254037844387 * t77 - 0.5 * t87;
-        let s_rod_leg3 = 1.7857142857142858 * t89;
-        let minus_s_rod_leg2 = s_rod_leg1 + s_rod_leg3;
-        let t92 = 0.56 * minus_s_rod_leg2;
-        let t94 = t83 - t92 * t92;
-        let t95 = 0.2304 * t94;
-        let t96 = t83 - 0.3136;
+        let t65 = rate_rod_leg1 * rate_rod_leg1;
+        let t71 = acceleration[1] + t51 * rate_rod_leg1;
+        let t73 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t45 * t54 - t56 * (t63 + t65) + t50 * t71;
+        let rate_dot_arm_leg1 = t37 * t73;
+        let garm_vy_leg1 = t37 * t50;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t37;
+        let t83 = 0.5 * t2;
+        let t84 = 0.8660254037844387
+            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t83;
+        let t86 = t7 + t84 * t84;
+        let t87 = 0.2304 * t86;
+        let t90 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t92 = 0.8660254037844387 * t2 - 0.5 * t90;
+        let t93 = pose[1] + t92;
+        let t95 = 0.3136 - t93 * t93;
+        let t96 = t86 - t95;
         let t97 = t96 + 0.0576;
-        let t99 = t95 - t97 * t97;
+        let t99 = t87 - t97 * t97;
         ::overact::guard::reach(t99, "leg2")?;
         let t100 = ::overact::math::sqrt(t99);
-        let t102 = 3.188775510204082 * (t94 - t96);
-        ::overact::guard::reach(t102, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t102);
-        let t104 = 0.2688 * c_rod_leg2;
-        let t105 = 0.48 / t104;
-        let t106 = 0.56 * t105;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t106;
-        let t108 = t100 * minus_grod_vy_leg2;
-        let s_cross_leg2 = 4.166666666666667 * t108;
+        let t101 = 3.188775510204082 * t95;
+        ::overact::guard::reach(t101, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t101);
+        ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
+        let t103 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t100 / t103;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t110 = 4.166666666666667 / s_cross_leg2;
-        let t111 = t92 * t105;
-        let t115 = 0.5 * t77;
-        let t117 = 0.48 * (0.8660254037844387 * t80 - t115);
-        let minus_s_arm_leg2 = (t12 * t97 + t117 * t100) / t95;
-        let t121 = minus_s_arm_leg2 / s_cross_leg2;
-        let c_arm_leg2 = (t117 * t97 - t12 * t100) / t95;
-        let c_cross_leg2 = (-0.0576 + t96) / t104;
+        let t105 = 1.0 / s_cross_leg2;
+        let t106 = 4.166666666666667 * t105;
+        let t107 = 1.0 / c_rod_leg2;
+        let t108 = 1.7857142857142858 * t107;
+        let t109 = t93 * t108;
+        let t112 = 0.48 * t84;
+        let minus_s_arm_leg2 = (t14 * t97 + t112 * t100) / t87;
+        let t116 = t105 * minus_s_arm_leg2;
+        let c_arm_leg2 = (t112 * t97 - t14 * t100) / t87;
+        let c_cross_leg2 = (-0.0576 + t96) / t103;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t131 = c_cross_leg2 / s_cross_leg2;
-        let c_armcross_leg2 = t121 + s_armcross_leg2 * t131;
-        let t134 = 0.5 * c_armcross_leg2;
-        let t135 = 0.8660254037844387 * t111 - t134;
-        let garm_vx_leg2 = t110 * t135;
-        let t137 = 0.8660254037844387 * c_armcross_leg2;
-        let t148 = 0.8660254037844387 * twist[0];
-        let t149 = 0.5 * twist[1];
-        let t150 = t148 + t149;
-        let t151 = t111 * t150;
-        let t152 = t137 * twist[1] - t134 * twist[0] - s_armcross_leg2 * twist[2] + t151;
-        let rate_arm_leg2 = t110 * t152;
-        let t154 = 0.24 * c_cross_leg2;
-        let t155 = t154 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t105 * t150;
-        let t159 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t160 = 0.5 * s_armcross_leg2;
-        let t162 = 0.8660254037844387 * s_armcross_leg2;
-        let t167 = t160 * twist[0] - t162 * twist[1] - c_armcross_leg2 * twist[2] - t155;
-        let rate_cross_leg2 = t105 * t167;
-        let t169 = rate_cross_leg2 * rate_cross_leg2;
-        let t173 = t137 * acceleration[1] - t134 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t155
-            + 0.56 * c_rod_leg2 * (t159 + t169);
-        let t174 = 0.8660254037844387 * acceleration[0];
-        let t175 = 0.5 * acceleration[1];
-        let t176 = t174 + t175;
-        let t178 = t176 + t151 * minus_rate_rod_leg2;
-        let t180 = t173 + t111 * t178;
-        let rate_dot_arm_leg2 = t110 * t180;
-        let garm_vy_leg2 = t110 * (t137 + 0.5 * t111);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t110;
-        let t192 = t78 + t87 * t87 + t5 - 0.3136;
-        let t193 = t89 * t89;
-        let t194 = 0.3136 - t193;
-        let t196 = 0.2304 * (t192 + t194);
-        let t197 = t192 + 0.0576;
-        let t199 = t196 - t197 * t197;
-        ::overact::guard::reach(t199, "leg3")?;
-        let t200 = ::overact::math::sqrt(t199);
-        let t201 = 3.188775510204082 * t194;
+        let t126 = c_cross_leg2 * t105;
+        let c_armcross_leg2 = t116 + s_armcross_leg2 * t126;
+        let t129 = 0.5 * c_armcross_leg2;
+        let t130 = 0.8660254037844387 * t109 - t129;
+        let garm_vx_leg2 = t106 * t130;
+        let t132 = 0.8660254037844387 * c_armcross_leg2;
+        let t138 = 0.24 * c_cross_leg2;
+        let t144 = 0.8660254037844387 * twist[0];
+        let t145 = 0.5 * twist[1];
+        let t146 = t144 + t145;
+        let t147 = t109 * t146;
+        let rate_arm_leg2 = t106
+            * (t132 * twist[1] - t129 * twist[0] - s_armcross_leg2 * twist[2] + t147);
+        let t150 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t108 * t146;
+        let t154 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t155 = 0.5 * s_armcross_leg2;
+        let t157 = 0.8660254037844387 * s_armcross_leg2;
+        let t163 = t155 * twist[0] - t157 * twist[1] - c_armcross_leg2 * twist[2]
+            - t138 * rate_arm_leg2;
+        let rate_cross_leg2 = t108 * t163;
+        let t165 = rate_cross_leg2 * rate_cross_leg2;
+        let t169 = t132 * acceleration[1] - t129 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t138 * t150
+            + 2.0833333333333335 * t103 * (t154 + t165);
+        let t170 = 0.8660254037844387 * acceleration[0];
+        let t171 = 0.5 * acceleration[1];
+        let t172 = t170 + t171;
+        let t174 = t172 + t93 * t154;
+        let rate_dot_arm_leg2 = t106 * (t169 + t109 * t174);
+        let garm_vy_leg2 = t106 * (t132 + 0.5 * t109);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t106;
+        let t186 = t83 + 0.8660254037844387 * t90;
+        let t188 = t186 * t186 + t7;
+        let t189 = 0.2304 * t188;
+        let t194 = t2 * t2 + t90 * t90 + t7 - 0.3136;
+        let t195 = t194 + 0.0576;
+        let t197 = t189 - t195 * t195;
+        ::overact::guard::reach(t197, "leg3")?;
+        let t198 = ::overact::math::sqrt(t197);
+        let t201 = 3.188775510204082 * (t188 - t194);
         ::overact::guard::reach(t201, "leg3")?;
         let c_rod_leg3 = ::overact::math::sqrt(t201);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
         let t203 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t200 / t203;
+        let t204 = 2.0833333333333335 * t203;
+        let s_cross_leg3 = 2.0833333333333335 * t198 / t204;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t205 = 4.166666666666667 / s_cross_leg3;
-        let t208 = 0.48 * (t115 + 0.8660254037844387 * t87);
-        let s_arm_leg3 = (t208 * t200 - t12 * t197) / t196;
-        let t213 = s_arm_leg3 / s_cross_leg3;
-        let c_cross_leg3 = (-0.0576 + t192) / t203;
-        let t216 = 0.24 * c_cross_leg3;
-        let minus_c_arm_leg3 = (t208 * t197 + t12 * t200) / t196;
-        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
-            - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t205;
-        let minus_c_armcross_leg3 = t213 - t216 * minus_garm_vz_leg3;
-        let t227 = 0.5 * minus_c_armcross_leg3;
-        let t228 = 0.2688 / t203;
-        let t229 = 1.7857142857142858 * t228;
-        let t230 = t89 * t229;
-        let garm_vx_leg3 = t205 * (t227 + 0.8660254037844387 * t230);
-        let t235 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t240 = c_cross_leg3 / s_cross_leg3;
-        let t246 = t148 - t149;
-        let t247 = t230 * t246;
-        let t248 = t227 * twist[0] + t235 * twist[1] - s_armcross_leg3 * twist[2] + t247;
-        let rate_arm_leg3 = t205 * t248;
-        let t250 = t248 * rate_arm_leg3;
-        let rate_rod_leg3 = t229 * t246;
-        let t254 = rate_rod_leg3 * rate_rod_leg3;
-        let t255 = 0.5 * s_armcross_leg3;
-        let t257 = 0.8660254037844387 * s_armcross_leg3;
-        let t263 = t255 * twist[0] + t257 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t216 * rate_arm_leg3;
-        let rate_cross_leg3 = t229 * t263;
-        let t265 = rate_cross_leg3 * rate_cross_leg3;
-        let t269 = t227 * acceleration[0] + t235 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t240 * t250
-            + 0.56 * c_rod_leg3 * (t254 + t265);
-        let t270 = t174 - t175;
-        let t272 = t270 + t89 * t254;
-        let rate_dot_arm_leg3 = t205 * (t269 + t230 * t272);
-        let garm_vy_leg3 = t205 * (t235 - 0.5 * t230);
-        let t282 = 9.81 * c_arm_leg1;
-        let t286 = 9.81 * c_arm_leg2;
-        let t290 = 9.81 * minus_c_arm_leg3;
-        let t294 = 9.81 * minus_s_arm_leg1;
-        let t298 = 9.81 * minus_s_arm_leg2;
-        let t302 = 9.81 * s_arm_leg3;
-        let t324 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t324;
-        let t327 = rate_rod_leg1 * (1.7857142857142858 * t58);
-        let t332 = 0.24 * t51;
-        let t334 = t48 * minus_rate_cross_leg1;
+        let t206 = 1.0 / s_cross_leg3;
+        let t207 = 4.166666666666667 * t206;
+        let t208 = 0.48 * t186;
+        let minus_c_arm_leg3 = (t208 * t195 + t14 * t198) / t189;
+        let c_cross_leg3 = (-0.0576 + t194) / t203;
+        let s_arm_leg3 = (t208 * t198 - t14 * t195) / t189;
+        let t220 = s_arm_leg3 * s_cross_leg3;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3 + t220;
+        let t222 = 0.5 * minus_c_armcross_leg3;
+        let t223 = 1.0 / c_rod_leg3;
+        let t224 = 1.7857142857142858 * t223;
+        let t225 = t92 * t224;
+        let garm_vx_leg3 = t207 * (t222 + 0.8660254037844387 * t225);
+        let t230 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t234 = minus_c_arm_leg3 * s_cross_leg3;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 - t234;
+        let t243 = t144 - t145;
+        let t244 = t225 * t243;
+        let t245 = t222 * twist[0] + t230 * twist[1] - s_armcross_leg3 * twist[2] + t244;
+        let rate_arm_leg3 = t207 * t245;
+        let t247 = 0.24 * c_cross_leg3;
+        let t248 = t247 * rate_arm_leg3;
+        let rate_rod_leg3 = t224 * t243;
+        let t251 = rate_rod_leg3 * rate_rod_leg3;
+        let t252 = 0.5 * s_armcross_leg3;
+        let t254 = 0.8660254037844387 * s_armcross_leg3;
+        let t259 = t252 * twist[0] + t254 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t248;
+        let rate_cross_leg3 = t224 * t259;
+        let t261 = rate_cross_leg3 * rate_cross_leg3;
+        let t265 = t222 * acceleration[0] + t230 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + rate_arm_leg3 * t248
+            + t204 * (t251 + t261);
+        let t266 = t170 - t171;
+        let t268 = t266 + t244 * rate_rod_leg3;
+        let t270 = t265 + t225 * t268;
+        let rate_dot_arm_leg3 = t207 * t270;
+        let t274 = t230 - 0.5 * t225;
+        let garm_vy_leg3 = t207 * t274;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t207;
+        let t279 = 9.81 * c_arm_leg1;
+        let t283 = 9.81 * c_arm_leg2;
+        let t287 = 9.81 * minus_c_arm_leg3;
+        let t291 = 9.81 * minus_s_arm_leg1;
+        let t295 = 9.81 * minus_s_arm_leg2;
+        let t299 = 9.81 * s_arm_leg3;
+        let t321 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t321;
+        let t324 = rate_rod_leg1 * (1.7857142857142858 * t61);
+        let s_rod_leg1 = 1.7857142857142858 * pose[1];
+        let t326 = 0.24 * rate_dot_arm_leg1;
+        let t331 = 0.24 * t54;
+        let t333 = pose[1] * minus_rate_cross_leg1;
+        let t334 = rate_rod_leg1 * t333;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t42 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t332 + t334 + t334);
+            * (c_cross_leg1 * t326 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t331 + t334 + t334);
         let t340 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t342 = t327 + t340 + t327;
-        let t343 = s_rod_leg1 * t342;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t42 * garm_vy_leg1);
-        let t349 = 3.188775510204082 * (pose[1] * t60);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t324;
-        let gcross_vx_leg2 = t105 * (t160 - t135 * t131);
-        let t357 = minus_rate_rod_leg2 * (1.7857142857142858 * t167);
-        let t363 = t152 * rate_arm_leg2;
-        let t364 = t151 * rate_cross_leg2;
-        let t369 = t160 * acceleration[0] - t162 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t363 - t364 - t364)
-            - t154 * rate_dot_arm_leg2;
-        let rate_dot_cross_leg2 = t105 * t369;
-        let t371 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t373 = t357 + t371 + t357;
-        let t374 = c_rod_leg2 * t373;
-        let t375 = t111 * t374;
-        let t377 = t167 * t167;
-        let t378 = t111 * t377;
-        let t379 = 3.188775510204082 * t378;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t106;
-        let t381 = t379 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = t105 * (t162 + t154 * garm_vy_leg2);
-        let t387 = t379 * minus_grod_vy_leg2;
-        let minus_gcross_vz_leg2 = t105 * t121;
-        let gcross_vx_leg3 = t229 * (t255 - garm_vx_leg3 * t216);
-        let t395 = rate_rod_leg3 * (1.7857142857142858 * t263);
-        let t401 = t247 * rate_cross_leg3;
-        let t406 = t255 * acceleration[0] + t257 * acceleration[1]
-            + minus_c_armcross_leg3 * acceleration[2] - (t250 - t401 - t401)
-            - t216 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = t229 * t406;
-        let t408 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t410 = t395 + t408 + t395;
-        let t411 = s_rod_leg3 * t410;
-        let t413 = t263 * t263;
-        let t415 = 3.188775510204082 * (t230 * t413);
-        let grod_vx_leg3 = 1.5464739353293548 * t228;
-        let t417 = t415 * grod_vx_leg3;
-        let gcross_vy_leg3 = t229 * (t257 - t216 * garm_vy_leg3);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t228;
-        let t424 = t415 * minus_grod_vy_leg3;
-        let gcross_vz_leg3 = t229 * t213;
-        let t428 = t343 - minus_rate_dot_cross_leg1;
-        let t431 = t47 * t428 - c_rod_leg1 * t342;
-        let t440 = rate_dot_cross_leg2 - t375;
-        let t442 = t111 * t440 + t374;
-        let t444 = t111 * t378;
-        let t446 = t106 * (t444 - t377);
-        let t454 = rate_dot_cross_leg3 - t411;
-        let t456 = c_rod_leg3 * t410 + t230 * t454;
-        let t458 = t193 * t265;
-        let t460 = t228 * (t458 - t413);
-        let t467 = t53 * t349;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t68;
-        let t471 = pose[1] * t349;
-        let t474 = s_rod_leg1 * (t467 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t471);
-        let minus_rate_dot_rod_leg2 = t105 * t178;
-        let t483 = 3.188775510204082 * t444;
-        let t486 = minus_s_rod_leg2 * (t379 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t159 - t483);
-        let rate_dot_rod_leg3 = t229 * t272;
-        let t497 = 3.188775510204082 * t458;
-        let t500 = s_rod_leg3 * (t415 + rate_dot_rod_leg3) + c_rod_leg3 * (t254 - t497);
-        let t522 = 1.7857142857142858 * acceleration[1];
-        let t528 = 1.7857142857142858 * t176;
-        let t536 = 1.7857142857142858 * t270;
-        let t549 = 0.8928571428571429 * t16;
-        let t552 = t549 / c_rod_leg1;
-        let t558 = t549 * (t467 - rate_dot_rod_leg1) + s_rod_leg1 * t552 * (t471 + t62)
-            + t42 * t342;
-        let t561 = 0.24 * rate_dot_arm_leg1 - t282;
-        let t563 = t294 - t332;
-        let t566 = s_rod_leg1 * (c_cross_leg1 * t561 - s_cross_leg1 * t563);
-        let t574 = c_cross_leg1 * t563 + s_cross_leg1 * t561;
-        let t588 = 0.8928571428571429 * t100 * (minus_rate_dot_rod_leg2 - t379)
-            - minus_s_rod_leg2 * t108 * (t483 + t159) + t154 * t373;
-        let t591 = t180 - s_cross_leg2 * t286;
-        let t594 = s_cross_leg2 * t298 - t363;
-        let t596 = minus_s_rod_leg2 * (t131 * t591 - t594);
-        let t600 = t131 * t594 + t591;
-        let t611 = 0.8928571428571429 * t200;
-        let t619 = t611 * (t415 - rate_dot_rod_leg3) + t230 * t611 * (t497 + t254)
-            - t216 * t410;
-        let t622 = t250 + s_cross_leg3 * t302;
-        let t624 = t290 + 0.24 * rate_dot_arm_leg3;
-        let t627 = s_rod_leg3 * (t622 + c_cross_leg3 * t624);
-        let t632 = s_cross_leg3 * t624 - t240 * t622;
-        let t645 = t42 * t60 - minus_rate_dot_cross_leg1 * t552;
-        let t657 = rate_dot_cross_leg2 * t108 + t154 * t169;
-        let t670 = rate_dot_cross_leg3 * (t200 * minus_grod_vy_leg3) + t216 * t265;
+        let t342 = t324 + t340 + t324;
+        let t343 = c_rod_leg1 * t342;
+        let t344 = t50 * t343;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t45 * garm_vy_leg1);
+        let t350 = 3.188775510204082 * (minus_rate_cross_leg1 * t333);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t321;
+        let gcross_vx_leg2 = t108 * (t155 - t130 * t126);
+        let t358 = minus_rate_rod_leg2 * (1.7857142857142858 * t163);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t93;
+        let t365 = 0.24 * t150;
+        let t367 = t147 * rate_cross_leg2;
+        let t371 = 0.24 * rate_dot_arm_leg2;
+        let t373 = t155 * acceleration[0] - t157 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t365 - t367 - t367)
+            - c_cross_leg2 * t371;
+        let rate_dot_cross_leg2 = t108 * t373;
+        let t375 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t377 = t358 + t375 + t358;
+        let t378 = c_rod_leg2 * t377;
+        let t379 = t109 * t378;
+        let t381 = t93 * rate_cross_leg2;
+        let t382 = rate_cross_leg2 * t381;
+        let t383 = 2.76156059880242 * t382;
+        let minus_gcross_vy_leg2 = t108 * (t157 + t138 * garm_vy_leg2);
+        let t389 = 1.594387755102041 * t382;
+        let minus_gcross_vz_leg2 = t108 * t116;
+        let gcross_vx_leg3 = t224 * (t252 - garm_vx_leg3 * t247);
+        let s_rod_leg3 = 1.7857142857142858 * t92;
+        let t398 = rate_rod_leg3 * (1.7857142857142858 * t259);
+        let t404 = t245 * rate_arm_leg3;
+        let t405 = t244 * rate_cross_leg3;
+        let t409 = c_cross_leg3 * t206;
+        let t411 = t252 * acceleration[0] + t254 * acceleration[1]
+            + minus_c_armcross_leg3 * acceleration[2] - (t404 - t405 - t405)
+            - t409 * t270;
+        let rate_dot_cross_leg3 = t224 * t411;
+        let t413 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t415 = t398 + t413 + t398;
+        let t416 = s_rod_leg3 * t415;
+        let t418 = t259 * t259;
+        let t419 = t225 * t418;
+        let t420 = 3.188775510204082 * t419;
+        let grod_vx_leg3 = 1.5464739353293548 * t223;
+        let t422 = t420 * grod_vx_leg3;
+        let gcross_vy_leg3 = t224 * (t254 - t409 * t274);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t223;
+        let t429 = t420 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t224 * (s_armcross_leg3 * t409 + minus_c_armcross_leg3);
+        let t435 = t344 - minus_rate_dot_cross_leg1;
+        let t437 = t50 * t435 - t343;
+        let t439 = t333 * t333;
+        let t447 = rate_dot_cross_leg2 - t379;
+        let t449 = t109 * t447 + t378;
+        let t451 = t381 * t381;
+        let t454 = t107 * (t451 - t163 * t163);
+        let t462 = rate_dot_cross_leg3 - t416;
+        let t464 = c_rod_leg3 * t415 + t225 * t462;
+        let t466 = t225 * t419;
+        let t468 = t223 * (t466 - t418);
+        let t475 = t56 * t350;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t71;
+        let t479 = 3.188775510204082 * t439;
+        let t482 = s_rod_leg1 * (rate_dot_rod_leg1 - t475) + c_rod_leg1 * (t65 - t479);
+        let t489 = 3.188775510204082 * (t163 * t381);
+        let minus_rate_dot_rod_leg2 = t108 * t174;
+        let t493 = 3.188775510204082 * t451;
+        let t496 = minus_s_rod_leg2 * (t489 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t154 - t493);
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t107;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t107;
+        let rate_dot_rod_leg3 = t224 * t268;
+        let t509 = 3.188775510204082 * t466;
+        let t512 = s_rod_leg3 * (t420 + rate_dot_rod_leg3) + c_rod_leg3 * (t251 - t509);
+        let t534 = 1.7857142857142858 * acceleration[1];
+        let t540 = 1.7857142857142858 * t172;
+        let t548 = 1.7857142857142858 * t266;
+        let t561 = 0.8928571428571429 * t18;
+        let t569 = t50 * t561 * (t479 + t65) - t561 * (t475 + rate_dot_rod_leg1)
+            + t45 * t342;
+        let t571 = t326 - t279;
+        let t573 = t291 - t331;
+        let t576 = s_rod_leg1 * (c_cross_leg1 * t571 - s_cross_leg1 * t573);
+        let t584 = c_cross_leg1 * t573 + s_cross_leg1 * t571;
+        let t590 = 0.8928571428571429 * t100;
+        let t598 = t590 * (minus_rate_dot_rod_leg2 - t489) - t109 * t590 * (t493 + t154)
+            + t138 * t377;
+        let t600 = t371 - t283;
+        let t602 = t295 - t365;
+        let t605 = minus_s_rod_leg2 * (c_cross_leg2 * t600 - s_cross_leg2 * t602);
+        let t610 = c_cross_leg2 * t602 + s_cross_leg2 * t600;
+        let t621 = 0.8928571428571429 * t198;
+        let t629 = t621 * (t420 - rate_dot_rod_leg3) + t225 * t621 * (t509 + t251)
+            - t247 * t415;
+        let t632 = t404 + t220 * 9.81;
+        let t634 = t270 + t234 * 9.81;
+        let t637 = s_rod_leg3 * (t632 + t409 * t634);
+        let t641 = t634 - t409 * t632;
+        let t655 = t45 * t63 - minus_rate_dot_cross_leg1 * (t561 / c_rod_leg1);
+        let t668 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t138 * t165;
+        let t681 = rate_dot_cross_leg3 * (t198 * minus_grod_vy_leg3) + t247 * t261;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
-                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t282), -(garm_vx_leg2 * t286),
-                garm_vx_leg3 * t290, -(garm_vx_leg1 * t294), -(garm_vx_leg2 * t298),
-                garm_vx_leg3 * t302, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t279), -(garm_vx_leg2 * t283),
+                garm_vx_leg3 * t287, -(garm_vx_leg1 * t291), -(garm_vx_leg2 * t295),
+                garm_vx_leg3 * t299, garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, minus_gcross_vx_leg1 * t343, gcross_vx_leg2 * t375 - t381,
-                gcross_vx_leg3 * t411 - t417, -(minus_gcross_vx_leg1 * t431),
-                -(gcross_vx_leg2 * t442 + 4.9313582121471775 * t446),
-                gcross_vx_leg3 * t456 + 4.9313582121471775 * t460, -(minus_gcross_vx_leg1 * t474),
-                gcross_vx_leg2 * t486 + minus_grod_vx_leg2 * t371,
-                gcross_vx_leg3 * t500 + grod_vx_leg3 * t408, -(minus_gcross_vx_leg1 * t428),
-                gcross_vx_leg2 * t440 + t381, gcross_vx_leg3 * t454 + t417,
-                -(minus_gcross_vx_leg1 * t522),
-                -(gcross_vx_leg2 * t528 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t536 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                garm_vx_leg3, minus_gcross_vx_leg1 * t344, gcross_vx_leg2 * t379 - t383,
+                gcross_vx_leg3 * t416 - t422, -(minus_gcross_vx_leg1 * t437),
+                -(gcross_vx_leg2 * t449 + 4.9313582121471775 * t454),
+                gcross_vx_leg3 * t464 + 4.9313582121471775 * t468, -(minus_gcross_vx_leg1 * t482),
+                gcross_vx_leg2 * t496 + minus_grod_vx_leg2 * t375,
+                gcross_vx_leg3 * t512 + grod_vx_leg3 * t413, -(minus_gcross_vx_leg1 * t435),
+                gcross_vx_leg2 * t447 + t383, gcross_vx_leg3 * t462 + t422,
+                -(minus_gcross_vx_leg1 * t534),
+                -(gcross_vx_leg2 * t540 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t548 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
-                garm_vx_leg1 * t558 + minus_gcross_vx_leg1 * t566,
-                garm_vx_leg2 * t588 + gcross_vx_leg2 * t596 + 1.5464739353293548 * t600,
-                garm_vx_leg3 * t619 - gcross_vx_leg3 * t627 - 1.5464739353293548 * t632,
-                garm_vx_leg1 * t645 - minus_gcross_vx_leg1 * t574,
-                garm_vx_leg2 * t657 + gcross_vx_leg2 * t600,
-                garm_vx_leg3 * t670 + gcross_vx_leg3 * t632,
+                garm_vx_leg1 * t569 + minus_gcross_vx_leg1 * t576,
+                garm_vx_leg2 * t598 + gcross_vx_leg2 * t605 + 1.5464739353293548 * t610,
+                garm_vx_leg3 * t629 - gcross_vx_leg3 * t637 - 1.5464739353293548 * t641,
+                garm_vx_leg1 * t655 - minus_gcross_vx_leg1 * t584,
+                garm_vx_leg2 * t668 + gcross_vx_leg2 * t610,
+                garm_vx_leg3 * t681 + gcross_vx_leg3 * t641,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t282), -(garm_vy_leg2 * t286),
-                garm_vy_leg3 * t290, -(garm_vy_leg1 * t294), -(garm_vy_leg2 * t298),
-                garm_vy_leg3 * t302, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, -(garm_vy_leg1 * t279), -(garm_vy_leg2 * t283),
+                garm_vy_leg3 * t287, -(garm_vy_leg1 * t291), -(garm_vy_leg2 * t295),
+                garm_vy_leg3 * t299, garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, minus_gcross_vy_leg1 * t343 - t349,
-                -(minus_gcross_vy_leg2 * t375 + t387), gcross_vy_leg3 * t411 + t424,
-                5.694241982507289 * (t60 * (t7 + t8) / c_rod_leg1)
-                    - minus_gcross_vy_leg1 * t431,
-                -(2.8471209912536444 * t446 - minus_gcross_vy_leg2 * t442),
-                gcross_vy_leg3 * t456 - 2.8471209912536444 * t460,
-                -(minus_gcross_vy_leg1 * t474 + grod_vy_leg1 * t340),
-                minus_grod_vy_leg2 * t371 - minus_gcross_vy_leg2 * t486,
-                gcross_vy_leg3 * t500 - minus_grod_vy_leg3 * t408,
-                t349 - minus_gcross_vy_leg1 * t428,
-                t387 - minus_gcross_vy_leg2 * t440,
-                gcross_vy_leg3 * t454 - t424,
-                -(minus_gcross_vy_leg1 * t522
+                garm_vy_leg3, minus_gcross_vy_leg1 * t344 - t350,
+                -(minus_gcross_vy_leg2 * t379 + t389), gcross_vy_leg3 * t416 + t429,
+                5.694241982507289 * ((t439 - t61 * t61) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t437,
+                -(2.8471209912536444 * t454 - minus_gcross_vy_leg2 * t449),
+                gcross_vy_leg3 * t464 - 2.8471209912536444 * t468,
+                -(minus_gcross_vy_leg1 * t482 + grod_vy_leg1 * t340),
+                minus_grod_vy_leg2 * t375 - minus_gcross_vy_leg2 * t496,
+                gcross_vy_leg3 * t512 - minus_grod_vy_leg3 * t413,
+                t350 - minus_gcross_vy_leg1 * t435,
+                t389 - minus_gcross_vy_leg2 * t447,
+                gcross_vy_leg3 * t462 - t429,
+                -(minus_gcross_vy_leg1 * t534
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t528 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t536 - 0.8928571428571429 * rate_dot_cross_leg3,
+                minus_gcross_vy_leg2 * t540 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t548 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
-                garm_vy_leg1 * t558 + minus_gcross_vy_leg1 * t566
-                    - 1.7857142857142858 * t574,
-                garm_vy_leg2 * t588 - minus_gcross_vy_leg2 * t596
-                    + 0.8928571428571429 * t600,
-                garm_vy_leg3 * t619 - gcross_vy_leg3 * t627 + 0.8928571428571429 * t632,
-                garm_vy_leg1 * t645 - minus_gcross_vy_leg1 * t574,
-                garm_vy_leg2 * t657 - minus_gcross_vy_leg2 * t600,
-                garm_vy_leg3 * t670 + gcross_vy_leg3 * t632,
+                garm_vy_leg1 * t569 + minus_gcross_vy_leg1 * t576
+                    - 1.7857142857142858 * t584,
+                garm_vy_leg2 * t598 - minus_gcross_vy_leg2 * t605
+                    + 0.8928571428571429 * t610,
+                garm_vy_leg3 * t629 - gcross_vy_leg3 * t637 + 0.8928571428571429 * t641,
+                garm_vy_leg1 * t655 - minus_gcross_vy_leg1 * t584,
+                garm_vy_leg2 * t668 - minus_gcross_vy_leg2 * t610,
+                garm_vy_leg3 * t681 + gcross_vy_leg3 * t641,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t282,
-                minus_garm_vz_leg2 * t286, -(minus_garm_vz_leg3 * t290), minus_garm_vz_leg1 * t294,
-                minus_garm_vz_leg2 * t298, -(minus_garm_vz_leg3 * t302),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t279,
+                minus_garm_vz_leg2 * t283, -(minus_garm_vz_leg3 * t287), minus_garm_vz_leg1 * t291,
+                minus_garm_vz_leg2 * t295, -(minus_garm_vz_leg3 * t299),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t343,
-                -(minus_gcross_vz_leg2 * t375), gcross_vz_leg3 * t411,
-                -(minus_gcross_vz_leg1 * t431), minus_gcross_vz_leg2 * t442, gcross_vz_leg3 * t456,
-                -(minus_gcross_vz_leg1 * t474), -(minus_gcross_vz_leg2 * t486),
-                gcross_vz_leg3 * t500, -(minus_gcross_vz_leg1 * t428),
-                -(minus_gcross_vz_leg2 * t440), gcross_vz_leg3 * t454,
-                -(minus_gcross_vz_leg1 * t522), minus_gcross_vz_leg2 * t528, gcross_vz_leg3 * t536,
-                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t566 - minus_garm_vz_leg1 * t558,
-                -(minus_gcross_vz_leg2 * t596 + minus_garm_vz_leg2 * t588),
-                -(minus_garm_vz_leg3 * t619 + gcross_vz_leg3 * t627),
-                -(minus_garm_vz_leg1 * t645 + minus_gcross_vz_leg1 * t574),
-                -(minus_gcross_vz_leg2 * t600 + minus_garm_vz_leg2 * t657),
-                gcross_vz_leg3 * t632 - minus_garm_vz_leg3 * t670,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, minus_gcross_vz_leg1 * t344,
+                -(minus_gcross_vz_leg2 * t379), gcross_vz_leg3 * t416,
+                -(minus_gcross_vz_leg1 * t437), minus_gcross_vz_leg2 * t449, gcross_vz_leg3 * t464,
+                -(minus_gcross_vz_leg1 * t482), -(minus_gcross_vz_leg2 * t496),
+                gcross_vz_leg3 * t512, -(minus_gcross_vz_leg1 * t435),
+                -(minus_gcross_vz_leg2 * t447), gcross_vz_leg3 * t462,
+                -(minus_gcross_vz_leg1 * t534), minus_gcross_vz_leg2 * t540, gcross_vz_leg3 * t548,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t576 - minus_garm_vz_leg1 * t569,
+                -(minus_gcross_vz_leg2 * t605 + minus_garm_vz_leg2 * t598),
+                -(minus_garm_vz_leg3 * t629 + gcross_vz_leg3 * t637),
+                -(minus_garm_vz_leg1 * t655 + minus_gcross_vz_leg1 * t584),
+                -(minus_gcross_vz_leg2 * t610 + minus_garm_vz_leg2 * t668),
+                gcross_vz_leg3 * t641 - minus_garm_vz_leg3 * t681,
             ],
         ])
     }
@@ -4773,7 +4857,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 565 operations (172 additions, 375 multiplications, 18 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 469 intermediates.
+    /// 585 operations (180 additions, 388 multiplications, 17 divisions), 0 square roots, 9 trigonometric pairs, 9 signs, 489 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4804,285 +4888,297 @@ impl Delta {
         let t22 = t21 * twist[1];
         let t23 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t22;
         let rate_arm_leg1 = t11 * t23;
-        let t25 = t23 * rate_arm_leg1;
-        let t26 = t25 / s_cross_leg1;
+        let t25 = 0.24 * c_cross_leg1;
+        let t26 = t25 * rate_arm_leg1;
         let t28 = 0.56 * c_rod_leg1;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t30 = 0.24 * c_cross_leg1;
-        let t35 = t30 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
-        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t33 = t26 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t33;
+        let t35 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t39 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = acceleration[1] + t22 * rate_rod_leg1;
-        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + c_cross_leg1 * t26 + t28 * (t37 + t39) + t21 * t45;
-        let rate_dot_arm_leg1 = t11 * t47;
+        let t37 = rate_rod_leg1 * rate_rod_leg1;
+        let t43 = acceleration[1] + t22 * rate_rod_leg1;
+        let t45 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + rate_arm_leg1 * t26 + t28 * (t35 + t37) + t21 * t43;
+        let rate_dot_arm_leg1 = t11 * t45;
         let garm_vy_leg1 = t11 * t21;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t56 = 4.166666666666667 / s_cross_leg2;
+        let t54 = 4.166666666666667 / s_cross_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t65 = 0.5 * c_armcross_leg2;
-        let t68 = s_rod_leg2 / c_rod_leg2;
-        let minus_garm_vx_leg2 = t56 * (t65 + 0.8660254037844387 * t68);
-        let t72 = 0.8660254037844387 * c_armcross_leg2;
-        let t83 = 0.8660254037844387 * twist[0];
-        let t84 = 0.5 * twist[1];
-        let t85 = t83 + t84;
-        let t86 = t68 * t85;
-        let t87 = t72 * twist[1] - t65 * twist[0] - s_armcross_leg2 * twist[2] - t86;
-        let rate_arm_leg2 = t56 * t87;
-        let t89 = 0.24 * c_cross_leg2;
-        let t90 = t89 * rate_arm_leg2;
-        let t92 = 0.56 * c_rod_leg2;
-        let t93 = 1.7857142857142858 / c_rod_leg2;
-        let minus_rate_rod_leg2 = t93 * t85;
-        let t95 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t96 = 0.5 * s_armcross_leg2;
-        let t98 = 0.8660254037844387 * s_armcross_leg2;
-        let t103 = t96 * twist[0] - t98 * twist[1] - c_armcross_leg2 * twist[2] - t90;
-        let rate_cross_leg2 = t93 * t103;
+        let t63 = 0.5 * c_armcross_leg2;
+        let t66 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t54 * (t63 + 0.8660254037844387 * t66);
+        let t70 = 0.8660254037844387 * c_armcross_leg2;
+        let t81 = 0.8660254037844387 * twist[0];
+        let t82 = 0.5 * twist[1];
+        let t83 = t81 + t82;
+        let t84 = t66 * t83;
+        let t85 = t70 * twist[1] - t63 * twist[0] - s_armcross_leg2 * twist[2] - t84;
+        let rate_arm_leg2 = t54 * t85;
+        let t87 = t85 * rate_arm_leg2;
+        let t88 = t87 / s_cross_leg2;
+        let t91 = 1.7857142857142858 / c_rod_leg2;
+        let minus_rate_rod_leg2 = t91 * t83;
+        let t93 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t94 = 0.5 * s_armcross_leg2;
+        let t96 = 0.8660254037844387 * s_armcross_leg2;
+        let t101 = 0.24 * c_cross_leg2;
+        let t103 = t94 * twist[0] - t96 * twist[1] - c_armcross_leg2 * twist[2]
+            - t101 * rate_arm_leg2;
+        let rate_cross_leg2 = t91 * t103;
         let t105 = rate_cross_leg2 * rate_cross_leg2;
-        let t109 = t72 * acceleration[1] - t65 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + rate_arm_leg2 * t90
-            + t92 * (t95 + t105);
+        let t109 = t70 * acceleration[1] - t63 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + c_cross_leg2 * t88
+            + 0.56 * c_rod_leg2 * (t93 + t105);
         let t110 = 0.8660254037844387 * acceleration[0];
         let t111 = 0.5 * acceleration[1];
         let t112 = t110 + t111;
-        let t114 = t112 - t86 * minus_rate_rod_leg2;
-        let rate_dot_arm_leg2 = t56 * (t109 - t68 * t114);
-        let garm_vy_leg2 = t56 * (t72 - 0.5 * t68);
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
+        let t114 = t112 - t84 * minus_rate_rod_leg2;
+        let rate_dot_arm_leg2 = t54 * (t109 - t66 * t114);
+        let garm_vy_leg2 = t54 * (t70 - 0.5 * t66);
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t54;
         let t127 = 4.166666666666667 / s_cross_leg3;
         let t130 = s_rod_leg3 / c_rod_leg3;
+        let t131 = 0.8660254037844387 * t130;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
         let t140 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t127 * (0.8660254037844387 * t130 - t140);
-        let t143 = t83 - t84;
-        let t144 = t130 * t143;
-        let t146 = 0.8660254037844387 * c_armcross_leg3;
-        let t151 = t144
-            - (t140 * twist[0] + t146 * twist[1] + s_armcross_leg3 * twist[2]);
-        let rate_arm_leg3 = t127 * t151;
-        let t153 = 0.24 * c_cross_leg3;
-        let t154 = t153 * rate_arm_leg3;
-        let t157 = 1.7857142857142858 / c_rod_leg3;
-        let rate_rod_leg3 = t157 * t143;
-        let t159 = rate_rod_leg3 * rate_rod_leg3;
-        let t160 = 0.5 * s_armcross_leg3;
-        let t162 = 0.8660254037844387 * s_armcross_leg3;
-        let t167 = t160 * twist[0] + t162 * twist[1] - c_armcross_leg3 * twist[2] - t154;
-        let t168 = 1.7857142857142858 * t167;
-        let t169 = t168 * t168;
-        let t170 = t130 * t169;
-        let t171 = t130 * t170;
-        let t172 = t171 + t169;
-        let t181 = rate_arm_leg3 * t154 + 0.56 * c_rod_leg3 * (t159 + t172)
-            - (t140 * acceleration[0] + t146 * acceleration[1]
-                + s_armcross_leg3 * acceleration[2]);
-        let t182 = t110 - t111;
-        let t184 = t182 + t144 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t127 * (t181 + t130 * t184);
-        let minus_garm_vy_leg3 = t127 * (t146 + 0.5 * t130);
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t127;
-        let t195 = 9.81 * c_arm_leg1;
-        let t199 = 9.81 * c_arm_leg2;
-        let t203 = 9.81 * c_arm_leg3;
-        let t207 = 9.81 * s_arm_leg1;
-        let t211 = 9.81 * s_arm_leg2;
-        let t215 = 9.81 * s_arm_leg3;
-        let t237 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t237;
-        let t240 = rate_rod_leg1 * (1.7857142857142858 * t35);
-        let t245 = t22 * minus_rate_cross_leg1;
-        let t249 = t30 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t25 + t245 + t245;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t249;
-        let t251 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t253 = t240 + t251 + t240;
-        let t254 = c_rod_leg1 * t253;
-        let t255 = t21 * t254;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t30 * garm_vy_leg1);
-        let t260 = t21 * t35;
-        let t262 = 3.188775510204082 * (minus_rate_cross_leg1 * t260);
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t237;
-        let gcross_vx_leg2 = t93 * (t96 + minus_garm_vx_leg2 * t89);
-        let t274 = t87 * rate_arm_leg2;
-        let t275 = t86 * rate_cross_leg2;
-        let t276 = t275 + t275;
-        let t280 = t96 * acceleration[0] - t98 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (t274 + t276)
-            - t89 * rate_dot_arm_leg2;
-        let rate_dot_cross_leg2 = t93 * t280;
-        let t282 = s_rod_leg2 * rate_dot_cross_leg2;
-        let t284 = minus_rate_rod_leg2 * (1.7857142857142858 * t103);
-        let t286 = t282 - t284 - t284;
-        let t287 = c_rod_leg2 * t286;
-        let t288 = t68 * t287;
-        let t290 = s_rod_leg2 * t105;
-        let t291 = 1.5464739353293548 * t290;
-        let minus_gcross_vy_leg2 = t93 * (t98 + t89 * garm_vy_leg2);
-        let t297 = 0.8928571428571429 * t290;
-        let gcross_vz_leg2 = t93 * (s_arm_leg2 / s_cross_leg2);
-        let gcross_vx_leg3 = t157 * (t160 - garm_vx_leg3 * t153);
-        let t305 = rate_rod_leg3 * t168;
-        let t311 = t151 * rate_arm_leg3;
-        let t313 = rate_rod_leg3 * (t130 * t167);
-        let t317 = 0.24 * rate_dot_arm_leg3;
-        let t319 = t160 * acceleration[0] + t162 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t311 - t313 - t313)
-            - c_cross_leg3 * t317;
-        let rate_dot_cross_leg3 = t157 * t319;
-        let t321 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t323 = t305 + t321 + t305;
-        let t324 = s_rod_leg3 * t323;
+        let garm_vx_leg3 = t127 * (t131 - t140);
+        let t143 = c_cross_leg3 / s_cross_leg3;
+        let t144 = t81 - t82;
+        let t145 = t130 * t144;
+        let t147 = 0.8660254037844387 * c_armcross_leg3;
+        let t151 = t140 * twist[0] + t147 * twist[1] + s_armcross_leg3 * twist[2];
+        let t152 = t145 - t151;
+        let rate_arm_leg3 = t127 * t152;
+        let t154 = t152 * rate_arm_leg3;
+        let t156 = 0.56 * c_rod_leg3;
         let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
-        let t327 = t170 * minus_grod_vy_leg3;
-        let t328 = 0.8660254037844387 + 0.8660254037844387;
-        let t329 = t327 * t328;
-        let gcross_vy_leg3 = t157 * (t162 + t153 * minus_garm_vy_leg3);
-        let gcross_vz_leg3 = t157 * (s_arm_leg3 / s_cross_leg3);
-        let t343 = s_rod_leg1 * t240 + c_rod_leg1 * (1.7857142857142858 * (t245 - t249));
-        let t345 = t21 * t343 - t254;
-        let t347 = t260 * t260;
-        let t355 = t92 * 3.188775510204082;
-        let t357 = t355 * (t280 + t276);
-        let t359 = t68 * t357 + t287;
+        let t158 = minus_grod_vy_leg3 + minus_grod_vy_leg3;
+        let rate_rod_leg3 = t158 * t144;
+        let t160 = rate_rod_leg3 * rate_rod_leg3;
+        let t162 = 0.5 * s_armcross_leg3;
+        let t164 = 0.8660254037844387 * s_armcross_leg3;
+        let rate_cross_leg3 = t158
+            * (t143 * t151 + t162 * twist[0] + t164 * twist[1]
+                - c_armcross_leg3 * twist[2] - t145 * t143);
+        let t173 = rate_cross_leg3 * rate_cross_leg3;
+        let t182 = t143 * t154 + t156 * (t160 + t173)
+            - (t140 * acceleration[0] + t147 * acceleration[1]
+                + s_armcross_leg3 * acceleration[2]);
+        let t183 = t110 - t111;
+        let t185 = t183 + t145 * rate_rod_leg3;
+        let t186 = t130 * t185;
+        let t187 = t182 + t186;
+        let rate_dot_arm_leg3 = t127 * t187;
+        let t191 = t147 + 0.5 * t130;
+        let minus_garm_vy_leg3 = t127 * t191;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t127;
+        let t196 = 9.81 * c_arm_leg1;
+        let t200 = 9.81 * c_arm_leg2;
+        let t204 = 9.81 * c_arm_leg3;
+        let t208 = 9.81 * s_arm_leg1;
+        let t212 = 9.81 * s_arm_leg2;
+        let t216 = 9.81 * s_arm_leg3;
+        let t238 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t238;
+        let t241 = rate_rod_leg1 * (1.7857142857142858 * t33);
+        let t246 = t23 * rate_arm_leg1;
+        let t247 = t22 * minus_rate_cross_leg1;
+        let t251 = t25 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t246 + t247 + t247;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t251;
+        let t253 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t255 = t241 + t253 + t241;
+        let t256 = c_rod_leg1 * t255;
+        let t257 = t21 * t256;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t25 * garm_vy_leg1);
+        let t262 = t21 * t33;
+        let t264 = 3.188775510204082 * (minus_rate_cross_leg1 * t262);
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t238;
+        let gcross_vx_leg2 = t91 * (t94 + minus_garm_vx_leg2 * t101);
+        let t276 = t84 * rate_cross_leg2;
+        let t280 = 0.24 * rate_dot_arm_leg2;
+        let t282 = t94 * acceleration[0] - t96 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (t87 + t276 + t276)
+            - c_cross_leg2 * t280;
+        let rate_dot_cross_leg2 = t91 * t282;
+        let t284 = s_rod_leg2 * rate_dot_cross_leg2;
+        let t286 = minus_rate_rod_leg2 * (1.7857142857142858 * t103);
+        let t288 = t284 - t286 - t286;
+        let t289 = c_rod_leg2 * t288;
+        let t290 = t66 * t289;
+        let t293 = rate_cross_leg2 * (t66 * t103);
+        let t294 = 2.76156059880242 * t293;
+        let minus_gcross_vy_leg2 = t91 * (t96 + t101 * garm_vy_leg2);
+        let t300 = 1.594387755102041 * t293;
+        let gcross_vz_leg2 = t91 * (s_arm_leg2 / s_cross_leg2);
+        let gcross_vx_leg3 = t158 * (t140 * t143 + t162 - t131 * t143);
+        let t315 = 0.56 * s_rod_leg3;
+        let t316 = rate_cross_leg3 * rate_rod_leg3;
+        let t317 = t315 * t316;
+        let t322 = t162 * acceleration[0] + t164 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t154 - (t317 + t317)) - t143 * t182;
+        let t324 = t322 - t143 * t186;
+        let rate_dot_cross_leg3 = t158 * t324;
+        let t326 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t327 = c_rod_leg3 * t316;
+        let t328 = t326 + t327;
+        let t331 = c_rod_leg3 * (1.7857142857142858 * t317);
+        let t332 = s_rod_leg3 * t328 + t331;
+        let t334 = t173 * t315;
+        let t335 = 2.76156059880242 * t334;
+        let gcross_vy_leg3 = t158 * (t164 + t143 * t191);
+        let t341 = 1.594387755102041 * t334;
+        let gcross_vz_leg3 = t158 * (s_arm_leg3 / s_cross_leg3);
+        let t350 = s_rod_leg1 * t241 + c_rod_leg1 * (1.7857142857142858 * (t247 - t251));
+        let t352 = t21 * t350 - t256;
+        let t354 = t262 * t262;
+        let t362 = 1.7857142857142858 * c_rod_leg2;
+        let t366 = t276 * t362 + (t282 + t276) * t362;
+        let t368 = t66 * t366 + t289;
         let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
-        let t363 = t105 * (minus_grod_vy_leg2 - t355);
-        let t370 = rate_dot_cross_leg3 - t324;
-        let t372 = c_rod_leg3 * t323 + t130 * t370;
-        let t375 = minus_grod_vy_leg3 * (t171 - t169);
-        let t381 = t28 * t262;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t385 = 3.188775510204082 * t347;
-        let t388 = s_rod_leg1 * (t381 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t385);
-        let minus_rate_dot_rod_leg2 = t93 * t114;
-        let t401 = s_rod_leg2 * (c_rod_leg2 * t290 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t95 - s_rod_leg2 * t290);
-        let t403 = 1.5464739353293548 * rate_dot_cross_leg2;
-        let rate_dot_rod_leg3 = t157 * t184;
-        let t415 = s_rod_leg3 * (t170 + rate_dot_rod_leg3) + c_rod_leg3 * (t159 - t171);
-        let t417 = 1.5464739353293548 * rate_dot_cross_leg3;
-        let t438 = 1.7857142857142858 * acceleration[1];
-        let t444 = 1.7857142857142858 * t112;
-        let t451 = 1.7857142857142858 * t182;
-        let t459 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
-        let t461 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
-        let t463 = 0.24 * s_cross_leg1;
-        let t472 = t463 * (c_rod_leg1 * (t381 - rate_dot_rod_leg1))
-            + t463 * s_rod_leg1 * (t385 + t39) + t30 * t253;
-        let t474 = t207 + t26;
-        let t477 = 0.24 * rate_dot_arm_leg1 - t195;
-        let t480 = s_rod_leg1 * (s_cross_leg1 * t474 + c_cross_leg1 * t477);
-        let t488 = s_cross_leg1 * t477 - c_cross_leg1 * t474;
-        let t495 = 0.24 * rate_dot_arm_leg2 - t199;
-        let t498 = t211 + t274 / s_cross_leg2;
-        let t500 = s_cross_leg2 * t495 - c_cross_leg2 * t498;
-        let t502 = 0.24 * s_cross_leg2;
-        let t506 = t502 * (t444 + t290) - t89 * t286;
-        let t511 = s_rod_leg2 * (s_cross_leg2 * t498 + c_cross_leg2 * t495);
-        let t523 = 0.24 * s_cross_leg3;
-        let t532 = t523 * (c_rod_leg3 * (t170 - rate_dot_rod_leg3))
-            + t523 * s_rod_leg3 * (t171 + t159) - t153 * t323;
-        let t535 = t215 + t311 / s_cross_leg3;
-        let t537 = t317 - t203;
-        let t540 = s_rod_leg3 * (s_cross_leg3 * t535 + c_cross_leg3 * t537);
-        let t545 = s_cross_leg3 * t537 - c_cross_leg3 * t535;
-        let t558 = t30 * t37 - t463 * minus_rate_dot_cross_leg1;
-        let t571 = t502 * rate_dot_cross_leg2 + t89 * t105;
-        let t582 = t523 * rate_dot_cross_leg3 + t153 * t172;
+        let t372 = t105 * (minus_grod_vy_leg2 - t362);
+        let t373 = 0.8660254037844387 + 0.8660254037844387;
+        let t379 = t327 + t328;
+        let t382 = t156 * 3.188775510204082;
+        let t384 = (t324 - t317) * t382 - t331;
+        let t386 = c_rod_leg3 * t379 + t130 * t384;
+        let t389 = t173 * (minus_grod_vy_leg3 - t382);
+        let t395 = t28 * t264;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t43;
+        let t399 = 3.188775510204082 * t354;
+        let t402 = s_rod_leg1 * (t395 + rate_dot_rod_leg1) + c_rod_leg1 * (t37 - t399);
+        let t408 = t293 * t362;
+        let minus_rate_dot_rod_leg2 = t91 * t114;
+        let t412 = t66 * t408;
+        let t415 = s_rod_leg2 * (t408 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t93 - t412);
+        let t417 = 1.5464739353293548 * rate_dot_cross_leg2;
+        let t424 = t334 * t382;
+        let rate_dot_rod_leg3 = t158 * t185;
+        let t428 = t130 * t424;
+        let t431 = s_rod_leg3 * (t424 + rate_dot_rod_leg3) + c_rod_leg3 * (t160 - t428);
+        let t433 = minus_grod_vy_leg3 * t326;
+        let t453 = 1.7857142857142858 * acceleration[1];
+        let t459 = 1.7857142857142858 * t112;
+        let t466 = 1.7857142857142858 * t183;
+        let t475 = minus_grod_vy_leg2 * minus_rate_dot_rod_leg2;
+        let t477 = minus_grod_vy_leg3 * rate_dot_rod_leg3;
+        let t479 = 0.24 * s_cross_leg1;
+        let t488 = t479 * (c_rod_leg1 * (t395 - rate_dot_rod_leg1))
+            + t479 * s_rod_leg1 * (t399 + t37) + t25 * t255;
+        let t491 = t208 + t246 / s_cross_leg1;
+        let t494 = 0.24 * rate_dot_arm_leg1 - t196;
+        let t497 = s_rod_leg1 * (s_cross_leg1 * t491 + c_cross_leg1 * t494);
+        let t505 = s_cross_leg1 * t494 - c_cross_leg1 * t491;
+        let t511 = t280 - t200;
+        let t513 = t212 + t88;
+        let t515 = s_cross_leg2 * t511 - c_cross_leg2 * t513;
+        let t516 = 0.8928571428571429 * t515;
+        let t518 = 0.24 * s_cross_leg2;
+        let t527 = t518 * (c_rod_leg2 * (t408 + minus_rate_dot_rod_leg2))
+            + t518 * s_rod_leg2 * (t412 + t93) - t101 * t288;
+        let t532 = s_rod_leg2 * (s_cross_leg2 * t513 + c_cross_leg2 * t511);
+        let t543 = 0.24 * s_cross_leg3;
+        let t551 = 0.24 * c_cross_leg3;
+        let t553 = t543 * (c_rod_leg3 * (t424 - rate_dot_rod_leg3))
+            + t543 * s_rod_leg3 * (t428 + t160) - t551 * t379;
+        let t556 = t154 + s_cross_leg3 * t216;
+        let t558 = t187 - s_cross_leg3 * t204;
+        let t561 = s_rod_leg3 * (t556 + t143 * t558);
+        let t565 = t558 - t143 * t556;
+        let t566 = 0.8928571428571429 * t565;
+        let t578 = t25 * t35 - t479 * minus_rate_dot_cross_leg1;
+        let t591 = t518 * rate_dot_cross_leg2 + t101 * t105;
+        let t602 = t543 * rate_dot_cross_leg3 + t551 * t173;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2), garm_vx_leg3 * rate_dot_arm_leg3,
-                -(garm_vx_leg1 * t195), minus_garm_vx_leg2 * t199, -(garm_vx_leg3 * t203),
-                garm_vx_leg1 * t207, -(minus_garm_vx_leg2 * t211), garm_vx_leg3 * t215,
+                -(garm_vx_leg1 * t196), minus_garm_vx_leg2 * t200, -(garm_vx_leg3 * t204),
+                garm_vx_leg1 * t208, -(minus_garm_vx_leg2 * t212), garm_vx_leg3 * t216,
                 garm_vx_leg1 * rate_arm_leg1, -(minus_garm_vx_leg2 * rate_arm_leg2),
                 garm_vx_leg3 * rate_arm_leg3, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg1,
-                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t255,
-                gcross_vx_leg2 * t288 + t291, gcross_vx_leg3 * t324 - t329,
-                -(minus_gcross_vx_leg1 * t345), gcross_vx_leg2 * t359 - t363 * t328,
-                gcross_vx_leg3 * t372 + t375 * t328, -(minus_gcross_vx_leg1 * t388),
-                gcross_vx_leg2 * t401 - t68 * t403, gcross_vx_leg3 * t415 + t130 * t417,
-                -(minus_gcross_vx_leg1 * t343), gcross_vx_leg2 * t357 - t291,
-                gcross_vx_leg3 * t370 + t329, -(minus_gcross_vx_leg1 * t438),
-                -(gcross_vx_leg2 * t444 + t403), gcross_vx_leg3 * t451 + t417, 0.0, t459 * t328,
-                t461 * t328, garm_vx_leg1 * t472 + minus_gcross_vx_leg1 * t480,
-                1.5464739353293548 * t500
-                    - (minus_garm_vx_leg2 * t506 + gcross_vx_leg2 * t511),
-                garm_vx_leg3 * t532 - gcross_vx_leg3 * t540 - 1.5464739353293548 * t545,
-                garm_vx_leg1 * t558 - minus_gcross_vx_leg1 * t488,
-                gcross_vx_leg2 * t500 - minus_garm_vx_leg2 * t571,
-                garm_vx_leg3 * t582 + gcross_vx_leg3 * t545,
+                -minus_garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t257,
+                gcross_vx_leg2 * t290 + t294, gcross_vx_leg3 * t332 - t335,
+                -(minus_gcross_vx_leg1 * t352), gcross_vx_leg2 * t368 - t372 * t373,
+                gcross_vx_leg3 * t386 + t389 * t373, -(minus_gcross_vx_leg1 * t402),
+                gcross_vx_leg2 * t415 - t66 * t417, gcross_vx_leg3 * t431 + t433 * t373,
+                -(minus_gcross_vx_leg1 * t350), gcross_vx_leg2 * t366 - t294,
+                gcross_vx_leg3 * t384 + t335, -(minus_gcross_vx_leg1 * t453),
+                -(gcross_vx_leg2 * t459 + t417),
+                gcross_vx_leg3 * t466 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0, t475 * t373,
+                t477 * t373, garm_vx_leg1 * t488 + minus_gcross_vx_leg1 * t497,
+                t516 * t373 - (minus_garm_vx_leg2 * t527 + gcross_vx_leg2 * t532),
+                garm_vx_leg3 * t553 - gcross_vx_leg3 * t561 - t566 * t373,
+                garm_vx_leg1 * t578 - minus_gcross_vx_leg1 * t505,
+                gcross_vx_leg2 * t515 - minus_garm_vx_leg2 * t591,
+                garm_vx_leg3 * t602 + gcross_vx_leg3 * t565,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
-                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t195),
-                -(garm_vy_leg2 * t199), minus_garm_vy_leg3 * t203, garm_vy_leg1 * t207,
-                garm_vy_leg2 * t211, -(minus_garm_vy_leg3 * t215), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg3 * rate_dot_arm_leg3), -(garm_vy_leg1 * t196),
+                -(garm_vy_leg2 * t200), minus_garm_vy_leg3 * t204, garm_vy_leg1 * t208,
+                garm_vy_leg2 * t212, -(minus_garm_vy_leg3 * t216), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, -(minus_garm_vy_leg3 * rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vy_leg3, rate_arm_leg3), garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t255 - t262,
-                t297 - minus_gcross_vy_leg2 * t288, gcross_vy_leg3 * t324 + t327,
-                5.694241982507289 * ((t347 - t35 * t35) / c_rod_leg1)
-                    - minus_gcross_vy_leg1 * t345,
-                -(minus_gcross_vy_leg2 * t359 + t363),
-                gcross_vy_leg3 * t372 - t375,
-                -(minus_gcross_vy_leg1 * t388 + grod_vy_leg1 * t251),
-                -(minus_gcross_vy_leg2 * t401 + minus_grod_vy_leg2 * t282),
-                gcross_vy_leg3 * t415 - minus_grod_vy_leg3 * t321,
-                t262 - minus_gcross_vy_leg1 * t343,
-                -(minus_gcross_vy_leg2 * t357 + t297),
-                gcross_vy_leg3 * t370 - t327,
-                -(minus_gcross_vy_leg1 * t438
+                garm_vy_leg2, -minus_garm_vy_leg3, minus_gcross_vy_leg1 * t257 - t264,
+                t300 - minus_gcross_vy_leg2 * t290, gcross_vy_leg3 * t332 + t341,
+                5.694241982507289 * ((t354 - t33 * t33) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t352,
+                -(minus_gcross_vy_leg2 * t368 + t372),
+                gcross_vy_leg3 * t386 - t389,
+                -(minus_gcross_vy_leg1 * t402 + grod_vy_leg1 * t253),
+                -(minus_gcross_vy_leg2 * t415 + minus_grod_vy_leg2 * t284),
+                gcross_vy_leg3 * t431 - t433,
+                t264 - minus_gcross_vy_leg1 * t350,
+                -(minus_gcross_vy_leg2 * t366 + t300),
+                gcross_vy_leg3 * t384 - t341,
+                -(minus_gcross_vy_leg1 * t453
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
                 -(0.8928571428571429 * rate_dot_cross_leg2
-                    - minus_gcross_vy_leg2 * t444),
-                gcross_vy_leg3 * t451 - 0.8928571428571429 * rate_dot_cross_leg3,
+                    - minus_gcross_vy_leg2 * t459),
+                gcross_vy_leg3 * t466 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                t459,
-                -t461,
-                garm_vy_leg1 * t472 + minus_gcross_vy_leg1 * t480
-                    - 1.7857142857142858 * t488,
-                garm_vy_leg2 * t506 + minus_gcross_vy_leg2 * t511
-                    + 0.8928571428571429 * t500,
-                0.8928571428571429 * t545
-                    - (minus_garm_vy_leg3 * t532 + gcross_vy_leg3 * t540),
-                garm_vy_leg1 * t558 - minus_gcross_vy_leg1 * t488,
-                garm_vy_leg2 * t571 - minus_gcross_vy_leg2 * t500,
-                gcross_vy_leg3 * t545 - minus_garm_vy_leg3 * t582,
+                t475,
+                -t477,
+                garm_vy_leg1 * t488 + minus_gcross_vy_leg1 * t497
+                    - 1.7857142857142858 * t505,
+                garm_vy_leg2 * t527 + minus_gcross_vy_leg2 * t532 + t516,
+                t566 - (minus_garm_vy_leg3 * t553 + gcross_vy_leg3 * t561),
+                garm_vy_leg1 * t578 - minus_gcross_vy_leg1 * t505,
+                garm_vy_leg2 * t591 - minus_gcross_vy_leg2 * t515,
+                gcross_vy_leg3 * t565 - minus_garm_vy_leg3 * t602,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t195,
-                minus_garm_vz_leg2 * t199, minus_garm_vz_leg3 * t203, -(minus_garm_vz_leg1 * t207),
-                -(minus_garm_vz_leg2 * t211), -(minus_garm_vz_leg3 * t215),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3), minus_garm_vz_leg1 * t196,
+                minus_garm_vz_leg2 * t200, minus_garm_vz_leg3 * t204, -(minus_garm_vz_leg1 * t208),
+                -(minus_garm_vz_leg2 * t212), -(minus_garm_vz_leg3 * t216),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg1,
-                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t255),
-                gcross_vz_leg2 * t288, gcross_vz_leg3 * t324, minus_minus_gcross_vz_leg1 * t345,
-                gcross_vz_leg2 * t359, gcross_vz_leg3 * t372, minus_minus_gcross_vz_leg1 * t388,
-                gcross_vz_leg2 * t401, gcross_vz_leg3 * t415, minus_minus_gcross_vz_leg1 * t343,
-                gcross_vz_leg2 * t357, gcross_vz_leg3 * t370, minus_minus_gcross_vz_leg1 * t438,
-                -(gcross_vz_leg2 * t444), gcross_vz_leg3 * t451, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t480 + minus_garm_vz_leg1 * t472),
-                -(minus_garm_vz_leg2 * t506 + gcross_vz_leg2 * t511),
-                -(minus_garm_vz_leg3 * t532 + gcross_vz_leg3 * t540),
-                -(minus_garm_vz_leg1 * t558 - minus_minus_gcross_vz_leg1 * t488),
-                gcross_vz_leg2 * t500 - minus_garm_vz_leg2 * t571,
-                gcross_vz_leg3 * t545 - minus_garm_vz_leg3 * t582,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -(minus_minus_gcross_vz_leg1 * t257),
+                gcross_vz_leg2 * t290, gcross_vz_leg3 * t332, minus_minus_gcross_vz_leg1 * t352,
+                gcross_vz_leg2 * t368, gcross_vz_leg3 * t386, minus_minus_gcross_vz_leg1 * t402,
+                gcross_vz_leg2 * t415, gcross_vz_leg3 * t431, minus_minus_gcross_vz_leg1 * t350,
+                gcross_vz_leg2 * t366, gcross_vz_leg3 * t384, minus_minus_gcross_vz_leg1 * t453,
+                -(gcross_vz_leg2 * t459), gcross_vz_leg3 * t466, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t497 + minus_garm_vz_leg1 * t488),
+                -(minus_garm_vz_leg2 * t527 + gcross_vz_leg2 * t532),
+                -(minus_garm_vz_leg3 * t553 + gcross_vz_leg3 * t561),
+                -(minus_garm_vz_leg1 * t578 - minus_minus_gcross_vz_leg1 * t505),
+                gcross_vz_leg2 * t515 - minus_garm_vz_leg2 * t591,
+                gcross_vz_leg3 * t565 - minus_garm_vz_leg3 * t602,
             ],
         ])
     }
@@ -5097,7 +5193,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 715 operations (235 additions, 449 multiplications, 31 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 606 intermediates.
+    /// 721 operations (235 additions, 461 multiplications, 25 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 612 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5113,8 +5209,7 @@ impl Delta {
         let t2 = 0.48 * t1;
         let t4 = pose[2] * pose[2];
         let t5 = t1 * t1 + t4;
-        let t6 = pose[1] * pose[1];
-        let t7 = t6 + -0.3136;
+        let t7 = pose[1] * pose[1] + -0.3136;
         let t8 = t5 + t7;
         let t9 = t8 + 0.0576;
         let t11 = 0.48 * pose[2];
@@ -5126,375 +5221,386 @@ impl Delta {
         let c_rod_leg1 = ::overact::math::sqrt(-(3.188775510204082 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
         let t23 = 0.56 * c_rod_leg1;
-        let t24 = 0.48 * t23;
-        let c_cross_leg1 = (t8 + -0.0576) / t24;
+        let c_cross_leg1 = (t8 + -0.0576) / (0.48 * t23);
         let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let s_cross_leg1 = t15 / t24;
+        let t31 = 1.0 / c_rod_leg1;
+        let t32 = 0.8928571428571429 * t15;
+        let t33 = t31 * t32;
+        let s_cross_leg1 = 4.166666666666667 * t33;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 4.166666666666667 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t34;
-        let t36 = 0.24 * c_cross_leg1;
-        let t37 = actuator_velocities[0] * actuator_velocities[0];
-        let grod_vy_leg1 = 0.48 / t24;
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t44 = garm_vx_leg1 * actuator_velocities[0];
-        let t48 = t0 + 0.025;
-        let t49 = 0.5 * t48;
-        let t50 = 0.8660254037844387
-            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t49;
-        let t52 = t4 + t50 * t50;
-        let t53 = 0.2304 * t52;
-        let t56 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t58 = 0.8660254037844387 * t48 - 0.5 * t56;
-        let t59 = pose[1] + t58;
-        let t60 = t59 * t59;
-        let t61 = 0.3136 - t60;
-        let t62 = t52 - t61;
-        let t63 = t62 + 0.0576;
-        let t65 = t53 - t63 * t63;
-        ::overact::guard::reach(t65, "leg2")?;
-        let t66 = ::overact::math::sqrt(t65);
-        let t67 = 0.8928571428571429 * t66;
-        let t68 = 3.188775510204082 * t61;
-        ::overact::guard::reach(t68, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t68);
+        let t37 = 4.166666666666667 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t37;
+        let t43 = t0 + 0.025;
+        let t44 = 0.5 * t43;
+        let t45 = 0.8660254037844387
+            * (pose[1] + 0.04330127018922194 - 0.17320508075688776) - t44;
+        let t47 = t4 + t45 * t45;
+        let t48 = 0.2304 * t47;
+        let t51 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t53 = 0.8660254037844387 * t43 - 0.5 * t51;
+        let t54 = pose[1] + t53;
+        let t55 = t54 * t54;
+        let t56 = 0.3136 - t55;
+        let t57 = t47 - t56;
+        let t58 = t57 + 0.0576;
+        let t60 = t48 - t58 * t58;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t62 = 0.8928571428571429 * t61;
+        let t63 = 3.188775510204082 * t56;
+        ::overact::guard::reach(t63, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t63);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t70 = t67 / c_rod_leg2;
-        let s_cross_leg2 = 4.166666666666667 * t70;
+        let t65 = t62 / c_rod_leg2;
+        let s_cross_leg2 = 4.166666666666667 * t65;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t72 = 4.166666666666667 / s_cross_leg2;
-        let t73 = 1.7857142857142858 / c_rod_leg2;
-        let t74 = t59 * t73;
-        let t77 = 0.48 * t50;
-        let minus_s_arm_leg2 = (t11 * t63 + t77 * t66) / t53;
-        let t81 = minus_s_arm_leg2 / s_cross_leg2;
-        let c_arm_leg2 = (t77 * t63 - t11 * t66) / t53;
-        let minus_grod_vy_leg2 = 0.5 * t73;
-        let t89 = (-0.0576 + t62) * minus_grod_vy_leg2;
-        let c_cross_leg2 = 4.166666666666667 * t89;
-        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
-            - minus_s_arm_leg2 * c_cross_leg2;
-        let t93 = t72 * t89;
-        let c_armcross_leg2 = t81 + s_armcross_leg2 * t93;
-        let garm_vx_leg2 = t72 * (0.8660254037844387 * t74 - 0.5 * c_armcross_leg2);
-        let t99 = garm_vx_leg2 * actuator_velocities[1];
-        let t102 = t49 + 0.8660254037844387 * t56;
-        let t104 = t4 + t102 * t102;
-        let t105 = 0.2304 * t104;
-        let t106 = t58 * t58;
-        let t107 = 0.3136 - t106;
-        let t108 = t104 - t107;
-        let t109 = t108 + 0.0576;
-        let t111 = t105 - t109 * t109;
-        ::overact::guard::reach(t111, "leg3")?;
-        let t112 = ::overact::math::sqrt(t111);
-        let t113 = 3.188775510204082 * t107;
-        ::overact::guard::reach(t113, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t113);
-        let t115 = 0.56 * c_rod_leg3;
-        let t116 = 0.48 * t115;
-        let s_cross_leg3 = t112 / t116;
+        let t67 = 4.166666666666667 / s_cross_leg2;
+        let t68 = 1.7857142857142858 / c_rod_leg2;
+        let t69 = t54 * t68;
+        let t71 = 0.48 * t45;
+        let c_arm_leg2 = (t71 * t58 - t11 * t61) / t48;
+        let minus_grod_vy_leg2 = 0.8928571428571429 / c_rod_leg2;
+        let t78 = (-0.0576 + t57) * minus_grod_vy_leg2;
+        let c_cross_leg2 = 4.166666666666667 * t78;
+        let minus_s_arm_leg2 = (t11 * t58 + t71 * t61) / t48;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t88 = 0.8660254037844387 * t69 - 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t67 * t88;
+        let t93 = t44 + 0.8660254037844387 * t51;
+        let t95 = t4 + t93 * t93;
+        let t96 = 0.2304 * t95;
+        let t97 = t53 * t53;
+        let t98 = 0.3136 - t97;
+        let t99 = t95 - t98;
+        let t100 = t99 + 0.0576;
+        let t102 = t96 - t100 * t100;
+        ::overact::guard::reach(t102, "leg3")?;
+        let t103 = ::overact::math::sqrt(t102);
+        let t104 = 0.8928571428571429 * t103;
+        let t105 = 3.188775510204082 * t98;
+        ::overact::guard::reach(t105, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t105);
+        ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
+        let t107 = t104 / c_rod_leg3;
+        let s_cross_leg3 = 4.166666666666667 * t107;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t118 = 4.166666666666667 / s_cross_leg3;
-        let t119 = 0.48 * t102;
-        let s_arm_leg3 = (t119 * t112 - t11 * t109) / t105;
-        let t124 = s_arm_leg3 / s_cross_leg3;
-        let c_cross_leg3 = (-0.0576 + t108) / t116;
-        let minus_c_arm_leg3 = (t119 * t109 + t11 * t112) / t105;
+        let t109 = 1.0 / s_cross_leg3;
+        let t110 = 4.166666666666667 * t109;
+        let t111 = 0.48 * t93;
+        let s_arm_leg3 = (t111 * t103 - t11 * t100) / t96;
+        let t116 = t109 * s_arm_leg3;
+        let minus_grod_vy_leg3 = 0.8928571428571429 / c_rod_leg3;
+        let t119 = (-0.0576 + t99) * minus_grod_vy_leg3;
+        let c_cross_leg3 = 4.166666666666667 * t119;
+        let minus_c_arm_leg3 = (t111 * t100 + t11 * t103) / t96;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t118;
-        let t135 = 0.24 * c_cross_leg3;
-        let minus_c_armcross_leg3 = t124 - minus_garm_vz_leg3 * t135;
-        let t139 = 0.48 / t116;
-        let t140 = t58 * t139;
-        let garm_vx_leg3 = t118
-            * (0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t140);
-        let t144 = garm_vx_leg3 * actuator_velocities[2];
-        let t145 = t44 + t99 + t144;
-        let t150 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t128 = c_cross_leg3 * t109;
+        let minus_c_armcross_leg3 = t116 - s_armcross_leg3 * t128;
+        let t132 = minus_grod_vy_leg3 + minus_grod_vy_leg3;
+        let t133 = t53 * t132;
+        let t135 = 0.5 * minus_c_armcross_leg3 + 0.8660254037844387 * t133;
+        let garm_vx_leg3 = t110 * t135;
+        let t138 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t150, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t150, 14.869730172882841, "actuators")?;
-        let t152 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t34 * t152;
-        let t157 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t74;
-        let garm_vy_leg2 = t72 * t157;
-        let garm_vy_leg3 = t118
-            * (0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t140);
-        let t166 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t138, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t138, 14.869730172882841, "actuators")?;
+        let t139 = 1.0 / t138;
+        let t140 = 0.24 * c_cross_leg1;
+        let t141 = actuator_velocities[0] * actuator_velocities[0];
+        let grod_vy_leg1 = 1.7857142857142858 * t31;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t148 = garm_vx_leg1 * actuator_velocities[0];
+        let t149 = garm_vx_leg2 * actuator_velocities[1];
+        let t151 = garm_vx_leg3 * actuator_velocities[2];
+        let t152 = t148 + t149 + t151;
+        let t154 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t37 * t154;
+        let t159 = 0.8660254037844387 * c_armcross_leg2 + 0.5 * t69;
+        let garm_vy_leg2 = t67 * t159;
+        let t165 = 0.8660254037844387 * minus_c_armcross_leg3 - 0.5 * t133;
+        let garm_vy_leg3 = t110 * t165;
+        let t168 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t167 = t166 / t150;
-        let t168 = garm_vy_leg1 * actuator_velocities[0];
-        let t169 = garm_vy_leg2 * actuator_velocities[1];
-        let t171 = garm_vy_leg3 * actuator_velocities[2];
-        let t174 = t168 + t169 + t171 - t145 * t167;
-        let t181 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t166 * t167;
-        ::overact::guard::platform(t181, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t181, 14.869730172882846, "actuators")?;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t72;
-        let t189 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t169 = t168 * t139;
+        let t176 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t168 * t169;
+        ::overact::guard::platform(t176, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t176, 14.869730172882846, "actuators")?;
+        let t177 = 1.0 / t176;
+        let t178 = garm_vy_leg1 * actuator_velocities[0];
+        let t179 = garm_vy_leg2 * actuator_velocities[1];
+        let t181 = garm_vy_leg3 * actuator_velocities[2];
+        let t184 = t178 + t179 + t181 - t152 * t169;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t37;
+        let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
+            - minus_s_arm_leg2 * c_cross_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t67;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t110;
+        let t196 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t190 = t189 / t150;
-        let t197 = t166 * t190
+        let t197 = t196 * t139;
+        let t204 = t168 * t197
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t198 = t197 / t181;
-        let t200 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t201 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t203 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t216 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t205 = t204 * t177;
+        let t207 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t208 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t210 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t223 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t189 * t190 - t197 * t198;
-        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t216, 34.855350201355726, "actuators")?;
-        let t217 = (t145 * t190 - (t200 + t201 + t203) - t198 * t174) / t216;
-        let t219 = t174 / t181 - t198 * t217;
-        let t223 = t145 / t150 - t167 * t219 + t190 * t217;
-        let minus_rate_cross_leg1 = grod_vy_leg1
-            * (t36 * actuator_velocities[0] + s_armcross_leg1 * t223
-                + c_armcross_leg1 * t217);
-        let t229 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t219;
-        let t231 = rate_rod_leg1 * rate_rod_leg1;
-        let t235 = pose[1] * t231;
-        let rate_dot_arm_leg1 = t34 * (t36 * t37 + t23 * (t229 + t231) + t152 * t235);
-        let t239 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t241 = actuator_velocities[1] * actuator_velocities[1];
-        let t244 = 0.8660254037844387 * t223;
-        let t245 = 0.5 * t219;
-        let minus_rate_rod_leg2 = t73 * (t244 + t245);
-        let t248 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t249 = 0.5 * s_armcross_leg2;
-        let t251 = 0.8660254037844387 * s_armcross_leg2;
-        let t257 = t249 * t223 - t251 * t219 - c_armcross_leg2 * t217
-            - actuator_velocities[1] * t89;
-        let t258 = 1.7857142857142858 * t257;
-        let t259 = t258 * t258;
-        let t260 = t74 * t259;
-        let t261 = t74 * t260;
-        let t262 = t261 + t259;
-        let t266 = t59 * t248;
-        let rate_dot_arm_leg2 = t72
-            * (t89 * t241 + 0.56 * c_rod_leg2 * (t248 + t262) + t74 * t266);
-        let t270 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t273 = actuator_velocities[2] * actuator_velocities[2];
-        let rate_rod_leg3 = t139 * (t244 - t245);
-        let t277 = rate_rod_leg3 * rate_rod_leg3;
-        let t278 = 0.5 * s_armcross_leg3;
-        let t280 = 0.8660254037844387 * s_armcross_leg3;
-        let t286 = t278 * t223 + t280 * t219 + minus_c_armcross_leg3 * t217
-            - actuator_velocities[2] * t135;
-        let t287 = 1.7857142857142858 * t286;
-        let t288 = t287 * t287;
-        let t289 = t140 * t288;
-        let t290 = t140 * t289;
-        let t291 = t290 + t288;
-        let t295 = t58 * t277;
-        let rate_dot_arm_leg3 = t118
-            * (t135 * t273 + t115 * (t277 + t291) + t140 * t295);
-        let t299 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t301 = garm_vx_leg1 * t239 + garm_vx_leg2 * t270 + garm_vx_leg3 * t299;
-        let t309 = garm_vy_leg1 * t239 + garm_vy_leg2 * t270 + garm_vy_leg3 * t299
-            - t167 * t301;
-        let t320 = (t190 * t301
-            - (minus_garm_vz_leg1 * t239 + minus_garm_vz_leg2 * t270
-                + minus_garm_vz_leg3 * t299) - t198 * t309) / t216;
-        let t322 = t309 / t181 - t198 * t320;
-        let t326 = t301 / t150 - t167 * t322 + t190 * t320;
-        let t337 = 9.81 * c_arm_leg1;
-        let t341 = 9.81 * c_arm_leg2;
-        let t345 = 9.81 * minus_c_arm_leg3;
-        let t349 = 9.81 * minus_s_arm_leg1;
-        let t353 = 9.81 * minus_s_arm_leg2;
-        let t357 = 9.81 * s_arm_leg3;
-        let t370 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t370;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t196 * t197 - t204 * t205;
+        ::overact::guard::platform(t223, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t223, 34.855350201355726, "actuators")?;
+        let t224 = (t152 * t197 - (t207 + t208 + t210) - t205 * t184) / t223;
+        let t226 = t177 * t184 - t205 * t224;
+        let t230 = t152 * t139 - t169 * t226 + t197 * t224;
+        let t234 = t140 * actuator_velocities[0] + s_armcross_leg1 * t230
+            + c_armcross_leg1 * t224;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t234;
+        let t236 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t226;
+        let t238 = rate_rod_leg1 * rate_rod_leg1;
+        let t242 = pose[1] * t238;
+        let rate_dot_arm_leg1 = t37 * (t140 * t141 + t23 * (t236 + t238) + t154 * t242);
+        let t246 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t248 = actuator_velocities[1] * actuator_velocities[1];
+        let t251 = 0.8660254037844387 * t230;
+        let t252 = 0.5 * t226;
+        let minus_rate_rod_leg2 = t68 * (t251 + t252);
+        let t255 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t256 = 0.5 * s_armcross_leg2;
+        let t258 = 0.8660254037844387 * s_armcross_leg2;
+        let t264 = t256 * t230 - t258 * t226 - c_armcross_leg2 * t224
+            - actuator_velocities[1] * t78;
+        let rate_cross_leg2 = t68 * t264;
+        let t266 = rate_cross_leg2 * rate_cross_leg2;
+        let t270 = t54 * t255;
+        let rate_dot_arm_leg2 = t67
+            * (t78 * t248 + 0.56 * c_rod_leg2 * (t255 + t266) + t69 * t270);
+        let t274 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t277 = actuator_velocities[2] * actuator_velocities[2];
+        let t280 = 0.5 * s_armcross_leg3;
+        let t282 = 0.8660254037844387 * s_armcross_leg3;
+        let t288 = t280 * t230 + t282 * t226 + minus_c_armcross_leg3 * t224
+            - actuator_velocities[2] * t119;
+        let t289 = 1.7857142857142858 * t288;
+        let t290 = t289 * t289;
+        let t291 = t133 * t290;
+        let t292 = t133 * t291;
+        let rate_rod_leg3 = t132 * (t251 - t252);
+        let t295 = rate_rod_leg3 * rate_rod_leg3;
+        let t296 = t292 + t295;
+        let t297 = t296 + t290;
+        let t300 = t53 * t295;
+        let rate_dot_arm_leg3 = t110
+            * (t119 * t277 + 0.56 * c_rod_leg3 * t297 + t133 * t300);
+        let t304 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t306 = garm_vx_leg1 * t246 + garm_vx_leg2 * t274 + garm_vx_leg3 * t304;
+        let t314 = garm_vy_leg1 * t246 + garm_vy_leg2 * t274 + garm_vy_leg3 * t304
+            - t169 * t306;
+        let t325 = (t197 * t306
+            - (minus_garm_vz_leg1 * t246 + minus_garm_vz_leg2 * t274
+                + minus_garm_vz_leg3 * t304) - t205 * t314) / t223;
+        let t327 = t177 * t314 - t205 * t325;
+        let t331 = t139 * t306 - t169 * t327 + t197 * t325;
+        let t342 = 9.81 * c_arm_leg1;
+        let t346 = 9.81 * c_arm_leg2;
+        let t350 = 9.81 * minus_c_arm_leg3;
+        let t354 = 9.81 * minus_s_arm_leg1;
+        let t358 = 9.81 * minus_s_arm_leg2;
+        let t362 = 9.81 * s_arm_leg3;
+        let t375 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t375;
+        let t378 = rate_rod_leg1 * (1.7857142857142858 * t234);
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t373 = t219 * minus_rate_cross_leg1;
-        let t374 = 1.7857142857142858 * t373;
-        let t379 = 0.24 * t37;
-        let t381 = t152 * t373;
+        let t385 = pose[1] * minus_rate_cross_leg1;
+        let t386 = rate_rod_leg1 * t385;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (actuator_accelerations[0] * t36 + s_armcross_leg1 * t326
-                + c_armcross_leg1 * t320 + s_cross_leg1 * t379 + t381 + t381);
-        let t387 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t389 = t374 + t387 + t374;
-        let t390 = s_rod_leg1 * t389;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t36 * garm_vy_leg1);
-        let t396 = 3.188775510204082 * (pose[1] * t229);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t370;
-        let gcross_vx_leg2 = t73 * (t249 - garm_vx_leg2 * t89);
-        let minus_s_rod_leg2 = 1.7857142857142858 * t59;
-        let t404 = minus_rate_rod_leg2 * t258;
-        let t410 = t241 * t70;
-        let t412 = minus_rate_rod_leg2 * (t74 * t257);
-        let t417 = t249 * t326 - t251 * t322 - c_armcross_leg2 * t320
-            - (t410 - t412 - t412) - actuator_accelerations[1] * t89;
-        let rate_dot_cross_leg2 = t73 * t417;
-        let t419 = minus_s_rod_leg2 * rate_dot_cross_leg2;
-        let t421 = t404 + t419 + t404;
-        let t422 = minus_s_rod_leg2 * t421;
-        let minus_grod_vx_leg2 = 0.8660254037844387 * t73;
-        let t425 = t260 * minus_grod_vx_leg2;
-        let minus_gcross_vy_leg2 = t73 * (t251 + t157 * t93);
-        let t431 = t260 * minus_grod_vy_leg2;
-        let minus_gcross_vz_leg2 = t73 * t81;
-        let gcross_vx_leg3 = t139 * (t278 - garm_vx_leg3 * t135);
-        let s_rod_leg3 = 1.7857142857142858 * t58;
-        let t439 = rate_rod_leg3 * t287;
-        let t445 = s_cross_leg3 * 0.24;
-        let t448 = rate_rod_leg3 * (t140 * t286);
-        let t452 = 0.24 * actuator_accelerations[2];
-        let t454 = t278 * t326 + t280 * t322 + minus_c_armcross_leg3 * t320
-            - (t273 * t445 - t448 - t448) - c_cross_leg3 * t452;
-        let rate_dot_cross_leg3 = t139 * t454;
-        let t458 = t439 + s_rod_leg3 * rate_dot_cross_leg3 + t439;
-        let t459 = s_rod_leg3 * t458;
-        let t461 = t58 * t291;
-        let t462 = 2.76156059880242 * t461;
-        let gcross_vy_leg3 = t139 * (t280 - garm_vy_leg3 * t135);
-        let t468 = 1.594387755102041 * t461;
-        let gcross_vz_leg3 = t139 * t124;
-        let t472 = t390 - minus_rate_dot_cross_leg1;
-        let t475 = t152 * t472 - c_rod_leg1 * t389;
-        let t484 = rate_dot_cross_leg2 - t422;
-        let t487 = t74 * t484 + c_rod_leg2 * t421;
-        let t491 = t262 * (t60 - t61) / c_rod_leg2;
-        let t499 = rate_dot_cross_leg3 - t459;
-        let t501 = c_rod_leg3 * t458 + t140 * t499;
-        let t506 = 0.56 * t139 * (t291 * (t106 - t107));
-        let t513 = t23 * t396;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t322 + t235);
-        let t518 = t152 * t513;
-        let t521 = s_rod_leg1 * (t513 + rate_dot_rod_leg1) + c_rod_leg1 * (t231 - t518);
-        let t527 = 0.8660254037844387 * t326;
-        let t528 = 0.5 * t322;
-        let t529 = t527 + t528;
-        let minus_rate_dot_rod_leg2 = t73 * (t529 + t266);
-        let t536 = minus_s_rod_leg2 * (t260 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t248 - t261);
-        let t544 = t527 - t528;
-        let rate_dot_rod_leg3 = t139 * (t544 + t295);
-        let t551 = s_rod_leg3 * (t289 + rate_dot_rod_leg3) + c_rod_leg3 * (t277 - t290);
-        let t553 = 1.5464739353293548 * rate_dot_cross_leg3;
-        let t557 = 0.8928571428571429 * rate_dot_cross_leg3;
-        let t575 = 1.7857142857142858 * t322;
-        let t581 = 1.7857142857142858 * t529;
-        let t589 = 1.7857142857142858 * t544;
-        let t598 = t139 * rate_dot_rod_leg3;
-        let t601 = 0.8928571428571429 * t15;
-        let t609 = t601 * (t513 - rate_dot_rod_leg1) + t152 * t601 * (t518 + t231)
-            + t36 * t389;
-        let t612 = 0.24 * actuator_accelerations[0] - t337;
-        let t614 = t349 - t379;
-        let t617 = s_rod_leg1 * (c_cross_leg1 * t612 - s_cross_leg1 * t614);
-        let t625 = c_cross_leg1 * t614 + s_cross_leg1 * t612;
-        let t638 = t67 * (minus_rate_dot_rod_leg2 - t260)
-            - minus_s_rod_leg2 * t70 * (t261 + t248) + t89 * t421;
-        let t641 = 0.24 * actuator_accelerations[1] - t341;
-        let t644 = s_cross_leg2 * t353 - t410;
-        let t646 = minus_s_rod_leg2 * (c_cross_leg2 * t641 - t644);
-        let t651 = t93 * t644 + s_cross_leg2 * t641;
-        let t670 = 0.8928571428571429 * t112 * (t289 - rate_dot_rod_leg3)
-            + s_rod_leg3 * t445 * (t290 + t277) - t135 * t458;
-        let t673 = t357 + 0.24 * t273;
-        let t675 = t345 + t452;
-        let t678 = s_rod_leg3 * (s_cross_leg3 * t673 + c_cross_leg3 * t675);
-        let t683 = s_cross_leg3 * t675 - c_cross_leg3 * t673;
-        let t697 = t36 * t229 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.24);
-        let t709 = rate_dot_cross_leg2 * t70 + t89 * t262;
-        let t721 = rate_dot_cross_leg3 * t445 + t135 * t291;
+            * (actuator_accelerations[0] * t140 + s_armcross_leg1 * t331
+                + c_armcross_leg1 * t325 + t141 * t33 + t386 + t386);
+        let t392 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t394 = t378 + t392 + t378;
+        let t395 = c_rod_leg1 * t394;
+        let t396 = t154 * t395;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t140 * garm_vy_leg1);
+        let t402 = 3.188775510204082 * (minus_rate_cross_leg1 * t385);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t375;
+        let t406 = t67 * t78;
+        let gcross_vx_leg2 = t68 * (t256 - t88 * t406);
+        let minus_s_rod_leg2 = 1.7857142857142858 * t54;
+        let t412 = minus_rate_rod_leg2 * (1.7857142857142858 * t264);
+        let t418 = t248 * t65;
+        let t419 = t54 * rate_cross_leg2;
+        let t420 = minus_rate_rod_leg2 * t419;
+        let t424 = 0.24 * actuator_accelerations[1];
+        let t426 = t256 * t331 - t258 * t327 - c_armcross_leg2 * t325
+            - (t418 - t420 - t420) - c_cross_leg2 * t424;
+        let rate_dot_cross_leg2 = t68 * t426;
+        let t428 = minus_s_rod_leg2 * rate_dot_cross_leg2;
+        let t430 = t412 + t428 + t412;
+        let t431 = minus_s_rod_leg2 * t430;
+        let t434 = 3.188775510204082 * (t264 * t419);
+        let minus_grod_vx_leg2 = 0.8660254037844387 * t68;
+        let t436 = t434 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = t68 * (t258 + t159 * t406);
+        let t442 = t434 * minus_grod_vy_leg2;
+        let minus_gcross_vz_leg2 = t68 * minus_s_arm_leg2 / s_cross_leg2;
+        let gcross_vx_leg3 = t132 * (t280 - t135 * t128);
+        let t450 = rate_rod_leg3 * t289;
+        let s_rod_leg3 = 1.7857142857142858 * t53;
+        let t457 = t277 * t107;
+        let t459 = rate_rod_leg3 * (t133 * t288);
+        let t464 = t280 * t331 + t282 * t327 + minus_c_armcross_leg3 * t325
+            - (t457 - t459 - t459) - actuator_accelerations[2] * t119;
+        let rate_dot_cross_leg3 = t132 * t464;
+        let t466 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t468 = t450 + t466 + t450;
+        let t469 = c_rod_leg3 * t468;
+        let t470 = t133 * t469;
+        let grod_vx_leg3 = 1.5464739353293548 / c_rod_leg3;
+        let t473 = t291 * grod_vx_leg3;
+        let gcross_vy_leg3 = t132 * (t282 - t165 * t128);
+        let t479 = t291 * minus_grod_vy_leg3;
+        let gcross_vz_leg3 = t132 * t116;
+        let t483 = t396 - minus_rate_dot_cross_leg1;
+        let t485 = t154 * t483 - t395;
+        let t487 = t385 * t385;
+        let t495 = rate_dot_cross_leg2 - t431;
+        let t498 = t69 * t495 + c_rod_leg2 * t430;
+        let t502 = t266 * (t55 - t56) / c_rod_leg2;
+        let t509 = rate_dot_cross_leg3 - t470;
+        let t511 = t469 + t133 * t509;
+        let t513 = t297 - t295;
+        let t516 = t513 * (t97 - t98) / c_rod_leg3;
+        let t523 = t23 * t402;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t327 + t242);
+        let t528 = 3.188775510204082 * t487;
+        let t531 = s_rod_leg1 * (t523 + rate_dot_rod_leg1) + c_rod_leg1 * (t238 - t528);
+        let t537 = 0.8660254037844387 * t331;
+        let t538 = 0.5 * t327;
+        let t539 = t537 + t538;
+        let minus_rate_dot_rod_leg2 = t68 * (t539 + t270);
+        let t544 = t69 * t434;
+        let t547 = minus_s_rod_leg2 * (t434 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t255 - t544);
+        let t555 = t537 - t538;
+        let rate_dot_rod_leg3 = t132 * (t555 + t300);
+        let t562 = s_rod_leg3 * (t291 + rate_dot_rod_leg3) + c_rod_leg3 * (t295 - t292);
+        let t584 = 1.7857142857142858 * t327;
+        let t590 = 1.7857142857142858 * t539;
+        let t598 = 1.7857142857142858 * t555;
+        let t618 = t32 * (t523 - rate_dot_rod_leg1) + s_rod_leg1 * t33 * (t528 + t238)
+            + t140 * t394;
+        let t621 = 0.24 * actuator_accelerations[0] - t342;
+        let t624 = t354 - 0.24 * t141;
+        let t627 = s_rod_leg1 * (c_cross_leg1 * t621 - s_cross_leg1 * t624);
+        let t635 = c_cross_leg1 * t624 + s_cross_leg1 * t621;
+        let t648 = t62 * (minus_rate_dot_rod_leg2 - t434) - t69 * t62 * (t544 + t255)
+            + t78 * t430;
+        let t650 = t424 - t346;
+        let t653 = s_cross_leg2 * t358 - t418;
+        let t655 = minus_s_rod_leg2 * (c_cross_leg2 * t650 - t653);
+        let t660 = t406 * t653 + s_cross_leg2 * t650;
+        let t677 = t104 * (t291 - rate_dot_rod_leg3) + s_rod_leg3 * t107 * t296
+            - t119 * t468;
+        let t680 = t457 + s_cross_leg3 * t362;
+        let t682 = t350 + 0.24 * actuator_accelerations[2];
+        let t685 = s_rod_leg3 * (t680 + c_cross_leg3 * t682);
+        let t690 = s_cross_leg3 * t682 - t128 * t680;
+        let t703 = t140 * t236 - minus_rate_dot_cross_leg1 * t33;
+        let t715 = rate_dot_cross_leg2 * t65 + t78 * t266;
+        let t727 = rate_dot_cross_leg3 * t107 + t119 * t513;
         Ok([
             [
-                t326, garm_vx_leg1 * actuator_accelerations[0],
+                t331, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                -(garm_vx_leg1 * t337), -(garm_vx_leg2 * t341), garm_vx_leg3 * t345,
-                -(garm_vx_leg1 * t349), -(garm_vx_leg2 * t353), garm_vx_leg3 * t357, t44, t99, t144,
-                ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
+                -(garm_vx_leg1 * t342), -(garm_vx_leg2 * t346), garm_vx_leg3 * t350,
+                -(garm_vx_leg1 * t354), -(garm_vx_leg2 * t358), garm_vx_leg3 * t362, t148, t149,
+                t151, ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t390,
-                gcross_vx_leg2 * t422 - t425, gcross_vx_leg3 * t459 - t462,
-                -(minus_gcross_vx_leg1 * t475),
-                -(gcross_vx_leg2 * t487 + 4.9313582121471775 * t491),
-                gcross_vx_leg3 * t501 + 4.9313582121471775 * t506, -(minus_gcross_vx_leg1 * t521),
-                gcross_vx_leg2 * t536 + minus_grod_vx_leg2 * t419,
-                gcross_vx_leg3 * t551 + t140 * t553, -(minus_gcross_vx_leg1 * t472),
-                gcross_vx_leg2 * t484 + t425, gcross_vx_leg3 * t499 + t462,
-                -(minus_gcross_vx_leg1 * t575),
-                -(gcross_vx_leg2 * t581 + 1.5464739353293548 * rate_dot_cross_leg2),
-                gcross_vx_leg3 * t589 + t553, 0.0, minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                0.8660254037844387 * t598, garm_vx_leg1 * t609 + minus_gcross_vx_leg1 * t617,
-                garm_vx_leg2 * t638 + gcross_vx_leg2 * t646 + 1.5464739353293548 * t651,
-                garm_vx_leg3 * t670 - gcross_vx_leg3 * t678 - 1.5464739353293548 * t683,
-                garm_vx_leg1 * t697 - minus_gcross_vx_leg1 * t625,
-                garm_vx_leg2 * t709 + gcross_vx_leg2 * t651,
-                garm_vx_leg3 * t721 + gcross_vx_leg3 * t683,
+                garm_vx_leg2, garm_vx_leg3, minus_gcross_vx_leg1 * t396,
+                gcross_vx_leg2 * t431 - t436, gcross_vx_leg3 * t470 - t473,
+                -(minus_gcross_vx_leg1 * t485),
+                -(gcross_vx_leg2 * t498 + 4.9313582121471775 * t502),
+                gcross_vx_leg3 * t511 + 4.9313582121471775 * t516, -(minus_gcross_vx_leg1 * t531),
+                gcross_vx_leg2 * t547 + minus_grod_vx_leg2 * t428,
+                gcross_vx_leg3 * t562 + grod_vx_leg3 * t466, -(minus_gcross_vx_leg1 * t483),
+                gcross_vx_leg2 * t495 + t436, gcross_vx_leg3 * t509 + t473,
+                -(minus_gcross_vx_leg1 * t584),
+                -(gcross_vx_leg2 * t590 + 1.5464739353293548 * rate_dot_cross_leg2),
+                gcross_vx_leg3 * t598 + 1.5464739353293548 * rate_dot_cross_leg3, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, grod_vx_leg3 * rate_dot_rod_leg3,
+                garm_vx_leg1 * t618 + minus_gcross_vx_leg1 * t627,
+                garm_vx_leg2 * t648 + gcross_vx_leg2 * t655 + 1.5464739353293548 * t660,
+                garm_vx_leg3 * t677 - gcross_vx_leg3 * t685 - 1.5464739353293548 * t690,
+                garm_vx_leg1 * t703 - minus_gcross_vx_leg1 * t635,
+                garm_vx_leg2 * t715 + gcross_vx_leg2 * t660,
+                garm_vx_leg3 * t727 + gcross_vx_leg3 * t690,
             ],
             [
-                t322, garm_vy_leg1 * actuator_accelerations[0],
+                t327, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                -(garm_vy_leg1 * t337), -(garm_vy_leg2 * t341), garm_vy_leg3 * t345,
-                -(garm_vy_leg1 * t349), -(garm_vy_leg2 * t353), garm_vy_leg3 * t357, t168, t169,
-                t171, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
+                -(garm_vy_leg1 * t342), -(garm_vy_leg2 * t346), garm_vy_leg3 * t350,
+                -(garm_vy_leg1 * t354), -(garm_vy_leg2 * t358), garm_vy_leg3 * t362, t178, t179,
+                t181, ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t390 - t396,
-                -(minus_gcross_vy_leg2 * t422 + t431), gcross_vy_leg3 * t459 + t468,
-                5.694241982507289 * (t229 * (t6 + t7) / c_rod_leg1)
-                    - minus_gcross_vy_leg1 * t475,
-                -(2.8471209912536444 * t491 - minus_gcross_vy_leg2 * t487),
-                gcross_vy_leg3 * t501 - 2.8471209912536444 * t506,
-                -(minus_gcross_vy_leg1 * t521 + grod_vy_leg1 * t387),
-                minus_grod_vy_leg2 * t419 - minus_gcross_vy_leg2 * t536,
-                gcross_vy_leg3 * t551 - t140 * t557,
-                t396 - minus_gcross_vy_leg1 * t472,
-                t431 - minus_gcross_vy_leg2 * t484,
-                gcross_vy_leg3 * t499 - t468,
-                -(minus_gcross_vy_leg1 * t575
+                garm_vy_leg2, garm_vy_leg3, minus_gcross_vy_leg1 * t396 - t402,
+                -(minus_gcross_vy_leg2 * t431 + t442), gcross_vy_leg3 * t470 + t479,
+                5.694241982507289 * (t31 * (t487 - t234 * t234))
+                    - minus_gcross_vy_leg1 * t485,
+                -(2.8471209912536444 * t502 - minus_gcross_vy_leg2 * t498),
+                gcross_vy_leg3 * t511 - 2.8471209912536444 * t516,
+                -(minus_gcross_vy_leg1 * t531 + grod_vy_leg1 * t392),
+                minus_grod_vy_leg2 * t428 - minus_gcross_vy_leg2 * t547,
+                gcross_vy_leg3 * t562 - minus_grod_vy_leg3 * t466,
+                t402 - minus_gcross_vy_leg1 * t483,
+                t442 - minus_gcross_vy_leg2 * t495,
+                gcross_vy_leg3 * t509 - t479,
+                -(minus_gcross_vy_leg1 * t584
                     + 1.7857142857142858 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t581 - 0.8928571428571429 * rate_dot_cross_leg2,
-                gcross_vy_leg3 * t589 - t557,
+                minus_gcross_vy_leg2 * t590 - 0.8928571428571429 * rate_dot_cross_leg2,
+                gcross_vy_leg3 * t598 - 0.8928571428571429 * rate_dot_cross_leg3,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
-                -(0.5 * t598),
-                garm_vy_leg1 * t609 + minus_gcross_vy_leg1 * t617
-                    - 1.7857142857142858 * t625,
-                garm_vy_leg2 * t638 - minus_gcross_vy_leg2 * t646
-                    + 0.8928571428571429 * t651,
-                garm_vy_leg3 * t670 - gcross_vy_leg3 * t678 + 0.8928571428571429 * t683,
-                garm_vy_leg1 * t697 - minus_gcross_vy_leg1 * t625,
-                garm_vy_leg2 * t709 - minus_gcross_vy_leg2 * t651,
-                garm_vy_leg3 * t721 + gcross_vy_leg3 * t683,
+                -(minus_grod_vy_leg3 * rate_dot_rod_leg3),
+                garm_vy_leg1 * t618 + minus_gcross_vy_leg1 * t627
+                    - 1.7857142857142858 * t635,
+                garm_vy_leg2 * t648 - minus_gcross_vy_leg2 * t655
+                    + 0.8928571428571429 * t660,
+                garm_vy_leg3 * t677 - gcross_vy_leg3 * t685 + 0.8928571428571429 * t690,
+                garm_vy_leg1 * t703 - minus_gcross_vy_leg1 * t635,
+                garm_vy_leg2 * t715 - minus_gcross_vy_leg2 * t660,
+                garm_vy_leg3 * t727 + gcross_vy_leg3 * t690,
             ],
             [
-                t320 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                t325 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
                 -(minus_garm_vz_leg2 * actuator_accelerations[1]),
-                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t337,
-                minus_garm_vz_leg2 * t341, -(minus_garm_vz_leg3 * t345), minus_garm_vz_leg1 * t349,
-                minus_garm_vz_leg2 * t353, -(minus_garm_vz_leg3 * t357), -t200, -t201, -t203,
+                -(minus_garm_vz_leg3 * actuator_accelerations[2]), minus_garm_vz_leg1 * t342,
+                minus_garm_vz_leg2 * t346, -(minus_garm_vz_leg3 * t350), minus_garm_vz_leg1 * t354,
+                minus_garm_vz_leg2 * t358, -(minus_garm_vz_leg3 * t362), -t207, -t208, -t210,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3,
-                minus_gcross_vz_leg1 * t390, -(minus_gcross_vz_leg2 * t422), gcross_vz_leg3 * t459,
-                -(minus_gcross_vz_leg1 * t475), minus_gcross_vz_leg2 * t487, gcross_vz_leg3 * t501,
-                -(minus_gcross_vz_leg1 * t521), -(minus_gcross_vz_leg2 * t536),
-                gcross_vz_leg3 * t551, -(minus_gcross_vz_leg1 * t472),
-                -(minus_gcross_vz_leg2 * t484), gcross_vz_leg3 * t499,
-                -(minus_gcross_vz_leg1 * t575), minus_gcross_vz_leg2 * t581, gcross_vz_leg3 * t589,
-                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t617 - minus_garm_vz_leg1 * t609,
-                -(minus_gcross_vz_leg2 * t646 + minus_garm_vz_leg2 * t638),
-                -(minus_garm_vz_leg3 * t670 + gcross_vz_leg3 * t678),
-                -(minus_garm_vz_leg1 * t697 + minus_gcross_vz_leg1 * t625),
-                -(minus_gcross_vz_leg2 * t651 + minus_garm_vz_leg2 * t709),
-                gcross_vz_leg3 * t683 - minus_garm_vz_leg3 * t721,
+                minus_gcross_vz_leg1 * t396, -(minus_gcross_vz_leg2 * t431), gcross_vz_leg3 * t470,
+                -(minus_gcross_vz_leg1 * t485), minus_gcross_vz_leg2 * t498, gcross_vz_leg3 * t511,
+                -(minus_gcross_vz_leg1 * t531), -(minus_gcross_vz_leg2 * t547),
+                gcross_vz_leg3 * t562, -(minus_gcross_vz_leg1 * t483),
+                -(minus_gcross_vz_leg2 * t495), gcross_vz_leg3 * t509,
+                -(minus_gcross_vz_leg1 * t584), minus_gcross_vz_leg2 * t590, gcross_vz_leg3 * t598,
+                0.0, 0.0, 0.0, minus_gcross_vz_leg1 * t627 - minus_garm_vz_leg1 * t618,
+                -(minus_gcross_vz_leg2 * t655 + minus_garm_vz_leg2 * t648),
+                -(minus_garm_vz_leg3 * t677 + gcross_vz_leg3 * t685),
+                -(minus_garm_vz_leg1 * t703 + minus_gcross_vz_leg1 * t635),
+                -(minus_gcross_vz_leg2 * t660 + minus_garm_vz_leg2 * t715),
+                gcross_vz_leg3 * t690 - minus_garm_vz_leg3 * t727,
             ],
         ])
     }
@@ -5508,7 +5614,7 @@ impl Delta {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 824 operations (278 additions, 530 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 743 intermediates.
+    /// 830 operations (281 additions, 533 multiplications, 16 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 749 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5560,346 +5666,346 @@ impl Delta {
         let t59 = t55 - t57 * t57;
         ::overact::guard::reach(t59, "leg3")?;
         let t60 = ::overact::math::sqrt(t59);
-        let t62 = 1.0 - 3.188775510204082 * t53;
-        ::overact::guard::reach(t62, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t62);
+        let t63 = 1.0 - 3.188775510204082 * t53;
+        ::overact::guard::reach(t63, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t63);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t64 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t60 / t64;
+        let t65 = 0.56 * c_rod_leg3;
+        let s_cross_leg3 = 2.0833333333333335 * t60 / t65;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t66 = 1.0 / s_cross_leg3;
-        let t67 = 4.166666666666667 * t66;
-        let t68 = 1.0 / t55;
-        let t71 = 0.48 * (t20 + 0.8660254037844387 * t11);
-        let minus_c_arm_leg3 = t68 * (t71 * t57 + t26 * t60);
-        let c_cross_leg3 = (-0.0576 + t56) / t64;
-        let s_arm_leg3 = t68 * (t71 * t60 - t26 * t57);
+        let t67 = 1.0 / s_cross_leg3;
+        let t68 = 4.166666666666667 * t67;
+        let t69 = 1.0 / t55;
+        let t72 = 0.48 * (t20 + 0.8660254037844387 * t11);
+        let minus_c_arm_leg3 = t69 * (t72 * t57 + t26 * t60);
+        let c_cross_leg3 = (-0.0576 + t56) / (0.2688 * c_rod_leg3);
+        let s_arm_leg3 = t69 * (t72 * t60 - t26 * t57);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t85 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let t86 = 1.0 / c_rod_leg3;
-        let t87 = 1.7857142857142858 * t86;
-        let t88 = t13 * t87;
-        let garm_vy_leg3 = t67 * (t85 - 0.5 * t88);
+        let t87 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let t88 = 1.0 / c_rod_leg3;
+        let t89 = 1.7857142857142858 * t88;
+        let t90 = t13 * t89;
+        let garm_vy_leg3 = t68 * (t87 - 0.5 * t90);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t96 = 0.8660254037844387 * c_armcross_leg2;
-        let t97 = 1.0 / c_rod_leg2;
-        let t98 = 1.7857142857142858 * t97;
-        let t99 = t14 * t98;
-        let garm_vy_leg2 = t48 * (t96 + 0.5 * t99);
+        let t98 = 0.8660254037844387 * c_armcross_leg2;
+        let t99 = 1.0 / c_rod_leg2;
+        let t100 = 1.7857142857142858 * t99;
+        let t101 = t14 * t100;
+        let garm_vy_leg2 = t48 * (t98 + 0.5 * t101);
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t67;
-        let t110 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t48 * (0.8660254037844387 * t99 - t110);
-        let t113 = t0 - 0.2;
-        let t115 = t113 * t113 + t7;
-        let t116 = 0.2304 * t115;
-        let t117 = pose[1] * pose[1];
-        let t119 = t115 + t117 - 0.3136;
-        let t120 = t119 + 0.0576;
-        let t122 = t116 - t120 * t120;
-        ::overact::guard::reach(t122, "leg1")?;
-        let t123 = ::overact::math::sqrt(t122);
-        let t125 = 1.0 - 3.188775510204082 * t117;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t68;
+        let t112 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t48 * (0.8660254037844387 * t101 - t112);
+        let t115 = t0 - 0.2;
+        let t116 = t115 * t115;
+        let t117 = t116 + t7;
+        let t118 = 0.2304 * t117;
+        let t119 = pose[1] * pose[1];
+        let t123 = t116 + t119 + t7 - 0.3136 + 0.0576;
+        let t125 = t118 - t123 * t123;
         ::overact::guard::reach(t125, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t125);
+        let t126 = ::overact::math::sqrt(t125);
+        let t128 = 1.0 - 3.188775510204082 * t119;
+        ::overact::guard::reach(t128, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t128);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t127 = 0.2688 * c_rod_leg1;
-        let s_cross_leg1 = t123 / t127;
+        let t130 = 0.2688 * c_rod_leg1;
+        let s_cross_leg1 = t126 / t130;
         ::overact::guard::leg(s_cross_leg1, 0.8979467258599694, "leg1")?;
-        let t129 = 1.0 / s_cross_leg1;
-        let t130 = 4.166666666666667 * t129;
+        let t132 = 1.0 / s_cross_leg1;
+        let t133 = 4.166666666666667 * t132;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t132 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t130 * t132;
-        let t135 = 1.0 / t116;
-        let t136 = 0.48 * t113;
-        let c_arm_leg1 = t135 * (t136 * t120 - t26 * t123);
-        let minus_s_arm_leg1 = t135 * (t26 * t120 + t136 * t123);
-        let c_cross_leg1 = (-0.0576 + t119) / t127;
+        let t135 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t133 * t135;
+        let t138 = 1.0 / t118;
+        let t139 = 0.48 * t115;
+        let c_arm_leg1 = t138 * (t139 * t123 - t26 * t126);
+        let minus_s_arm_leg1 = t138 * (t26 * t123 + t139 * t126);
+        let c_cross_leg1 = (-0.0576 + t117 - 0.3136 * t128) / t130;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t130;
-        let t152 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t133;
+        let t157 = garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t130;
-        let t159 = 0.5 * minus_c_armcross_leg3;
-        let garm_vx_leg3 = t67 * (t159 + 0.8660254037844387 * t88);
-        let t164 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
-        let t169 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
-        let t171 = garm_vx_leg2 * t152 - garm_vy_leg2 * t164 - minus_garm_vz_leg2 * t169;
-        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
-        ::overact::guard::platform(t171, 87.78853732233405, "kept actuators")?;
-        let t172 = 1.0 / t171;
-        let t173 = (minus_garm_vz_leg2 * garm_vy_leg3
-            - garm_vy_leg2 * minus_garm_vz_leg3) * t172;
-        let t178 = (minus_garm_vz_leg2 * garm_vx_leg3
-            - garm_vx_leg2 * minus_garm_vz_leg3) * t172;
-        let t184 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t172;
-        let t185 = acceleration[2] + 9.81;
-        let t188 = t152 * t172;
-        let t190 = t164 * t172;
-        let t193 = t169 * t172;
-        let t199 = (garm_vx_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vx_leg2) * t172;
-        let t204 = (garm_vy_leg1 * minus_garm_vz_leg2
-            - minus_garm_vz_leg1 * garm_vy_leg2) * t172;
-        let t210 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t172;
-        let t216 = 0.24 * c_cross_leg1;
-        let t220 = t132 * twist[1];
-        let rate_arm_leg1 = t130
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t220);
-        let t223 = rate_arm_leg1 * rate_arm_leg1;
-        let t230 = t216 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let garm_vx_leg1 = c_armcross_leg1 * t133;
+        let t164 = 0.5 * minus_c_armcross_leg3;
+        let garm_vx_leg3 = t68 * (t164 + 0.8660254037844387 * t90);
+        let t169 = garm_vx_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vx_leg3;
+        let t174 = garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3;
+        let t176 = garm_vx_leg2 * t157 - garm_vy_leg2 * t169 - minus_garm_vz_leg2 * t174;
+        ::overact::guard::platform(t176, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t176, 87.78853732233405, "kept actuators")?;
+        ::overact::guard::platform(t176, 87.78853732233405, "kept actuators")?;
+        let t177 = 1.0 / t176;
+        let t178 = (minus_garm_vz_leg2 * garm_vy_leg3
+            - garm_vy_leg2 * minus_garm_vz_leg3) * t177;
+        let t183 = (minus_garm_vz_leg2 * garm_vx_leg3
+            - garm_vx_leg2 * minus_garm_vz_leg3) * t177;
+        let t189 = (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t177;
+        let t190 = acceleration[2] + 9.81;
+        let t193 = t157 * t177;
+        let t195 = t169 * t177;
+        let t198 = t174 * t177;
+        let t204 = (garm_vx_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vx_leg2) * t177;
+        let t209 = (garm_vy_leg1 * minus_garm_vz_leg2
+            - minus_garm_vz_leg1 * garm_vy_leg2) * t177;
+        let t215 = (garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2) * t177;
+        let t221 = 0.24 * c_cross_leg1;
+        let t225 = t135 * twist[1];
+        let rate_arm_leg1 = t133
+            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t225);
+        let t228 = rate_arm_leg1 * rate_arm_leg1;
+        let t235 = t221 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t230;
-        let t232 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t235;
+        let t237 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t234 = rate_rod_leg1 * rate_rod_leg1;
-        let t240 = acceleration[1] + pose[1] * t234;
-        let t242 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + t216 * t223 + 0.56 * c_rod_leg1 * (t232 + t234) + t132 * t240;
-        let rate_dot_arm_leg1 = t130 * t242;
-        let t249 = 0.24 * c_cross_leg2;
-        let t254 = t96 * twist[1] - t110 * twist[0] - s_armcross_leg2 * twist[2];
-        let t255 = 0.8660254037844387 * twist[0];
-        let t256 = 0.5 * twist[1];
-        let t257 = t255 + t256;
-        let t258 = t99 * t257;
-        let rate_arm_leg2 = t48 * (t254 + t258);
-        let t261 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = t98 * t257;
-        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t266 = 0.5 * s_armcross_leg2;
-        let t268 = 0.8660254037844387 * s_armcross_leg2;
-        let t273 = c_cross_leg2 * t47;
-        let t276 = t99 * t273;
-        let t278 = t266 * twist[0] - t268 * twist[1] - c_armcross_leg2 * twist[2]
-            - t273 * t254 - t276 * t257;
-        let rate_cross_leg2 = t98 * t278;
-        let t280 = rate_cross_leg2 * rate_cross_leg2;
-        let t284 = t96 * acceleration[1] - t110 * acceleration[0]
-            - s_armcross_leg2 * acceleration[2] + t249 * t261
-            + 0.56 * c_rod_leg2 * (t265 + t280);
-        let t285 = 0.8660254037844387 * acceleration[0];
-        let t286 = 0.5 * acceleration[1];
-        let t287 = t285 + t286;
-        let t289 = t287 + t14 * t265;
-        let rate_dot_arm_leg2 = t48 * (t284 + t99 * t289);
-        let t298 = 0.24 * c_cross_leg3;
-        let t303 = t159 * twist[0] + t85 * twist[1] - s_armcross_leg3 * twist[2];
-        let t304 = t255 - t256;
-        let t305 = t88 * t304;
-        let rate_arm_leg3 = t67 * (t303 + t305);
-        let t308 = rate_arm_leg3 * rate_arm_leg3;
-        let rate_rod_leg3 = t87 * t304;
-        let t312 = rate_rod_leg3 * rate_rod_leg3;
-        let t313 = 0.5 * s_armcross_leg3;
-        let t315 = 0.8660254037844387 * s_armcross_leg3;
-        let t320 = c_cross_leg3 * t66;
-        let t323 = t88 * t320;
-        let t325 = t313 * twist[0] + t315 * twist[1] + minus_c_armcross_leg3 * twist[2]
-            - t320 * t303 - t323 * t304;
-        let rate_cross_leg3 = t87 * t325;
-        let t327 = rate_cross_leg3 * rate_cross_leg3;
-        let t331 = t159 * acceleration[0] + t85 * acceleration[1]
-            - s_armcross_leg3 * acceleration[2] + t298 * t308
-            + 0.56 * c_rod_leg3 * (t312 + t327);
-        let t332 = t285 - t286;
-        let t334 = t332 + t13 * t312;
-        let rate_dot_arm_leg3 = t67 * (t331 + t88 * t334);
-        let t338 = 9.81 * c_arm_leg1;
-        let t339 = 9.81 * c_arm_leg2;
-        let t340 = 9.81 * minus_c_arm_leg3;
-        let t341 = 9.81 * minus_s_arm_leg1;
-        let t342 = 9.81 * minus_s_arm_leg2;
-        let t343 = 9.81 * s_arm_leg3;
-        let t347 = grod_vy_leg1 * t178;
-        let t348 = pose[1] * minus_rate_cross_leg1;
-        let t350 = 3.188775510204082 * (t230 * t348);
-        let t351 = t347 * t350;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t216 * garm_vy_leg1);
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t129 * c_arm_leg1);
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t129 * minus_s_arm_leg1);
-        let t362 = minus_gcross_vy_leg1 * t178 - minus_gcross_vx_leg1 * t173
-            - minus_gcross_vz_leg1 * t184;
-        let t364 = rate_rod_leg1 * (1.7857142857142858 * t230);
-        let t365 = 0.24 * rate_dot_arm_leg1;
-        let t370 = 0.24 * t223;
-        let t372 = t220 * minus_rate_cross_leg1;
-        let t376 = c_cross_leg1 * t365 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t370 + t372 + t372;
-        let t377 = 1.7857142857142858 * t376;
-        let t378 = t132 * t377;
-        let t380 = t364 + t378 + t364;
-        let t381 = c_rod_leg1 * t380;
-        let t382 = t132 * t381;
-        let t385 = grod_vy_leg1 * t190;
-        let t386 = t385 * t350;
-        let t391 = minus_gcross_vy_leg1 * t190 - minus_gcross_vx_leg1 * t188
-            - minus_gcross_vz_leg1 * t193;
-        let t398 = minus_gcross_vx_leg1 * t204 - minus_gcross_vy_leg1 * t199
-            + minus_gcross_vz_leg1 * t210;
-        let t400 = grod_vy_leg1 * t199;
-        let t401 = t400 * t350;
-        let gcross_vx_leg2 = t98 * (t110 * t273 + t266 - 0.8660254037844387 * t276);
-        let minus_gcross_vy_leg2 = t98 * (t96 * t273 + t268 + 0.5 * t276);
-        let minus_gcross_vz_leg2 = t98 * (minus_s_arm_leg2 * t47);
-        let t419 = gcross_vx_leg2 * t173 + minus_gcross_vy_leg2 * t178
-            - minus_gcross_vz_leg2 * t184;
-        let t421 = minus_rate_rod_leg2 * (1.7857142857142858 * t278);
-        let t427 = 0.24 * t261;
-        let t429 = t258 * rate_cross_leg2;
-        let t434 = t266 * acceleration[0] - t268 * acceleration[1]
-            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t427 - t429 - t429)
-            - t273 * t284;
-        let t436 = t434 - t276 * t289;
-        let t437 = 1.7857142857142858 * t436;
-        let t438 = t99 * t437;
-        let t440 = t421 + t438 + t421;
-        let t441 = c_rod_leg2 * t440;
-        let t442 = t99 * t441;
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t97;
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t97;
-        let t448 = minus_grod_vy_leg2 * t178 - minus_grod_vx_leg2 * t173;
-        let t449 = t14 * rate_cross_leg2;
-        let t451 = 3.188775510204082 * (t278 * t449);
-        let t452 = t448 * t451;
-        let t458 = gcross_vx_leg2 * t188 + minus_gcross_vy_leg2 * t190
-            - minus_gcross_vz_leg2 * t193;
-        let t462 = minus_grod_vy_leg2 * t190 - minus_grod_vx_leg2 * t188;
-        let t463 = t462 * t451;
-        let t467 = minus_grod_vx_leg2 * t204 - minus_grod_vy_leg2 * t199;
-        let t468 = t467 * t451;
-        let t473 = gcross_vx_leg2 * t204 + minus_gcross_vy_leg2 * t199
-            - minus_gcross_vz_leg2 * t210;
-        let gcross_vx_leg3 = t87 * (t313 - t159 * t320 - 0.8660254037844387 * t323);
-        let gcross_vy_leg3 = t87 * (t315 - t85 * t320 + 0.5 * t323);
-        let gcross_vz_leg3 = t87 * (t66 * s_arm_leg3);
-        let t492 = gcross_vx_leg3 * t173 - gcross_vy_leg3 * t178 + gcross_vz_leg3 * t184;
-        let t494 = rate_rod_leg3 * (1.7857142857142858 * t325);
-        let t500 = 0.24 * t308;
-        let t502 = t305 * rate_cross_leg3;
-        let t507 = t313 * acceleration[0] + t315 * acceleration[1]
+        let t239 = rate_rod_leg1 * rate_rod_leg1;
+        let t245 = acceleration[1] + pose[1] * t239;
+        let t247 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t221 * t228 + 0.56 * c_rod_leg1 * (t237 + t239) + t135 * t245;
+        let rate_dot_arm_leg1 = t133 * t247;
+        let t254 = 0.24 * c_cross_leg2;
+        let t259 = t98 * twist[1] - t112 * twist[0] - s_armcross_leg2 * twist[2];
+        let t260 = 0.8660254037844387 * twist[0];
+        let t261 = 0.5 * twist[1];
+        let t262 = t260 + t261;
+        let t263 = t101 * t262;
+        let rate_arm_leg2 = t48 * (t259 + t263);
+        let t266 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = t100 * t262;
+        let t270 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t271 = 0.5 * s_armcross_leg2;
+        let t273 = 0.8660254037844387 * s_armcross_leg2;
+        let t278 = c_cross_leg2 * t47;
+        let t281 = t101 * t278;
+        let t283 = t271 * twist[0] - t273 * twist[1] - c_armcross_leg2 * twist[2]
+            - t278 * t259 - t281 * t262;
+        let rate_cross_leg2 = t100 * t283;
+        let t285 = rate_cross_leg2 * rate_cross_leg2;
+        let t289 = t98 * acceleration[1] - t112 * acceleration[0]
+            - s_armcross_leg2 * acceleration[2] + t254 * t266
+            + 0.56 * c_rod_leg2 * (t270 + t285);
+        let t290 = 0.8660254037844387 * acceleration[0];
+        let t291 = 0.5 * acceleration[1];
+        let t292 = t290 + t291;
+        let t294 = t292 + t14 * t270;
+        let rate_dot_arm_leg2 = t48 * (t289 + t101 * t294);
+        let t303 = 0.24 * c_cross_leg3;
+        let t308 = t164 * twist[0] + t87 * twist[1] - s_armcross_leg3 * twist[2];
+        let t309 = t260 - t261;
+        let t310 = t90 * t309;
+        let rate_arm_leg3 = t68 * (t308 + t310);
+        let t313 = rate_arm_leg3 * rate_arm_leg3;
+        let rate_rod_leg3 = t89 * t309;
+        let t316 = rate_rod_leg3 * rate_rod_leg3;
+        let t317 = 0.5 * s_armcross_leg3;
+        let t319 = 0.8660254037844387 * s_armcross_leg3;
+        let t324 = c_cross_leg3 * t67;
+        let t327 = t90 * t324;
+        let t329 = t317 * twist[0] + t319 * twist[1] + minus_c_armcross_leg3 * twist[2]
+            - t324 * t308 - t327 * t309;
+        let rate_cross_leg3 = t89 * t329;
+        let t331 = rate_cross_leg3 * rate_cross_leg3;
+        let t335 = t164 * acceleration[0] + t87 * acceleration[1]
+            - s_armcross_leg3 * acceleration[2] + t303 * t313 + t65 * (t316 + t331);
+        let t336 = t290 - t291;
+        let t338 = t336 + t13 * t316;
+        let rate_dot_arm_leg3 = t68 * (t335 + t90 * t338);
+        let t342 = 9.81 * c_arm_leg1;
+        let t343 = 9.81 * c_arm_leg2;
+        let t344 = 9.81 * minus_c_arm_leg3;
+        let t345 = 9.81 * minus_s_arm_leg1;
+        let t346 = 9.81 * minus_s_arm_leg2;
+        let t347 = 9.81 * s_arm_leg3;
+        let t351 = grod_vy_leg1 * t183;
+        let t352 = pose[1] * minus_rate_cross_leg1;
+        let t354 = 3.188775510204082 * (t235 * t352);
+        let t355 = t351 * t354;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t221 * garm_vy_leg1);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t132 * c_arm_leg1);
+        let minus_gcross_vz_leg1 = grod_vy_leg1
+            * (c_armcross_leg1 - s_armcross_leg1 * (c_cross_leg1 * t132));
+        let t368 = minus_gcross_vy_leg1 * t183 - minus_gcross_vx_leg1 * t178
+            - minus_gcross_vz_leg1 * t189;
+        let t370 = rate_rod_leg1 * (1.7857142857142858 * t235);
+        let t371 = 0.24 * rate_dot_arm_leg1;
+        let t376 = 0.24 * t228;
+        let t378 = t225 * minus_rate_cross_leg1;
+        let t382 = c_cross_leg1 * t371 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t376 + t378 + t378;
+        let t383 = 1.7857142857142858 * t382;
+        let t384 = t135 * t383;
+        let t386 = t370 + t384 + t370;
+        let t387 = c_rod_leg1 * t386;
+        let t388 = t135 * t387;
+        let t391 = grod_vy_leg1 * t195;
+        let t392 = t391 * t354;
+        let t397 = minus_gcross_vy_leg1 * t195 - minus_gcross_vx_leg1 * t193
+            - minus_gcross_vz_leg1 * t198;
+        let t404 = minus_gcross_vx_leg1 * t209 - minus_gcross_vy_leg1 * t204
+            + minus_gcross_vz_leg1 * t215;
+        let t406 = grod_vy_leg1 * t204;
+        let t407 = t406 * t354;
+        let gcross_vx_leg2 = t100 * (t112 * t278 + t271 - 0.8660254037844387 * t281);
+        let minus_gcross_vy_leg2 = t100 * (t98 * t278 + t273 + 0.5 * t281);
+        let minus_gcross_vz_leg2 = t100 * (minus_s_arm_leg2 * t47);
+        let t425 = gcross_vx_leg2 * t178 + minus_gcross_vy_leg2 * t183
+            - minus_gcross_vz_leg2 * t189;
+        let t427 = minus_rate_rod_leg2 * (1.7857142857142858 * t283);
+        let t433 = 0.24 * t266;
+        let t435 = t263 * rate_cross_leg2;
+        let t440 = t271 * acceleration[0] - t273 * acceleration[1]
+            - c_armcross_leg2 * acceleration[2] - (s_cross_leg2 * t433 - t435 - t435)
+            - t278 * t289;
+        let t442 = t440 - t281 * t294;
+        let t443 = 1.7857142857142858 * t442;
+        let t444 = t101 * t443;
+        let t446 = t427 + t444 + t427;
+        let t447 = c_rod_leg2 * t446;
+        let t448 = t101 * t447;
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t99;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t99;
+        let t454 = minus_grod_vy_leg2 * t183 - minus_grod_vx_leg2 * t178;
+        let t455 = t14 * rate_cross_leg2;
+        let t457 = 3.188775510204082 * (t283 * t455);
+        let t458 = t454 * t457;
+        let t464 = gcross_vx_leg2 * t193 + minus_gcross_vy_leg2 * t195
+            - minus_gcross_vz_leg2 * t198;
+        let t468 = minus_grod_vy_leg2 * t195 - minus_grod_vx_leg2 * t193;
+        let t469 = t468 * t457;
+        let t473 = minus_grod_vx_leg2 * t209 - minus_grod_vy_leg2 * t204;
+        let t474 = t473 * t457;
+        let t479 = gcross_vx_leg2 * t209 + minus_gcross_vy_leg2 * t204
+            - minus_gcross_vz_leg2 * t215;
+        let gcross_vx_leg3 = t89 * (t317 - t164 * t324 - 0.8660254037844387 * t327);
+        let gcross_vy_leg3 = t89 * (t319 - t87 * t324 + 0.5 * t327);
+        let gcross_vz_leg3 = t89 * (t67 * s_arm_leg3);
+        let t498 = gcross_vx_leg3 * t178 - gcross_vy_leg3 * t183 + gcross_vz_leg3 * t189;
+        let t500 = rate_rod_leg3 * (1.7857142857142858 * t329);
+        let t506 = 0.24 * t313;
+        let t508 = t310 * rate_cross_leg3;
+        let t513 = t317 * acceleration[0] + t319 * acceleration[1]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t500 - t502 - t502) - t320 * t331;
-        let t509 = t507 - t323 * t334;
-        let t510 = 1.7857142857142858 * t509;
-        let t511 = t88 * t510;
-        let t513 = t494 + t511 + t494;
-        let t514 = c_rod_leg3 * t513;
-        let t515 = t88 * t514;
-        let grod_vx_leg3 = 1.5464739353293548 * t86;
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t86;
-        let t521 = grod_vx_leg3 * t173 + minus_grod_vy_leg3 * t178;
-        let t522 = t13 * rate_cross_leg3;
-        let t524 = 3.188775510204082 * (t325 * t522);
-        let t525 = t521 * t524;
-        let t531 = gcross_vx_leg3 * t188 - gcross_vy_leg3 * t190 + gcross_vz_leg3 * t193;
-        let t535 = grod_vx_leg3 * t188 + minus_grod_vy_leg3 * t190;
-        let t536 = t535 * t524;
-        let t542 = gcross_vy_leg3 * t199 - gcross_vx_leg3 * t204 - gcross_vz_leg3 * t210;
-        let t546 = grod_vx_leg3 * t204 + minus_grod_vy_leg3 * t199;
-        let t547 = t546 * t524;
+            - (s_cross_leg3 * t506 - t508 - t508) - t324 * t335;
+        let t515 = t513 - t327 * t338;
+        let t516 = 1.7857142857142858 * t515;
+        let t517 = t90 * t516;
+        let t519 = t500 + t517 + t500;
+        let t520 = c_rod_leg3 * t519;
+        let t521 = t90 * t520;
+        let grod_vx_leg3 = 1.5464739353293548 * t88;
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t88;
+        let t527 = grod_vx_leg3 * t178 + minus_grod_vy_leg3 * t183;
+        let t528 = t13 * rate_cross_leg3;
+        let t530 = 3.188775510204082 * (t329 * t528);
+        let t531 = t527 * t530;
+        let t537 = gcross_vx_leg3 * t193 - gcross_vy_leg3 * t195 + gcross_vz_leg3 * t198;
+        let t541 = grod_vx_leg3 * t193 + minus_grod_vy_leg3 * t195;
+        let t542 = t541 * t530;
+        let t548 = gcross_vy_leg3 * t204 - gcross_vx_leg3 * t209 - gcross_vz_leg3 * t215;
+        let t552 = grod_vx_leg3 * t209 + minus_grod_vy_leg3 * t204;
+        let t553 = t552 * t530;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t554 = s_rod_leg1 * t364 + c_rod_leg1 * (1.7857142857142858 * (t372 - t376));
-        let t556 = t132 * t554 - t381;
-        let t558 = t348 * t348;
-        let t561 = 3.188775510204082 * (t558 - t230 * t230);
+        let t560 = s_rod_leg1 * t370 + c_rod_leg1 * (1.7857142857142858 * (t378 - t382));
+        let t562 = t135 * t560 - t387;
+        let t564 = t352 * t352;
+        let t567 = 3.188775510204082 * (t564 - t235 * t235);
         let minus_s_rod_leg2 = 1.7857142857142858 * t14;
-        let t575 = c_rod_leg2 * (1.7857142857142858 * (t436 - t429))
-            - minus_s_rod_leg2 * t421;
-        let t577 = t99 * t575 + t441;
-        let t579 = t449 * t449;
-        let t582 = 3.188775510204082 * (t579 - t278 * t278);
+        let t581 = c_rod_leg2 * (1.7857142857142858 * (t442 - t435))
+            - minus_s_rod_leg2 * t427;
+        let t583 = t101 * t581 + t447;
+        let t585 = t455 * t455;
+        let t588 = 3.188775510204082 * (t585 - t283 * t283);
         let s_rod_leg3 = 1.7857142857142858 * t13;
-        let t596 = c_rod_leg3 * (1.7857142857142858 * (t509 - t502)) - s_rod_leg3 * t494;
-        let t598 = t514 + t88 * t596;
-        let t600 = t522 * t522;
-        let t603 = 3.188775510204082 * (t600 - t325 * t325);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t240;
-        let t615 = 3.188775510204082 * t558;
-        let t618 = s_rod_leg1 * (t350 + rate_dot_rod_leg1) + c_rod_leg1 * (t234 - t615);
-        let minus_rate_dot_rod_leg2 = t98 * t289;
-        let t631 = 3.188775510204082 * t579;
-        let t634 = minus_s_rod_leg2 * (t451 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t265 - t631);
-        let rate_dot_rod_leg3 = t87 * t334;
-        let t647 = 3.188775510204082 * t600;
-        let t650 = s_rod_leg3 * (t524 + rate_dot_rod_leg3) + c_rod_leg3 * (t312 - t647);
-        let t678 = 1.7857142857142858 * acceleration[1];
-        let t689 = 1.7857142857142858 * t287;
-        let t698 = 1.7857142857142858 * t332;
-        let t717 = 0.8928571428571429 * t123;
-        let t720 = t132 * t717;
-        let t726 = t365 - t338;
-        let t728 = t341 - t370;
-        let t731 = s_rod_leg1 * (c_cross_leg1 * t726 - s_cross_leg1 * t728);
-        let t736 = c_cross_leg1 * t728 + s_cross_leg1 * t726;
-        let t737 = c_rod_leg1 * t736;
-        let t739 = t717 * (t350 - rate_dot_rod_leg1) + t720 * (t615 + t234) + t216 * t380
-            - t362 * t731 + t347 * t737;
-        let t747 = 0.24 * rate_dot_arm_leg2 - t339;
-        let t749 = t342 - t427;
-        let t752 = minus_s_rod_leg2 * (c_cross_leg2 * t747 - s_cross_leg2 * t749);
-        let t756 = c_cross_leg2 * t749 + s_cross_leg2 * t747;
-        let t757 = c_rod_leg2 * t756;
-        let t760 = 0.8928571428571429 * t29;
-        let t763 = t99 * t760;
-        let t772 = t760 * (minus_rate_dot_rod_leg2 - t451) - t763 * (t631 + t265)
-            + t249 * t440 + t458 * t752 - t462 * t757;
-        let t776 = t343 + t500;
-        let t779 = t340 + 0.24 * rate_dot_arm_leg3;
-        let t782 = s_rod_leg3 * (s_cross_leg3 * t776 + c_cross_leg3 * t779);
-        let t786 = s_cross_leg3 * t779 - c_cross_leg3 * t776;
-        let t787 = c_rod_leg3 * t786;
-        let t793 = 0.8928571428571429 * t60;
-        let t796 = t88 * t793;
-        let t805 = t793 * (t524 - rate_dot_rod_leg3) + t796 * (t647 + t312) - t298 * t513
-            - t542 * t782 + t546 * t787;
+        let t602 = c_rod_leg3 * (1.7857142857142858 * (t515 - t508)) - s_rod_leg3 * t500;
+        let t604 = t520 + t90 * t602;
+        let t606 = t528 * t528;
+        let t609 = 3.188775510204082 * (t606 - t329 * t329);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t245;
+        let t621 = 3.188775510204082 * t564;
+        let t624 = s_rod_leg1 * (t354 + rate_dot_rod_leg1) + c_rod_leg1 * (t239 - t621);
+        let minus_rate_dot_rod_leg2 = t100 * t294;
+        let t637 = 3.188775510204082 * t585;
+        let t640 = minus_s_rod_leg2 * (t457 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t270 - t637);
+        let rate_dot_rod_leg3 = t89 * t338;
+        let t653 = 3.188775510204082 * t606;
+        let t656 = s_rod_leg3 * (t530 + rate_dot_rod_leg3) + c_rod_leg3 * (t316 - t653);
+        let t684 = 1.7857142857142858 * acceleration[1];
+        let t695 = 1.7857142857142858 * t292;
+        let t704 = 1.7857142857142858 * t336;
+        let t723 = 0.8928571428571429 * t126;
+        let t726 = t135 * t723;
+        let t732 = t371 - t342;
+        let t734 = t345 - t376;
+        let t737 = s_rod_leg1 * (c_cross_leg1 * t732 - s_cross_leg1 * t734);
+        let t742 = c_cross_leg1 * t734 + s_cross_leg1 * t732;
+        let t743 = c_rod_leg1 * t742;
+        let t745 = t723 * (t354 - rate_dot_rod_leg1) + t726 * (t621 + t239) + t221 * t386
+            - t368 * t737 + t351 * t743;
+        let t753 = 0.24 * rate_dot_arm_leg2 - t343;
+        let t755 = t346 - t433;
+        let t758 = minus_s_rod_leg2 * (c_cross_leg2 * t753 - s_cross_leg2 * t755);
+        let t762 = c_cross_leg2 * t755 + s_cross_leg2 * t753;
+        let t763 = c_rod_leg2 * t762;
+        let t766 = 0.8928571428571429 * t29;
+        let t769 = t101 * t766;
+        let t778 = t766 * (minus_rate_dot_rod_leg2 - t457) - t769 * (t637 + t270)
+            + t254 * t446 + t464 * t758 - t468 * t763;
+        let t782 = t347 + t506;
+        let t785 = t344 + 0.24 * rate_dot_arm_leg3;
+        let t788 = s_rod_leg3 * (s_cross_leg3 * t782 + c_cross_leg3 * t785);
+        let t792 = s_cross_leg3 * t785 - c_cross_leg3 * t782;
+        let t793 = c_rod_leg3 * t792;
+        let t799 = 0.8928571428571429 * t60;
+        let t802 = t90 * t799;
+        let t811 = t799 * (t530 - rate_dot_rod_leg3) + t802 * (t653 + t316) - t303 * t519
+            - t548 * t788 + t552 * t793;
         Ok([
             [
-                t173 * acceleration[0] - t178 * acceleration[1] + t184 * t185, rate_dot_arm_leg1,
-                0.0, 0.0, -t338, 0.0, 0.0, -t341, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
-                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t351 - t362 * t382,
-                t419 * t442 + t452, t492 * t515 - t525, t362 * t556 - t347 * t561,
-                t448 * t582 - t419 * t577, t492 * t598 + t521 * t603, t362 * t618 + t347 * t378,
-                t419 * t634 - t448 * t438, t492 * t650 + t521 * t511, t362 * t554 - t351,
-                t419 * t575 - t452, t492 * t596 + t525, t362 * t678 + t347 * t377,
-                t448 * t437 - t419 * t689, t492 * t698 + t521 * t510, -(t347 * rate_dot_rod_leg1),
-                -(t448 * minus_rate_dot_rod_leg2), t521 * rate_dot_rod_leg3, t739,
-                t419 * t752 - t448 * t757, -(t492 * t782 + t521 * t787),
-                t216 * t232 - (t377 * t717 + t378 * t720) + t362 * t736, t419 * t756, t492 * t786,
+                t178 * acceleration[0] - t183 * acceleration[1] + t189 * t190, rate_dot_arm_leg1,
+                0.0, 0.0, -t342, 0.0, 0.0, -t345, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 1.0, 0.0, 0.0, t355 - t368 * t388,
+                t425 * t448 + t458, t498 * t521 - t531, t368 * t562 - t351 * t567,
+                t454 * t588 - t425 * t583, t498 * t604 + t527 * t609, t368 * t624 + t351 * t384,
+                t425 * t640 - t454 * t444, t498 * t656 + t527 * t517, t368 * t560 - t355,
+                t425 * t581 - t458, t498 * t602 + t531, t368 * t684 + t351 * t383,
+                t454 * t443 - t425 * t695, t498 * t704 + t527 * t516, -(t351 * rate_dot_rod_leg1),
+                -(t454 * minus_rate_dot_rod_leg2), t527 * rate_dot_rod_leg3, t745,
+                t425 * t758 - t454 * t763, -(t498 * t788 + t527 * t793),
+                t221 * t237 - (t383 * t723 + t384 * t726) + t368 * t742, t425 * t762, t498 * t792,
             ],
             [
-                t188 * acceleration[0] - t190 * acceleration[1] + t193 * t185, 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, -t339, 0.0, 0.0, -t342, 0.0, 0.0, rate_arm_leg2, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t386 - t391 * t382,
-                t458 * t442 + t463, t531 * t515 - t536, t391 * t556 - t385 * t561,
-                t462 * t582 - t458 * t577, t531 * t598 + t535 * t603, t391 * t618 + t385 * t378,
-                t458 * t634 - t462 * t438, t531 * t650 + t535 * t511, t391 * t554 - t386,
-                t458 * t575 - t463, t531 * t596 + t536, t391 * t678 + t385 * t377,
-                t462 * t437 - t458 * t689, t531 * t698 + t535 * t510, -(t385 * rate_dot_rod_leg1),
-                -(t462 * minus_rate_dot_rod_leg2), t535 * rate_dot_rod_leg3,
-                t385 * t737 - t391 * t731, t772, -(t531 * t782 + t535 * t787), t391 * t736,
-                t437 * t760 + t438 * t763 + t249 * t280 + t458 * t756, t531 * t786,
+                t193 * acceleration[0] - t195 * acceleration[1] + t198 * t190, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, -t343, 0.0, 0.0, -t346, 0.0, 0.0, rate_arm_leg2, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 1.0, 0.0, t392 - t397 * t388,
+                t464 * t448 + t469, t537 * t521 - t542, t397 * t562 - t391 * t567,
+                t468 * t588 - t464 * t583, t537 * t604 + t541 * t609, t397 * t624 + t391 * t384,
+                t464 * t640 - t468 * t444, t537 * t656 + t541 * t517, t397 * t560 - t392,
+                t464 * t581 - t469, t537 * t602 + t542, t397 * t684 + t391 * t383,
+                t468 * t443 - t464 * t695, t537 * t704 + t541 * t516, -(t391 * rate_dot_rod_leg1),
+                -(t468 * minus_rate_dot_rod_leg2), t541 * rate_dot_rod_leg3,
+                t391 * t743 - t397 * t737, t778, -(t537 * t788 + t541 * t793), t397 * t742,
+                t443 * t766 + t444 * t769 + t254 * t285 + t464 * t762, t537 * t792,
             ],
             [
-                t199 * acceleration[1] - t204 * acceleration[0] - t210 * t185, 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, t340, 0.0, 0.0, t343, 0.0, 0.0, rate_arm_leg3, 0.0,
-                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, -(t398 * t382 + t401),
-                t468 - t473 * t442, t542 * t515 + t547, t398 * t556 + t400 * t561,
-                t467 * t582 + t473 * t577, t542 * t598 - t546 * t603, t398 * t618 - t400 * t378,
-                -(t473 * t634 + t467 * t438), t542 * t650 - t546 * t511, t398 * t554 + t401,
-                -(t473 * t575 + t468), t542 * t596 - t547, t398 * t678 - t400 * t377,
-                t473 * t689 + t467 * t437, t542 * t698 - t546 * t510, t400 * rate_dot_rod_leg1,
-                -(t467 * minus_rate_dot_rod_leg2), -(t546 * rate_dot_rod_leg3),
-                -(t398 * t731 + t400 * t737), -(t473 * t752 + t467 * t757), t805, t398 * t736,
-                -(t473 * t756), t510 * t793 + t511 * t796 + t298 * t327 + t542 * t786,
+                t204 * acceleration[1] - t209 * acceleration[0] - t215 * t190, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, t344, 0.0, 0.0, t347, 0.0, 0.0, rate_arm_leg3, 0.0,
+                0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 1.0, -(t404 * t388 + t407),
+                t474 - t479 * t448, t548 * t521 + t553, t404 * t562 + t406 * t567,
+                t473 * t588 + t479 * t583, t548 * t604 - t552 * t609, t404 * t624 - t406 * t384,
+                -(t479 * t640 + t473 * t444), t548 * t656 - t552 * t517, t404 * t560 + t407,
+                -(t479 * t581 + t474), t548 * t602 - t553, t404 * t684 - t406 * t383,
+                t479 * t695 + t473 * t443, t548 * t704 - t552 * t516, t406 * rate_dot_rod_leg1,
+                -(t473 * minus_rate_dot_rod_leg2), -(t552 * rate_dot_rod_leg3),
+                -(t404 * t737 + t406 * t743), -(t479 * t758 + t473 * t763), t811, t404 * t742,
+                -(t479 * t762), t516 * t799 + t517 * t802 + t303 * t331 + t548 * t792,
             ],
         ])
     }
@@ -6743,7 +6849,7 @@ impl Delta {
     /// Output: 3 x 1.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 344 operations (119 additions, 207 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 347 intermediates.
+    /// 343 operations (119 additions, 206 multiplications, 18 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 346 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6850,30 +6956,30 @@ impl Delta {
         ::overact::guard::platform(t133, 14.869730172882841, "actuators")?;
         ::overact::guard::platform(t133, 14.869730172882841, "actuators")?;
         let t134 = 1.0 / t133;
-        let t135 = 0.24 * c_cross_leg1;
+        let t136 = 0.24 * c_cross_leg1 * actuator_velocities[0];
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t148 = garm_vx_leg1 * actuator_velocities[0]
+        let t147 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let t150 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t34 * t150;
-        let t153 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t64 * (t153 + 0.5 * t66);
-        let t159 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t108 * (t159 - 0.5 * t128);
-        let t164 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let t149 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t34 * t149;
+        let t152 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t64 * (t152 + 0.5 * t66);
+        let t158 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t108 * (t158 - 0.5 * t128);
+        let t163 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t165 = t164 * t134;
-        let t172 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t164 * t165;
-        ::overact::guard::platform(t172, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t172, 14.869730172882846, "actuators")?;
-        let t173 = 1.0 / t172;
-        let t180 = garm_vy_leg1 * actuator_velocities[0]
+        let t164 = t163 * t134;
+        let t171 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t163 * t164;
+        ::overact::guard::platform(t171, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t171, 14.869730172882846, "actuators")?;
+        let t172 = 1.0 / t171;
+        let t179 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t148 * t165;
+            + garm_vy_leg3 * actuator_velocities[2] - t147 * t164;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
@@ -6881,75 +6987,75 @@ impl Delta {
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t108;
-        let t195 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t194 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t196 = t195 * t134;
-        let t203 = t164 * t196
+        let t195 = t194 * t134;
+        let t202 = t163 * t195
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t204 = t203 * t173;
-        let t213 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t203 = t202 * t172;
+        let t212 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t195 * t196 - t203 * t204;
-        ::overact::guard::platform(t213, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t213, 34.855350201355726, "actuators")?;
-        let t214 = 1.0 / t213;
-        let t224 = t214
-            * (t148 * t196
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t194 * t195 - t202 * t203;
+        ::overact::guard::platform(t212, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t212, 34.855350201355726, "actuators")?;
+        let t213 = 1.0 / t212;
+        let t223 = t213
+            * (t147 * t195
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t204 * t180);
-        let t226 = t173 * t180 - t204 * t224;
-        let t230 = t148 * t134 - t165 * t226 + t196 * t224;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t203 * t179);
+        let t225 = t172 * t179 - t203 * t223;
+        let t229 = t147 * t134 - t164 * t225 + t195 * t223;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (t135 * actuator_velocities[0] + s_armcross_leg1 * t230
-                + c_armcross_leg1 * t224);
-        let rate_rod_leg1 = grod_vy_leg1 * t226;
-        let t238 = rate_rod_leg1 * rate_rod_leg1;
-        let t244 = t135 * (actuator_velocities[0] * actuator_velocities[0])
-            + 0.56 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t238)
-            + t150 * (pose[1] * t238);
-        let rate_dot_arm_leg1 = t34 * t244;
-        let t246 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t252 = 0.8660254037844387 * t230;
-        let t253 = 0.5 * t226;
-        let t254 = t252 + t253;
-        let minus_rate_rod_leg2 = t65 * t254;
-        let t256 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t264 = c_cross_leg2 * t63;
-        let t271 = 0.5 * s_armcross_leg2 * t230
-            - 0.8660254037844387 * s_armcross_leg2 * t226 - c_armcross_leg2 * t224
-            - t264 * (t153 * t226 - t86 * t230 - s_armcross_leg2 * t224);
-        let rate_cross_leg2 = t65 * (t271 - t66 * t264 * t254);
-        let t282 = 0.24 * c_cross_leg2
+            * (t136 + s_armcross_leg1 * t229 + c_armcross_leg1 * t223);
+        let rate_rod_leg1 = grod_vy_leg1 * t225;
+        let t237 = rate_rod_leg1 * rate_rod_leg1;
+        let rate_dot_arm_leg1 = t34
+            * (actuator_velocities[0] * t136
+                + 0.56 * c_rod_leg1
+                    * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t237)
+                + t149 * (pose[1] * t237));
+        let t245 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t251 = 0.8660254037844387 * t229;
+        let t252 = 0.5 * t225;
+        let t253 = t251 + t252;
+        let minus_rate_rod_leg2 = t65 * t253;
+        let t255 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t263 = c_cross_leg2 * t63;
+        let t270 = 0.5 * s_armcross_leg2 * t229
+            - 0.8660254037844387 * s_armcross_leg2 * t225 - c_armcross_leg2 * t223
+            - t263 * (t152 * t225 - t86 * t229 - s_armcross_leg2 * t223);
+        let rate_cross_leg2 = t65 * (t270 - t66 * t263 * t253);
+        let t281 = 0.24 * c_cross_leg2
             * (actuator_velocities[1] * actuator_velocities[1])
-            + 0.56 * c_rod_leg2 * (t256 + rate_cross_leg2 * rate_cross_leg2)
-            + t66 * (t49 * t256);
-        let rate_dot_arm_leg2 = t64 * t282;
-        let t284 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t291 = t252 - t253;
-        let rate_rod_leg3 = t127 * t291;
-        let t293 = rate_rod_leg3 * rate_rod_leg3;
-        let t301 = c_cross_leg3 * t107;
-        let t308 = 0.5 * s_armcross_leg3 * t230
-            + 0.8660254037844387 * s_armcross_leg3 * t226 + minus_c_armcross_leg3 * t224
-            - t301 * (t126 * t230 + t159 * t226 - s_armcross_leg3 * t224);
-        let rate_cross_leg3 = t127 * (t308 - t128 * t301 * t291);
-        let t319 = 0.24 * c_cross_leg3
+            + 0.56 * c_rod_leg2 * (t255 + rate_cross_leg2 * rate_cross_leg2)
+            + t66 * (t49 * t255);
+        let rate_dot_arm_leg2 = t64 * t281;
+        let t283 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t290 = t251 - t252;
+        let rate_rod_leg3 = t127 * t290;
+        let t292 = rate_rod_leg3 * rate_rod_leg3;
+        let t300 = c_cross_leg3 * t107;
+        let t307 = 0.5 * s_armcross_leg3 * t229
+            + 0.8660254037844387 * s_armcross_leg3 * t225 + minus_c_armcross_leg3 * t223
+            - t300 * (t126 * t229 + t158 * t225 - s_armcross_leg3 * t223);
+        let rate_cross_leg3 = t127 * (t307 - t128 * t300 * t290);
+        let t318 = 0.24 * c_cross_leg3
             * (actuator_velocities[2] * actuator_velocities[2])
-            + 0.56 * c_rod_leg3 * (t293 + rate_cross_leg3 * rate_cross_leg3)
-            + t128 * (t48 * t293);
-        let rate_dot_arm_leg3 = t108 * t319;
-        let t321 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t323 = garm_vx_leg1 * t246 + garm_vx_leg2 * t284 + garm_vx_leg3 * t321;
-        let t331 = garm_vy_leg1 * t246 + garm_vy_leg2 * t284 + garm_vy_leg3 * t321
-            - t165 * t323;
-        let t342 = t214
-            * (t196 * t323
-                - (minus_garm_vz_leg1 * t246 + minus_garm_vz_leg2 * t284
-                    + minus_garm_vz_leg3 * t321) - t204 * t331);
-        let t344 = t173 * t331 - t204 * t342;
-        Ok([[t134 * t323 - t165 * t344 + t196 * t342], [t344], [t342 + 9.81]])
+            + 0.56 * c_rod_leg3 * (t292 + rate_cross_leg3 * rate_cross_leg3)
+            + t128 * (t48 * t292);
+        let rate_dot_arm_leg3 = t108 * t318;
+        let t320 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t322 = garm_vx_leg1 * t245 + garm_vx_leg2 * t283 + garm_vx_leg3 * t320;
+        let t330 = garm_vy_leg1 * t245 + garm_vy_leg2 * t283 + garm_vy_leg3 * t320
+            - t164 * t322;
+        let t341 = t213
+            * (t195 * t322
+                - (minus_garm_vz_leg1 * t245 + minus_garm_vz_leg2 * t283
+                    + minus_garm_vz_leg3 * t320) - t203 * t330);
+        let t343 = t172 * t330 - t203 * t341;
+        Ok([[t134 * t322 - t164 * t343 + t195 * t341], [t343], [t341 + 9.81]])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -7684,7 +7790,7 @@ impl Delta {
     ///
     /// Output: 3.
     ///
-    /// 753 operations (301 additions, 443 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 771 intermediates.
+    /// 749 operations (299 additions, 441 multiplications, 9 divisions), 0 square roots, 9 trigonometric pairs, 3 signs, 767 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7827,216 +7933,216 @@ impl Delta {
         let t254 = t250 + t251 - t214 * minus_rate_rod_leg2;
         let t257 = 1.7857142857142858 * (t249 + t193 * t254);
         let t258 = t192 * t257;
-        let t260 = minus_rate_rod_leg2 * (1.7857142857142858 * t227);
+        let t259 = 1.7857142857142858 * t227;
+        let t260 = minus_rate_rod_leg2 * t259;
         let t261 = t258 - t260;
         let t263 = 1.7857142857142858 * t229;
         let t264 = t263 + t257;
         let t265 = t263 + t264;
-        let t268 = t192 * t227;
-        let t270 = 3.188775510204082 * (t268 * t268);
-        let t271 = t243 - t270;
-        let t272 = t192 * t271;
+        let t268 = t259 * t259;
+        let t269 = t192 * t268;
         let minus_rate_dot_rod_leg2 = t175 * t254;
-        let t274 = t272 - minus_rate_dot_rod_leg2;
-        let t281 = parameters[24] * t261 + parameters[25] * t265 + parameters[26] * t274
-            + parameters[27] * t260 + parameters[28] * (t271 - t242);
-        let t284 = 9.81 * s_arm_leg2;
-        let t286 = t284 + 0.24 * t217;
+        let t271 = t269 - minus_rate_dot_rod_leg2;
+        let t278 = parameters[24] * t261 + parameters[25] * t265 + parameters[26] * t271
+            + parameters[27] * t260 + parameters[28] * (t268 - t242);
+        let t281 = 9.81 * s_arm_leg2;
+        let t283 = t281 + 0.24 * t217;
         let rate_dot_arm_leg2 = t204 * (t247 - t192 * t254);
-        let t292 = 9.81 * c_arm_leg2;
-        let t293 = 0.24 * rate_dot_arm_leg2 - t292;
-        let t295 = s_cross_leg2 * t286 + c_cross_leg2 * t293;
-        let t300 = s_cross_leg2 * t293 - c_cross_leg2 * t286;
-        let t301 = s_rod_leg2 * t300;
-        let t305 = t261 - t260;
-        let t314 = t272 + minus_rate_dot_rod_leg2;
-        let t316 = parameters[25] * t305 - parameters[24] * t263
-            + parameters[26] * (t242 - t270) + parameters[27] * t264
-            - parameters[28] * t314;
-        let t321 = c_rod_leg2 * t300;
-        let t325 = s_rod_leg2
-            * (t281 - parameters[29] * t260 - parameters[31] * t295
-                + parameters[32] * t301)
+        let t289 = 9.81 * c_arm_leg2;
+        let t290 = 0.24 * rate_dot_arm_leg2 - t289;
+        let t292 = s_cross_leg2 * t283 + c_cross_leg2 * t290;
+        let t297 = s_cross_leg2 * t290 - c_cross_leg2 * t283;
+        let t298 = s_rod_leg2 * t297;
+        let t302 = t261 - t260;
+        let t306 = t192 * t269;
+        let t312 = t269 + minus_rate_dot_rod_leg2;
+        let t314 = parameters[25] * t302 - parameters[24] * t263
+            + parameters[26] * (t242 - t306) + parameters[27] * t264
+            - parameters[28] * t312;
+        let t319 = c_rod_leg2 * t297;
+        let t323 = s_rod_leg2
+            * (t278 - parameters[29] * t260 - parameters[31] * t292
+                + parameters[32] * t298)
             + c_rod_leg2
-                * (t316 + parameters[29] * t263 + parameters[30] * t295
-                    + parameters[32] * t321);
+                * (t314 + parameters[29] * t263 + parameters[30] * t292
+                    + parameters[32] * t319);
         let minus_garm_vx_leg2 = t204 * (t186 + 0.8660254037844387 * t192);
-        let t341 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t292
-            + parameters[19] * t284 + parameters[20] * rate_dot_arm_leg2
+        let t339 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t289
+            + parameters[19] * t281 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t351 = c_rod_leg2 * t203
-            * (parameters[31] * t314 - parameters[30] * (t271 + t242)
-                + parameters[32] * t257 + parameters[33] * t321);
-        let t361 = t203 * s_rod_leg2
-            * (parameters[30] * t274 - parameters[31] * (t270 + t242)
-                - parameters[32] * t258 - parameters[33] * t301);
-        let t371 = t351 - t361
+        let t349 = c_rod_leg2 * t203
+            * (parameters[31] * t312 - parameters[30] * (t268 + t242)
+                + parameters[32] * t257 + parameters[33] * t319);
+        let t359 = t203 * s_rod_leg2
+            * (parameters[30] * t271 - parameters[31] * (t306 + t242)
+                - parameters[32] * t258 - parameters[33] * t298);
+        let t369 = t349 - t359
             - t238
-                * (parameters[31] * t305 - parameters[30] * t265 - parameters[32] * t243
-                    - parameters[33] * t295);
-        let t372 = t341 + t371;
+                * (parameters[31] * t302 - parameters[30] * t265 - parameters[32] * t243
+                    - parameters[33] * t292);
+        let t370 = t339 + t369;
         let minus_grod_vx_leg2 = 1.5464739353293548 * t174;
-        let t385 = parameters[25] * (t270 - t271) - parameters[24] * t272
-            + parameters[26] * t258 + parameters[27] * t272 + parameters[28] * t257;
-        let t391 = t385 - parameters[29] * minus_rate_dot_rod_leg2
-            - parameters[30] * t301 - parameters[31] * t321;
-        let t397 = 1.0 / s_cross_leg3;
-        let t398 = 4.166666666666667 * t397;
-        let t401 = 1.0 / c_rod_leg3;
-        let t402 = s_rod_leg3 * t401;
+        let t383 = parameters[25] * (t306 - t268) - parameters[24] * t269
+            + parameters[26] * t258 + parameters[27] * t269 + parameters[28] * t257;
+        let t389 = t383 - parameters[29] * minus_rate_dot_rod_leg2
+            - parameters[30] * t298 - parameters[31] * t319;
+        let t395 = 1.0 / s_cross_leg3;
+        let t396 = 4.166666666666667 * t395;
+        let t399 = 1.0 / c_rod_leg3;
+        let t400 = s_rod_leg3 * t399;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t412 = 0.5 * c_armcross_leg3;
-        let garm_vx_leg3 = t398 * (0.8660254037844387 * t402 - t412);
-        let t415 = 0.24 * c_cross_leg3;
-        let t416 = t211 - t212;
-        let t417 = t402 * t416;
-        let t419 = 0.8660254037844387 * c_armcross_leg3;
-        let t423 = t412 * twist[0] + t419 * twist[1] + s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t398 * (t417 - t423);
-        let t426 = rate_arm_leg3 * rate_arm_leg3;
-        let t429 = 1.7857142857142858 * t401;
-        let rate_rod_leg3 = t429 * t416;
-        let t431 = rate_rod_leg3 * rate_rod_leg3;
-        let t432 = c_cross_leg3 * t397;
-        let t434 = 0.5 * s_armcross_leg3;
-        let t436 = 0.8660254037844387 * s_armcross_leg3;
-        let t442 = t402 * t432;
-        let t444 = t432 * t423 + t434 * twist[0] + t436 * twist[1]
-            - c_armcross_leg3 * twist[2] - t442 * t416;
-        let rate_cross_leg3 = t429 * t444;
-        let t446 = rate_cross_leg3 * rate_cross_leg3;
-        let t455 = t415 * t426 + 0.56 * c_rod_leg3 * (t431 + t446)
-            - (t412 * acceleration[0] + t419 * acceleration[1]
+        let t410 = 0.5 * c_armcross_leg3;
+        let garm_vx_leg3 = t396 * (0.8660254037844387 * t400 - t410);
+        let t413 = 0.24 * c_cross_leg3;
+        let t414 = t211 - t212;
+        let t415 = t400 * t414;
+        let t417 = 0.8660254037844387 * c_armcross_leg3;
+        let t421 = t410 * twist[0] + t417 * twist[1] + s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t396 * (t415 - t421);
+        let t424 = rate_arm_leg3 * rate_arm_leg3;
+        let t427 = 1.7857142857142858 * t399;
+        let rate_rod_leg3 = t427 * t414;
+        let t429 = rate_rod_leg3 * rate_rod_leg3;
+        let t430 = c_cross_leg3 * t395;
+        let t432 = 0.5 * s_armcross_leg3;
+        let t434 = 0.8660254037844387 * s_armcross_leg3;
+        let t440 = t400 * t430;
+        let t442 = t430 * t421 + t432 * twist[0] + t434 * twist[1]
+            - c_armcross_leg3 * twist[2] - t440 * t414;
+        let rate_cross_leg3 = t427 * t442;
+        let t444 = rate_cross_leg3 * rate_cross_leg3;
+        let t453 = t413 * t424 + 0.56 * c_rod_leg3 * (t429 + t444)
+            - (t410 * acceleration[0] + t417 * acceleration[1]
                 + s_armcross_leg3 * acceleration[2]);
-        let t458 = t250 - t251 + t417 * rate_rod_leg3;
-        let rate_dot_arm_leg3 = t398 * (t455 + t402 * t458);
-        let t463 = 9.81 * c_arm_leg3;
-        let t466 = 9.81 * s_arm_leg3;
-        let t475 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t463
-            + parameters[36] * t466 + parameters[37] * rate_dot_arm_leg3
+        let t456 = t250 - t251 + t415 * rate_rod_leg3;
+        let rate_dot_arm_leg3 = t396 * (t453 + t400 * t456);
+        let t461 = 9.81 * c_arm_leg3;
+        let t464 = 9.81 * s_arm_leg3;
+        let t473 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t461
+            + parameters[36] * t464 + parameters[37] * rate_dot_arm_leg3
             + parameters[38] * rate_arm_leg3
             + ::overact::math::signed(parameters[39], rate_arm_leg3) + parameters[40];
-        let t476 = 0.24 * s_cross_leg3;
-        let t478 = t402 * t444;
-        let t480 = 3.188775510204082 * (t478 * t478);
-        let t481 = t446 - t480;
-        let t482 = t402 * t481;
-        let rate_dot_rod_leg3 = t429 * t458;
-        let t484 = t482 - rate_dot_rod_leg3;
-        let t495 = t417 * rate_cross_leg3;
-        let t500 = t434 * acceleration[0] + t436 * acceleration[1]
-            - c_armcross_leg3 * acceleration[2] - (t476 * t426 - t495 - t495)
-            - t432 * t455;
-        let t503 = 1.7857142857142858 * (t500 - t442 * t458);
-        let t507 = 0.24 * rate_dot_arm_leg3 - t463;
-        let t510 = t466 + 0.24 * t426;
-        let t512 = s_cross_leg3 * t507 - c_cross_leg3 * t510;
-        let t513 = c_rod_leg3 * t512;
-        let t516 = c_rod_leg3 * t476
-            * (parameters[48] * t484 - parameters[47] * (t481 + t431)
-                + parameters[49] * t503 + parameters[50] * t513);
-        let t518 = t482 + rate_dot_rod_leg3;
-        let t523 = t402 * t503;
-        let t526 = s_rod_leg3 * t512;
-        let t529 = t476 * s_rod_leg3
-            * (parameters[47] * t518 - parameters[48] * (t480 + t431)
-                - parameters[49] * t523 - parameters[50] * t526);
-        let t531 = 1.7857142857142858 * t495;
-        let t532 = t503 - t531;
-        let t533 = t531 - t532;
-        let t536 = rate_rod_leg3 * (1.7857142857142858 * t444);
-        let t537 = t523 + t536;
-        let t538 = t536 + t537;
-        let t545 = s_cross_leg3 * t510 + c_cross_leg3 * t507;
-        let t549 = t516 - t529
-            - t415
-                * (parameters[47] * t533 + parameters[48] * t538 - parameters[49] * t446
-                    - parameters[50] * t545);
-        let t550 = t475 + t549;
-        let gcross_vx_leg3 = t429 * (t412 * t432 + t434 - 0.8660254037844387 * t442);
-        let t566 = parameters[41] * t537 - parameters[42] * t533 + parameters[43] * t518
-            - parameters[44] * t536 + parameters[45] * (t481 - t431);
-        let t583 = parameters[41] * t531 + parameters[42] * t538
-            + parameters[43] * (t431 - t480) + parameters[44] * t532
-            - parameters[45] * t484;
-        let t591 = s_rod_leg3
-            * (t566 + parameters[46] * t536 - parameters[48] * t545
-                + parameters[49] * t526)
+        let t474 = 0.24 * s_cross_leg3;
+        let t476 = 1.7857142857142858 * t442;
+        let t477 = t476 * t476;
+        let t478 = t400 * t477;
+        let rate_dot_rod_leg3 = t427 * t456;
+        let t480 = t478 - rate_dot_rod_leg3;
+        let t491 = t415 * rate_cross_leg3;
+        let t496 = t432 * acceleration[0] + t434 * acceleration[1]
+            - c_armcross_leg3 * acceleration[2] - (t474 * t424 - t491 - t491)
+            - t430 * t453;
+        let t499 = 1.7857142857142858 * (t496 - t440 * t456);
+        let t503 = 0.24 * rate_dot_arm_leg3 - t461;
+        let t506 = t464 + 0.24 * t424;
+        let t508 = s_cross_leg3 * t503 - c_cross_leg3 * t506;
+        let t509 = c_rod_leg3 * t508;
+        let t512 = c_rod_leg3 * t474
+            * (parameters[48] * t480 - parameters[47] * (t477 + t429)
+                + parameters[49] * t499 + parameters[50] * t509);
+        let t514 = t478 + rate_dot_rod_leg3;
+        let t516 = t400 * t478;
+        let t520 = t400 * t499;
+        let t523 = s_rod_leg3 * t508;
+        let t526 = t474 * s_rod_leg3
+            * (parameters[47] * t514 - parameters[48] * (t516 + t429)
+                - parameters[49] * t520 - parameters[50] * t523);
+        let t528 = 1.7857142857142858 * t491;
+        let t529 = t499 - t528;
+        let t530 = t528 - t529;
+        let t532 = rate_rod_leg3 * t476;
+        let t533 = t520 + t532;
+        let t534 = t532 + t533;
+        let t541 = s_cross_leg3 * t506 + c_cross_leg3 * t503;
+        let t545 = t512 - t526
+            - t413
+                * (parameters[47] * t530 + parameters[48] * t534 - parameters[49] * t444
+                    - parameters[50] * t541);
+        let t546 = t473 + t545;
+        let gcross_vx_leg3 = t427 * (t410 * t430 + t432 - 0.8660254037844387 * t440);
+        let t562 = parameters[41] * t533 - parameters[42] * t530 + parameters[43] * t514
+            - parameters[44] * t532 + parameters[45] * (t477 - t429);
+        let t579 = parameters[41] * t528 + parameters[42] * t534
+            + parameters[43] * (t429 - t516) + parameters[44] * t529
+            - parameters[45] * t480;
+        let t587 = s_rod_leg3
+            * (t562 + parameters[46] * t532 - parameters[48] * t541
+                + parameters[49] * t523)
             + c_rod_leg3
-                * (t583 - parameters[46] * t531 + parameters[47] * t545
-                    + parameters[49] * t513);
-        let grod_vx_leg3 = 1.5464739353293548 * t401;
-        let t604 = parameters[42] * (t480 - t481) - parameters[41] * t482
-            + parameters[43] * t523 + parameters[44] * t482 + parameters[45] * t503;
-        let t610 = t604 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t526
-            - parameters[48] * t513;
-        let t613 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169
-            + gcross_vx_leg2 * t325 - minus_garm_vx_leg2 * t372
-            - minus_grod_vx_leg2 * t391 + garm_vx_leg3 * t550 + gcross_vx_leg3 * t591
-            + grod_vx_leg3 * t610;
-        let t617 = t613 + acceleration[0] * parameters[51]
+                * (t579 - parameters[46] * t528 + parameters[47] * t541
+                    + parameters[49] * t509);
+        let grod_vx_leg3 = 1.5464739353293548 * t399;
+        let t600 = parameters[42] * (t516 - t477) - parameters[41] * t478
+            + parameters[43] * t520 + parameters[44] * t478 + parameters[45] * t499;
+        let t606 = t600 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t523
+            - parameters[48] * t509;
+        let t609 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169
+            + gcross_vx_leg2 * t323 - minus_garm_vx_leg2 * t370
+            - minus_grod_vx_leg2 * t389 + garm_vx_leg3 * t546 + gcross_vx_leg3 * t587
+            + grod_vx_leg3 * t606;
+        let t613 = t609 + acceleration[0] * parameters[51]
             + acceleration[0] * parameters[52];
-        let t622 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+        let t618 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t622, 14.869730172897302, "actuators")?;
-        let t623 = 1.0 / t622;
+        ::overact::guard::platform(t618, 14.869730172897302, "actuators")?;
+        let t619 = 1.0 / t618;
         let garm_vy_leg1 = t11 * t23;
         let garm_vy_leg2 = t204 * (t205 - 0.5 * t192);
-        let minus_garm_vy_leg3 = t398 * (t419 + 0.5 * t402);
-        let t636 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        let minus_garm_vy_leg3 = t396 * (t417 + 0.5 * t400);
+        let t632 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             - garm_vx_leg3 * minus_garm_vy_leg3;
-        let t637 = t636 * t623;
-        let t644 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t636 * t637;
-        ::overact::guard::platform(t644, 14.869730172897306, "actuators")?;
-        let t645 = 1.0 / t644;
+        let t633 = t632 * t619;
+        let t640 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + minus_garm_vy_leg3 * minus_garm_vy_leg3 - t632 * t633;
+        ::overact::guard::platform(t640, 14.869730172897306, "actuators")?;
+        let t641 = 1.0 / t640;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t660 = parameters[8] * (t101 - t66) - parameters[7] * t67
+        let t656 = parameters[8] * (t101 - t66) - parameters[7] * t67
             - parameters[9] * t105 + parameters[10] * t67 - parameters[11] * t85;
-        let t668 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
+        let t664 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
             + grod_vy_leg1
-                * (t660 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
+                * (t656 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
                     - parameters[14] * t94);
         let gcross_vy_leg2 = t175 * (0.5 * t193 - (t205 * t188 + t198));
         let minus_grod_vy_leg2 = 0.8928571428571429 * t174;
-        let gcross_vy_leg3 = t429 * (t419 * t432 + t436 + 0.5 * t442);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t401;
-        let t692 = t668 + garm_vy_leg2 * t372 + gcross_vy_leg2 * t325
-            - minus_grod_vy_leg2 * t391 + gcross_vy_leg3 * t591
-            - minus_garm_vy_leg3 * t550 - minus_grod_vy_leg3 * t610;
-        let t698 = t692 + acceleration[1] * parameters[51]
-            + acceleration[1] * parameters[52] - t617 * t637;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t398;
+        let gcross_vy_leg3 = t427 * (t417 * t430 + t434 + 0.5 * t440);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t399;
+        let t688 = t664 + garm_vy_leg2 * t370 + gcross_vy_leg2 * t323
+            - minus_grod_vy_leg2 * t389 + gcross_vy_leg3 * t587
+            - minus_garm_vy_leg3 * t546 - minus_grod_vy_leg3 * t606;
+        let t694 = t688 + acceleration[1] * parameters[51]
+            + acceleration[1] * parameters[52] - t613 * t633;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t396;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
         let minus_garm_vz_leg2 = s_armcross_leg2 * t204;
-        let t712 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let t708 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 - garm_vx_leg3 * minus_garm_vz_leg3;
-        let t713 = t712 * t623;
-        let t715 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t709 = t708 * t619;
+        let t711 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            - t636 * t713;
-        let t716 = t715 * t645;
+            - t632 * t709;
+        let t712 = t711 * t641;
         let gcross_vz_leg2 = t175 * (t187 * s_arm_leg2);
         let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
-        let gcross_vz_leg3 = t429 * (t397 * s_arm_leg3);
-        let t733 = gcross_vz_leg2 * t325 - minus_garm_vz_leg2 * t372
+        let gcross_vz_leg3 = t427 * (t395 * s_arm_leg3);
+        let t729 = gcross_vz_leg2 * t323 - minus_garm_vz_leg2 * t370
             - (minus_garm_vz_leg1 * t131 - minus_minus_gcross_vz_leg1 * t169)
-            + gcross_vz_leg3 * t591 - minus_garm_vz_leg3 * t550;
-        let t734 = acceleration[2] + 9.81;
-        let t751 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + gcross_vz_leg3 * t587 - minus_garm_vz_leg3 * t546;
+        let t730 = acceleration[2] + 9.81;
+        let t747 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t712 * t713 - t715 * t716;
-        ::overact::guard::platform(t751, 34.8553502013929, "actuators")?;
-        let t752 = (t733 + parameters[51] * t734 + parameters[52] * t734 - t617 * t713
-            - t716 * t698) / t751;
-        let t754 = t645 * t698 - t716 * t752;
-        let t758 = t617 * t623 - t637 * t754 - t713 * t752;
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t708 * t709 - t711 * t712;
+        ::overact::guard::platform(t747, 34.8553502013929, "actuators")?;
+        let t748 = (t729 + parameters[51] * t730 + parameters[52] * t730 - t613 * t709
+            - t712 * t694) / t747;
+        let t750 = t641 * t694 - t712 * t748;
+        let t754 = t613 * t619 - t633 * t750 - t709 * t748;
         Ok([
-            garm_vx_leg1 * t758 + garm_vy_leg1 * t754 - minus_garm_vz_leg1 * t752,
-            garm_vy_leg2 * t754 - minus_garm_vx_leg2 * t758 - minus_garm_vz_leg2 * t752,
-            garm_vx_leg3 * t758 - minus_garm_vy_leg3 * t754 - minus_garm_vz_leg3 * t752,
+            garm_vx_leg1 * t754 + garm_vy_leg1 * t750 - minus_garm_vz_leg1 * t748,
+            garm_vy_leg2 * t750 - minus_garm_vx_leg2 * t754 - minus_garm_vz_leg2 * t748,
+            garm_vx_leg3 * t754 - minus_garm_vy_leg3 * t750 - minus_garm_vz_leg3 * t748,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -8095,309 +8201,307 @@ impl Delta {
         let t38 = t0 + 0.025;
         let t39 = t38 * t38;
         let t41 = pose[1] + 0.04330127018922194 - 0.17320508075688776;
-        let t44 = t39 + t41 * t41 + t3;
-        let t47 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
-        let t49 = 0.8660254037844387 * t38 - 0.5 * t47;
-        let t50 = pose[1] + t49;
-        let t51 = t50 * t50;
-        let t53 = 0.2304 * (t44 - t51);
-        let t54 = t44 - 0.3136;
-        let t55 = t54 + 0.0576;
-        let t57 = t53 - t55 * t55;
-        ::overact::guard::reach(t57, "leg2")?;
-        let t58 = ::overact::math::sqrt(t57);
-        let t59 = 3.188775510204082 * t51;
-        let t60 = 1.0 - t59;
+        let t45 = t39 + t41 * t41 + t3 - 0.3136;
+        let t48 = pose[1] - 0.04330127018922194 + 0.17320508075688776;
+        let t50 = 0.8660254037844387 * t38 - 0.5 * t48;
+        let t51 = pose[1] + t50;
+        let minus_s_rod_leg2 = 1.7857142857142858 * t51;
+        let t53 = minus_s_rod_leg2 * minus_s_rod_leg2;
+        let t54 = 1.0 - t53;
+        ::overact::guard::reach(t54, "leg2")?;
+        let t57 = 0.2304 * (t45 + 0.3136 * t54);
+        let t58 = t45 + 0.0576;
+        let t60 = t57 - t58 * t58;
         ::overact::guard::reach(t60, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t60);
+        let t61 = ::overact::math::sqrt(t60);
+        let c_rod_leg2 = ::overact::math::sqrt(t54);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t62 = 0.2688 * c_rod_leg2;
-        let s_cross_leg2 = t58 / t62;
+        let t63 = 0.2688 * c_rod_leg2;
+        let s_cross_leg2 = t61 / t63;
         ::overact::guard::leg(s_cross_leg2, 0.8979467258599694, "leg2")?;
-        let t64 = 1.0 / s_cross_leg2;
-        let t65 = 4.166666666666667 * t64;
-        let t66 = 1.0 / c_rod_leg2;
-        let t67 = 1.7857142857142858 * t66;
-        let t68 = t50 * t67;
-        let t70 = 1.0 / t53;
-        let t72 = 0.5 * t38;
-        let t74 = 0.48 * (0.8660254037844387 * t41 - t72);
-        let c_arm_leg2 = t70 * (t74 * t55 - t13 * t58);
-        let c_cross_leg2 = (-0.0576 + t54) / t62;
-        let minus_s_arm_leg2 = t70 * (t13 * t55 + t74 * t58);
+        let t65 = 1.0 / s_cross_leg2;
+        let t66 = 4.166666666666667 * t65;
+        let t67 = 1.0 / c_rod_leg2;
+        let t68 = 1.7857142857142858 * t67;
+        let t69 = t51 * t68;
+        let t71 = 1.0 / t57;
+        let t73 = 0.5 * t38;
+        let t75 = 0.48 * (0.8660254037844387 * t41 - t73);
+        let c_arm_leg2 = t71 * (t75 * t58 - t13 * t61);
+        let c_cross_leg2 = (-0.0576 + t45) / t63;
+        let minus_s_arm_leg2 = t71 * (t13 * t58 + t75 * t61);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t88 = 0.5 * c_armcross_leg2;
-        let garm_vx_leg2 = t65 * (0.8660254037844387 * t68 - t88);
-        let t95 = t39 + t47 * t47 + t3;
-        let t96 = t49 * t49;
-        let t98 = 0.2304 * (t95 - t96);
-        let t99 = t95 - 0.3136;
-        let t100 = t99 + 0.0576;
-        let t102 = t98 - t100 * t100;
-        ::overact::guard::reach(t102, "leg3")?;
-        let t103 = ::overact::math::sqrt(t102);
-        let t104 = 3.188775510204082 * t96;
-        let t105 = 1.0 - t104;
-        ::overact::guard::reach(t105, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t105);
+        let t89 = 0.5 * c_armcross_leg2;
+        let garm_vx_leg2 = t66 * (0.8660254037844387 * t69 - t89);
+        let t96 = t39 + t48 * t48 + t3;
+        let t97 = t50 * t50;
+        let t99 = 0.2304 * (t96 - t97);
+        let t100 = t96 - 0.3136;
+        let t101 = t100 + 0.0576;
+        let t103 = t99 - t101 * t101;
+        ::overact::guard::reach(t103, "leg3")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let t105 = 3.188775510204082 * t97;
+        let t106 = 1.0 - t105;
+        ::overact::guard::reach(t106, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t106);
         ::overact::guard::leg(c_rod_leg3, 1.0, "leg3")?;
-        let t107 = 0.2688 * c_rod_leg3;
-        let s_cross_leg3 = t103 / t107;
+        let t108 = 0.2688 * c_rod_leg3;
+        let s_cross_leg3 = t104 / t108;
         ::overact::guard::leg(s_cross_leg3, 0.8979467258599694, "leg3")?;
-        let t109 = 1.0 / s_cross_leg3;
-        let t110 = 4.166666666666667 * t109;
-        let t111 = 1.0 / t98;
-        let t114 = 0.48 * (t72 + 0.8660254037844387 * t47);
-        let minus_c_arm_leg3 = t111 * (t114 * t100 + t13 * t103);
-        let c_cross_leg3 = (-0.0576 + t99) / t107;
-        let s_arm_leg3 = t111 * (t114 * t103 - t13 * t100);
+        let t110 = 1.0 / s_cross_leg3;
+        let t111 = 4.166666666666667 * t110;
+        let t112 = 1.0 / t99;
+        let t115 = 0.48 * (t73 + 0.8660254037844387 * t48);
+        let minus_c_arm_leg3 = t112 * (t115 * t101 + t13 * t104);
+        let c_cross_leg3 = (-0.0576 + t100) / t108;
+        let s_arm_leg3 = t112 * (t115 * t104 - t13 * t101);
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t128 = 0.5 * minus_c_armcross_leg3;
-        let t129 = 1.0 / c_rod_leg3;
-        let t130 = 1.7857142857142858 * t129;
-        let t131 = t49 * t130;
-        let garm_vx_leg3 = t110 * (t128 + 0.8660254037844387 * t131);
-        let t136 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t129 = 0.5 * minus_c_armcross_leg3;
+        let t130 = 1.0 / c_rod_leg3;
+        let t131 = 1.7857142857142858 * t130;
+        let t132 = t50 * t131;
+        let garm_vx_leg3 = t111 * (t129 + 0.8660254037844387 * t132);
+        let t137 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3;
-        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
-        ::overact::guard::platform(t136, 14.869730172882841, "actuators")?;
-        let t137 = 1.0 / t136;
-        let t139 = 9.81 * c_arm_leg1;
-        let t142 = 9.81 * minus_s_arm_leg1;
-        let t151 = actuator_accelerations[0] * parameters[0] - t139 * parameters[1]
-            - t142 * parameters[2] + actuator_accelerations[0] * parameters[3]
+        ::overact::guard::platform(t137, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t137, 14.869730172882841, "actuators")?;
+        ::overact::guard::platform(t137, 14.869730172882841, "actuators")?;
+        let t138 = 1.0 / t137;
+        let t140 = 9.81 * c_arm_leg1;
+        let t143 = 9.81 * minus_s_arm_leg1;
+        let t152 = actuator_accelerations[0] * parameters[0] - t140 * parameters[1]
+            - t143 * parameters[2] + actuator_accelerations[0] * parameters[3]
             + actuator_velocities[0] * parameters[4]
             + ::overact::math::signed(parameters[5], actuator_velocities[0])
             + parameters[6];
-        let t152 = 0.8928571428571429 * t16;
+        let t153 = 0.8928571428571429 * t16;
         let grod_vy_leg1 = 1.7857142857142858 / c_rod_leg1;
-        let t154 = pose[1] * grod_vy_leg1;
-        let t155 = 0.24 * c_cross_leg1;
+        let t155 = pose[1] * grod_vy_leg1;
+        let t156 = 0.24 * c_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t164 = garm_vx_leg1 * actuator_velocities[0]
+        let t165 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2];
-        let garm_vy_leg1 = t35 * t154;
-        let t168 = 0.8660254037844387 * c_armcross_leg2;
-        let garm_vy_leg2 = t65 * (t168 + 0.5 * t68);
-        let t174 = 0.8660254037844387 * minus_c_armcross_leg3;
-        let garm_vy_leg3 = t110 * (t174 - 0.5 * t131);
-        let t179 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg1 = t35 * t155;
+        let t169 = 0.8660254037844387 * c_armcross_leg2;
+        let garm_vy_leg2 = t66 * (t169 + 0.5 * t69);
+        let t175 = 0.8660254037844387 * minus_c_armcross_leg3;
+        let garm_vy_leg3 = t111 * (t175 - 0.5 * t132);
+        let t180 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vx_leg3 * garm_vy_leg3;
-        let t180 = t179 * t137;
-        let t187 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 - t179 * t180;
-        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
-        ::overact::guard::platform(t187, 14.869730172882846, "actuators")?;
-        let t188 = 1.0 / t187;
-        let t195 = garm_vy_leg1 * actuator_velocities[0]
+        let t181 = t180 * t138;
+        let t188 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 - t180 * t181;
+        ::overact::guard::platform(t188, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t188, 14.869730172882846, "actuators")?;
+        ::overact::guard::platform(t188, 14.869730172882846, "actuators")?;
+        let t189 = 1.0 / t188;
+        let t196 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
-            + garm_vy_leg3 * actuator_velocities[2] - t164 * t180;
+            + garm_vy_leg3 * actuator_velocities[2] - t165 * t181;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t65;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t66;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t110;
-        let t210 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t111;
+        let t211 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3;
-        let t211 = t210 * t137;
-        let t218 = t179 * t211
+        let t212 = t211 * t138;
+        let t219 = t180 * t212
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3);
-        let t219 = t218 * t188;
-        let t228 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t220 = t219 * t189;
+        let t229 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t210 * t211 - t218 * t219;
-        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
-        ::overact::guard::platform(t228, 34.855350201355726, "actuators")?;
-        let t229 = 1.0 / t228;
-        let t239 = t229
-            * (t164 * t211
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3 - t211 * t212 - t219 * t220;
+        ::overact::guard::platform(t229, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t229, 34.855350201355726, "actuators")?;
+        ::overact::guard::platform(t229, 34.855350201355726, "actuators")?;
+        let t230 = 1.0 / t229;
+        let t240 = t230
+            * (t165 * t212
                 - (minus_garm_vz_leg1 * actuator_velocities[0]
                     + minus_garm_vz_leg2 * actuator_velocities[1]
-                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t219 * t195);
-        let t241 = t188 * t195 - t219 * t239;
-        let t245 = t164 * t137 - t180 * t241 + t211 * t239;
-        let t249 = actuator_velocities[0] * t155 + s_armcross_leg1 * t245
-            + c_armcross_leg1 * t239;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t249;
-        let t251 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t252 = t22 * t251;
-        let t253 = t154 * t252;
-        let t254 = actuator_velocities[0] * actuator_velocities[0];
-        let rate_rod_leg1 = grod_vy_leg1 * t241;
-        let t258 = rate_rod_leg1 * rate_rod_leg1;
-        let t262 = pose[1] * t258;
+                    + minus_garm_vz_leg3 * actuator_velocities[2]) - t220 * t196);
+        let t242 = t189 * t196 - t220 * t240;
+        let t246 = t165 * t138 - t181 * t242 + t212 * t240;
+        let t250 = actuator_velocities[0] * t156 + s_armcross_leg1 * t246
+            + c_armcross_leg1 * t240;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t250;
+        let t252 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t253 = t22 * t252;
+        let t254 = t155 * t253;
+        let t255 = actuator_velocities[0] * actuator_velocities[0];
+        let rate_rod_leg1 = grod_vy_leg1 * t242;
+        let t259 = rate_rod_leg1 * rate_rod_leg1;
+        let t263 = pose[1] * t259;
         let rate_dot_arm_leg1 = t35
-            * (t155 * t254 + 0.56 * c_rod_leg1 * (t251 + t258) + t154 * t262);
-        let t266 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t268 = 0.24 * c_cross_leg2;
-        let t269 = actuator_velocities[1] * actuator_velocities[1];
-        let t272 = 0.8660254037844387 * t245;
-        let t273 = 0.5 * t241;
-        let t274 = t272 + t273;
-        let minus_rate_rod_leg2 = t67 * t274;
-        let t276 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t277 = 0.5 * s_armcross_leg2;
-        let t279 = 0.8660254037844387 * s_armcross_leg2;
-        let t284 = c_cross_leg2 * t64;
-        let t291 = t277 * t245 - t279 * t241 - c_armcross_leg2 * t239
-            - t284 * (t168 * t241 - t88 * t245 - s_armcross_leg2 * t239);
-        let t292 = t68 * t284;
-        let t294 = t291 - t292 * t274;
-        let rate_cross_leg2 = t67 * t294;
-        let t296 = rate_cross_leg2 * rate_cross_leg2;
-        let t299 = t268 * t269 + 0.56 * c_rod_leg2 * (t276 + t296);
-        let t300 = t50 * t276;
-        let rate_dot_arm_leg2 = t65 * (t299 + t68 * t300);
-        let t304 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t307 = 0.24 * c_cross_leg3;
-        let t308 = actuator_velocities[2] * actuator_velocities[2];
-        let t311 = t272 - t273;
-        let rate_rod_leg3 = t130 * t311;
-        let t313 = rate_rod_leg3 * rate_rod_leg3;
-        let t314 = 0.5 * s_armcross_leg3;
-        let t316 = 0.8660254037844387 * s_armcross_leg3;
-        let t321 = c_cross_leg3 * t109;
-        let t328 = t314 * t245 + t316 * t241 + minus_c_armcross_leg3 * t239
-            - t321 * (t128 * t245 + t174 * t241 - s_armcross_leg3 * t239);
-        let t329 = t131 * t321;
-        let t331 = t328 - t329 * t311;
-        let rate_cross_leg3 = t130 * t331;
-        let t333 = rate_cross_leg3 * rate_cross_leg3;
-        let t336 = t307 * t308 + 0.56 * c_rod_leg3 * (t313 + t333);
-        let t337 = t49 * t313;
-        let rate_dot_arm_leg3 = t110 * (t336 + t131 * t337);
-        let t341 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t348 = garm_vx_leg1 * t266 + garm_vx_leg2 * t304 + garm_vx_leg3 * t341;
-        let t350 = garm_vy_leg1 * t266 + garm_vy_leg2 * t304 + garm_vy_leg3 * t341
-            - t180 * t348;
-        let t361 = t229
-            * (t211 * t348
-                - (minus_garm_vz_leg1 * t266 + minus_garm_vz_leg2 * t304
-                    + minus_garm_vz_leg3 * t341) - t219 * t350);
-        let t363 = t188 * t350 - t219 * t361;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t363 + t262);
-        let t366 = t253 - rate_dot_rod_leg1;
-        let t371 = 0.24 * actuator_accelerations[0];
-        let t377 = t137 * t348 - t180 * t363 + t211 * t361;
-        let t381 = 0.24 * t254;
-        let t384 = pose[1] * minus_rate_cross_leg1 * rate_rod_leg1;
-        let t389 = 1.7857142857142858
-            * (c_cross_leg1 * t371 + s_armcross_leg1 * t377 + c_armcross_leg1 * t361
-                + s_cross_leg1 * t381 + t384 + t384);
-        let t392 = t142 - t381;
-        let t394 = t371 - t139;
-        let t396 = c_cross_leg1 * t392 + s_cross_leg1 * t394;
-        let t397 = c_rod_leg1 * t396;
-        let t402 = t253 + rate_dot_rod_leg1;
-        let t404 = t21 * t251;
-        let t408 = t154 * t389;
+            * (t156 * t255 + 0.56 * c_rod_leg1 * (t252 + t259) + t155 * t263);
+        let t267 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t269 = 0.24 * c_cross_leg2;
+        let t270 = actuator_velocities[1] * actuator_velocities[1];
+        let t273 = 0.8660254037844387 * t246;
+        let t274 = 0.5 * t242;
+        let t275 = t273 + t274;
+        let minus_rate_rod_leg2 = t68 * t275;
+        let t277 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t278 = 0.5 * s_armcross_leg2;
+        let t280 = 0.8660254037844387 * s_armcross_leg2;
+        let t285 = c_cross_leg2 * t65;
+        let t292 = t278 * t246 - t280 * t242 - c_armcross_leg2 * t240
+            - t285 * (t169 * t242 - t89 * t246 - s_armcross_leg2 * t240);
+        let t293 = t69 * t285;
+        let t295 = t292 - t293 * t275;
+        let rate_cross_leg2 = t68 * t295;
+        let t297 = rate_cross_leg2 * rate_cross_leg2;
+        let t300 = t269 * t270 + 0.56 * c_rod_leg2 * (t277 + t297);
+        let t301 = t51 * t277;
+        let rate_dot_arm_leg2 = t66 * (t300 + t69 * t301);
+        let t305 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t308 = 0.24 * c_cross_leg3;
+        let t309 = actuator_velocities[2] * actuator_velocities[2];
+        let t312 = t273 - t274;
+        let rate_rod_leg3 = t131 * t312;
+        let t314 = rate_rod_leg3 * rate_rod_leg3;
+        let t315 = 0.5 * s_armcross_leg3;
+        let t317 = 0.8660254037844387 * s_armcross_leg3;
+        let t322 = c_cross_leg3 * t110;
+        let t329 = t315 * t246 + t317 * t242 + minus_c_armcross_leg3 * t240
+            - t322 * (t129 * t246 + t175 * t242 - s_armcross_leg3 * t240);
+        let t330 = t132 * t322;
+        let t332 = t329 - t330 * t312;
+        let rate_cross_leg3 = t131 * t332;
+        let t334 = rate_cross_leg3 * rate_cross_leg3;
+        let t337 = t308 * t309 + 0.56 * c_rod_leg3 * (t314 + t334);
+        let t338 = t50 * t314;
+        let rate_dot_arm_leg3 = t111 * (t337 + t132 * t338);
+        let t342 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t349 = garm_vx_leg1 * t267 + garm_vx_leg2 * t305 + garm_vx_leg3 * t342;
+        let t351 = garm_vy_leg1 * t267 + garm_vy_leg2 * t305 + garm_vy_leg3 * t342
+            - t181 * t349;
+        let t362 = t230
+            * (t212 * t349
+                - (minus_garm_vz_leg1 * t267 + minus_garm_vz_leg2 * t305
+                    + minus_garm_vz_leg3 * t342) - t220 * t351);
+        let t364 = t189 * t351 - t220 * t362;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t364 + t263);
+        let t367 = t254 - rate_dot_rod_leg1;
+        let t372 = 0.24 * actuator_accelerations[0];
+        let t378 = t138 * t349 - t181 * t364 + t212 * t362;
+        let t382 = 0.24 * t255;
+        let t385 = pose[1] * minus_rate_cross_leg1 * rate_rod_leg1;
+        let t390 = 1.7857142857142858
+            * (c_cross_leg1 * t372 + s_armcross_leg1 * t378 + c_armcross_leg1 * t362
+                + s_cross_leg1 * t382 + t385 + t385);
+        let t393 = t143 - t382;
+        let t395 = t372 - t140;
+        let t397 = c_cross_leg1 * t393 + s_cross_leg1 * t395;
+        let t398 = c_rod_leg1 * t397;
+        let t403 = t254 + rate_dot_rod_leg1;
+        let t405 = t21 * t252;
+        let t409 = t155 * t390;
         let s_rod_leg1 = 1.7857142857142858 * pose[1];
-        let t412 = s_rod_leg1 * t396;
-        let t415 = t152 * t154
-            * (parameters[13] * t402 - (t404 + t258) * parameters[14]
-                + parameters[15] * t408 - parameters[16] * t412);
-        let t416 = t152
-            * (parameters[14] * t366 - (t252 + t258) * parameters[13]
-                - parameters[15] * t389 + parameters[16] * t397) - t415;
-        let t417 = 1.7857142857142858 * t384;
-        let t418 = t417 - t389;
-        let t419 = t417 + t418;
-        let t422 = rate_rod_leg1 * (1.7857142857142858 * t249);
-        let t423 = t408 + t422;
-        let t424 = t422 + t423;
-        let t431 = c_cross_leg1 * t394 - s_cross_leg1 * t392;
-        let t436 = t151 + t416
-            + t155
-                * (parameters[13] * t419 + parameters[14] * t424 + t251 * parameters[15]
-                    + parameters[16] * t431);
+        let t413 = s_rod_leg1 * t397;
+        let t416 = t153 * t155
+            * (parameters[13] * t403 - (t405 + t259) * parameters[14]
+                + parameters[15] * t409 - parameters[16] * t413);
+        let t417 = t153
+            * (parameters[14] * t367 - (t253 + t259) * parameters[13]
+                - parameters[15] * t390 + parameters[16] * t398) - t416;
+        let t418 = 1.7857142857142858 * t385;
+        let t419 = t418 - t390;
+        let t420 = t418 + t419;
+        let t423 = rate_rod_leg1 * (1.7857142857142858 * t250);
+        let t424 = t409 + t423;
+        let t425 = t423 + t424;
+        let t432 = c_cross_leg1 * t395 - s_cross_leg1 * t393;
+        let t437 = t152 + t417
+            + t156
+                * (parameters[13] * t420 + parameters[14] * t425 + t252 * parameters[15]
+                    + parameters[16] * t432);
         let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t34);
-        let t449 = parameters[8] * t419 - parameters[7] * t423 + parameters[9] * t402
-            + t422 * parameters[10] + parameters[11] * (t252 - t258);
-        let t466 = parameters[9] * (t258 - t404)
-            - (t417 * parameters[7] + parameters[8] * t424) + parameters[10] * t418
-            - parameters[11] * t366;
-        let t474 = s_rod_leg1
-            * (t449 - t422 * parameters[12] - parameters[14] * t431
-                + parameters[15] * t412)
+        let t450 = parameters[8] * t420 - parameters[7] * t424 + parameters[9] * t403
+            + t423 * parameters[10] + parameters[11] * (t253 - t259);
+        let t467 = parameters[9] * (t259 - t405)
+            - (t418 * parameters[7] + parameters[8] * t425) + parameters[10] * t419
+            - parameters[11] * t367;
+        let t475 = s_rod_leg1
+            * (t450 - t423 * parameters[12] - parameters[14] * t432
+                + parameters[15] * t413)
             + c_rod_leg1
-                * (t466 + t417 * parameters[12] + parameters[13] * t431
-                    + parameters[15] * t397);
-        let t478 = 9.81 * c_arm_leg2;
-        let t481 = 9.81 * minus_s_arm_leg2;
-        let t490 = actuator_accelerations[1] * parameters[17] - t478 * parameters[18]
-            - t481 * parameters[19] + actuator_accelerations[1] * parameters[20]
+                * (t467 + t418 * parameters[12] + parameters[13] * t432
+                    + parameters[15] * t398);
+        let t479 = 9.81 * c_arm_leg2;
+        let t482 = 9.81 * minus_s_arm_leg2;
+        let t491 = actuator_accelerations[1] * parameters[17] - t479 * parameters[18]
+            - t482 * parameters[19] + actuator_accelerations[1] * parameters[20]
             + actuator_velocities[1] * parameters[21]
             + ::overact::math::signed(parameters[22], actuator_velocities[1])
             + parameters[23];
-        let t491 = 0.8928571428571429 * t58;
-        let t492 = 0.8660254037844387 * t377;
-        let t493 = 0.5 * t363;
-        let t495 = t492 + t493 + t300;
-        let minus_rate_dot_rod_leg2 = t67 * t495;
-        let t497 = t60 * t296;
-        let t498 = t68 * t497;
-        let t499 = minus_rate_dot_rod_leg2 - t498;
-        let t509 = 0.24 * t269;
-        let t512 = minus_rate_rod_leg2 * (t50 * rate_cross_leg2);
-        let t523 = t277 * t377 - t279 * t363 - c_armcross_leg2 * t361
-            - (s_cross_leg2 * t509 - t512 - t512)
-            - t284 * (t168 * t363 - t88 * t377 - s_armcross_leg2 * t361 + t299);
-        let t526 = 1.7857142857142858 * (t523 - t292 * t495);
-        let t529 = t481 - t509;
-        let t532 = 0.24 * actuator_accelerations[1] - t478;
-        let t534 = c_cross_leg2 * t529 + s_cross_leg2 * t532;
-        let t535 = c_rod_leg2 * t534;
-        let t540 = t68 * t526;
-        let t542 = t498 + minus_rate_dot_rod_leg2;
-        let t544 = t59 * t296;
-        let minus_s_rod_leg2 = 1.7857142857142858 * t50;
-        let t550 = minus_s_rod_leg2 * t534;
-        let t553 = t68 * t491
-            * (parameters[32] * t540
-                - (parameters[30] * t542 + (t544 + t276) * parameters[31])
+        let t492 = 0.8928571428571429 * t61;
+        let t493 = 0.8660254037844387 * t378;
+        let t494 = 0.5 * t364;
+        let t496 = t493 + t494 + t301;
+        let minus_rate_dot_rod_leg2 = t68 * t496;
+        let t498 = t54 * t297;
+        let t499 = t69 * t498;
+        let t500 = minus_rate_dot_rod_leg2 - t499;
+        let t510 = 0.24 * t270;
+        let t513 = minus_rate_rod_leg2 * (t51 * rate_cross_leg2);
+        let t524 = t278 * t378 - t280 * t364 - c_armcross_leg2 * t362
+            - (s_cross_leg2 * t510 - t513 - t513)
+            - t285 * (t169 * t364 - t89 * t378 - s_armcross_leg2 * t362 + t300);
+        let t527 = 1.7857142857142858 * (t524 - t293 * t496);
+        let t530 = t482 - t510;
+        let t533 = 0.24 * actuator_accelerations[1] - t479;
+        let t535 = c_cross_leg2 * t530 + s_cross_leg2 * t533;
+        let t536 = c_rod_leg2 * t535;
+        let t541 = t69 * t527;
+        let t543 = t499 + minus_rate_dot_rod_leg2;
+        let t545 = t53 * t297;
+        let t550 = minus_s_rod_leg2 * t535;
+        let t553 = t69 * t492
+            * (parameters[32] * t541
+                - (parameters[30] * t543 + (t545 + t277) * parameters[31])
                 + parameters[33] * t550);
-        let t554 = t491
-            * (parameters[31] * t499 - (t497 + t276) * parameters[30]
-                + parameters[32] * t526 + parameters[33] * t535) + t553;
-        let t555 = 1.7857142857142858 * t512;
-        let t556 = t526 - t555;
+        let t554 = t492
+            * (parameters[31] * t500 - (t498 + t277) * parameters[30]
+                + parameters[32] * t527 + parameters[33] * t536) + t553;
+        let t555 = 1.7857142857142858 * t513;
+        let t556 = t527 - t555;
         let t557 = t555 - t556;
-        let t560 = minus_rate_rod_leg2 * (1.7857142857142858 * t294);
-        let t561 = t540 + t560;
+        let t560 = minus_rate_rod_leg2 * (1.7857142857142858 * t295);
+        let t561 = t541 + t560;
         let t562 = t560 + t561;
-        let t569 = c_cross_leg2 * t532 - s_cross_leg2 * t529;
-        let t574 = t490 + t554
-            - t268
-                * (parameters[30] * t557 - parameters[31] * t562 - t296 * parameters[32]
+        let t569 = c_cross_leg2 * t533 - s_cross_leg2 * t530;
+        let t574 = t491 + t554
+            - t269
+                * (parameters[30] * t557 - parameters[31] * t562 - t297 * parameters[32]
                     - parameters[33] * t569);
-        let gcross_vx_leg2 = t67 * (t88 * t284 + t277 - 0.8660254037844387 * t292);
+        let gcross_vx_leg2 = t68 * (t89 * t285 + t278 - 0.8660254037844387 * t293);
         let t590 = t555 * parameters[24] - parameters[25] * t562
-            + parameters[26] * (t276 - t544) + parameters[27] * t556
-            - parameters[28] * t499;
+            + parameters[26] * (t277 - t545) + parameters[27] * t556
+            - parameters[28] * t500;
         let t607 = t560 * parameters[27]
-            - (parameters[24] * t561 + parameters[25] * t557 + parameters[26] * t542)
-            + parameters[28] * (t497 - t276);
+            - (parameters[24] * t561 + parameters[25] * t557 + parameters[26] * t543)
+            + parameters[28] * (t498 - t277);
         let t615 = c_rod_leg2
             * (t590 - t555 * parameters[29] + parameters[30] * t569
-                + parameters[32] * t535)
+                + parameters[32] * t536)
             - minus_s_rod_leg2
                 * (t607 - t560 * parameters[29] - parameters[31] * t569
                     - parameters[32] * t550);
-        let minus_grod_vx_leg2 = 1.5464739353293548 * t66;
-        let t628 = t498 * parameters[24] + parameters[25] * (t544 - t497)
-            - parameters[26] * t540 - t498 * parameters[27] + parameters[28] * t526;
+        let minus_grod_vx_leg2 = 1.5464739353293548 * t67;
+        let t628 = t499 * parameters[24] + parameters[25] * (t545 - t498)
+            - parameters[26] * t541 - t499 * parameters[27] + parameters[28] * t527;
         let t634 = t628 - parameters[29] * minus_rate_dot_rod_leg2
-            + parameters[30] * t550 - parameters[31] * t535;
+            + parameters[30] * t550 - parameters[31] * t536;
         let t639 = 9.81 * minus_c_arm_leg3;
         let t642 = 9.81 * s_arm_leg3;
         let t651 = actuator_accelerations[2] * parameters[34] + t639 * parameters[35]
@@ -8405,49 +8509,49 @@ impl Delta {
             + actuator_velocities[2] * parameters[38]
             + ::overact::math::signed(parameters[39], actuator_velocities[2])
             + parameters[40];
-        let t652 = 0.8928571428571429 * t103;
-        let t653 = t105 * t333;
-        let t654 = t131 * t653;
-        let t656 = t492 - t493 + t337;
-        let rate_dot_rod_leg3 = t130 * t656;
+        let t652 = 0.8928571428571429 * t104;
+        let t653 = t106 * t334;
+        let t654 = t132 * t653;
+        let t656 = t493 - t494 + t338;
+        let rate_dot_rod_leg3 = t131 * t656;
         let t658 = t654 - rate_dot_rod_leg3;
-        let t668 = 0.24 * t308;
-        let t671 = rate_rod_leg3 * (t49 * rate_cross_leg3);
-        let t682 = t314 * t377 + t316 * t363 + minus_c_armcross_leg3 * t361
+        let t668 = 0.24 * t309;
+        let t671 = rate_rod_leg3 * (t50 * rate_cross_leg3);
+        let t682 = t315 * t378 + t317 * t364 + minus_c_armcross_leg3 * t362
             - (s_cross_leg3 * t668 - t671 - t671)
-            - t321 * (t128 * t377 + t174 * t363 - s_armcross_leg3 * t361 + t336);
-        let t685 = 1.7857142857142858 * (t682 - t329 * t656);
+            - t322 * (t129 * t378 + t175 * t364 - s_armcross_leg3 * t362 + t337);
+        let t685 = 1.7857142857142858 * (t682 - t330 * t656);
         let t689 = t639 + 0.24 * actuator_accelerations[2];
         let t691 = t642 + t668;
         let t693 = s_cross_leg3 * t689 - c_cross_leg3 * t691;
         let t694 = c_rod_leg3 * t693;
         let t699 = t654 + rate_dot_rod_leg3;
-        let t701 = t104 * t333;
-        let t705 = t131 * t685;
-        let s_rod_leg3 = 1.7857142857142858 * t49;
+        let t701 = t105 * t334;
+        let t705 = t132 * t685;
+        let s_rod_leg3 = 1.7857142857142858 * t50;
         let t709 = s_rod_leg3 * t693;
-        let t712 = t131 * t652
-            * (parameters[47] * t699 - (t701 + t313) * parameters[48]
+        let t712 = t132 * t652
+            * (parameters[47] * t699 - (t701 + t314) * parameters[48]
                 - parameters[49] * t705 - parameters[50] * t709);
         let t713 = t652
-            * (parameters[48] * t658 - (t653 + t313) * parameters[47]
+            * (parameters[48] * t658 - (t653 + t314) * parameters[47]
                 + parameters[49] * t685 + parameters[50] * t694) - t712;
         let t714 = 1.7857142857142858 * t671;
         let t715 = t685 - t714;
         let t716 = t714 - t715;
-        let t719 = rate_rod_leg3 * (1.7857142857142858 * t331);
+        let t719 = rate_rod_leg3 * (1.7857142857142858 * t332);
         let t720 = t705 + t719;
         let t721 = t719 + t720;
         let t728 = s_cross_leg3 * t691 + c_cross_leg3 * t689;
         let t733 = t651 + t713
-            - t307
-                * (parameters[47] * t716 + parameters[48] * t721 - t333 * parameters[49]
+            - t308
+                * (parameters[47] * t716 + parameters[48] * t721 - t334 * parameters[49]
                     - parameters[50] * t728);
-        let gcross_vx_leg3 = t130 * (t314 - t128 * t321 - 0.8660254037844387 * t329);
+        let gcross_vx_leg3 = t131 * (t315 - t129 * t322 - 0.8660254037844387 * t330);
         let t749 = parameters[41] * t720 - parameters[42] * t716 + parameters[43] * t699
-            - t719 * parameters[44] + parameters[45] * (t653 - t313);
+            - t719 * parameters[44] + parameters[45] * (t653 - t314);
         let t766 = t714 * parameters[41] + parameters[42] * t721
-            + parameters[43] * (t313 - t701) + parameters[44] * t715
+            + parameters[43] * (t314 - t701) + parameters[44] * t715
             - parameters[45] * t658;
         let t774 = s_rod_leg3
             * (t749 + t719 * parameters[46] - parameters[48] * t728
@@ -8455,42 +8559,42 @@ impl Delta {
             + c_rod_leg3
                 * (t766 - t714 * parameters[46] + parameters[47] * t728
                     + parameters[49] * t694);
-        let grod_vx_leg3 = 1.5464739353293548 * t129;
+        let grod_vx_leg3 = 1.5464739353293548 * t130;
         let t787 = parameters[42] * (t701 - t653) - t654 * parameters[41]
             + parameters[43] * t705 + t654 * parameters[44] + parameters[45] * t685;
         let t793 = t787 + parameters[46] * rate_dot_rod_leg3 - parameters[47] * t709
             - parameters[48] * t694;
-        let t796 = garm_vx_leg1 * t436 - minus_gcross_vx_leg1 * t474
+        let t796 = garm_vx_leg1 * t437 - minus_gcross_vx_leg1 * t475
             + garm_vx_leg2 * t574 + gcross_vx_leg2 * t615 - minus_grod_vx_leg2 * t634
             + garm_vx_leg3 * t733 + gcross_vx_leg3 * t774 + grod_vx_leg3 * t793;
-        let t800 = t796 + t377 * parameters[51] + t377 * parameters[52];
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t155 * garm_vy_leg1);
-        let t816 = parameters[8] * (t404 - t252) - t253 * parameters[7]
-            - parameters[9] * t408 + t253 * parameters[10] - parameters[11] * t389;
-        let t824 = garm_vy_leg1 * t436 - minus_gcross_vy_leg1 * t474
+        let t800 = t796 + t378 * parameters[51] + t378 * parameters[52];
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t156 * garm_vy_leg1);
+        let t816 = parameters[8] * (t405 - t253) - t254 * parameters[7]
+            - parameters[9] * t409 + t254 * parameters[10] - parameters[11] * t390;
+        let t824 = garm_vy_leg1 * t437 - minus_gcross_vy_leg1 * t475
             + grod_vy_leg1
-                * (t816 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t412
-                    - parameters[14] * t397);
-        let minus_gcross_vy_leg2 = t67 * (t168 * t284 + t279 + 0.5 * t292);
-        let minus_grod_vy_leg2 = 0.8928571428571429 * t66;
-        let gcross_vy_leg3 = t130 * (t316 - t174 * t321 + 0.5 * t329);
-        let minus_grod_vy_leg3 = 0.8928571428571429 * t129;
+                * (t816 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t413
+                    - parameters[14] * t398);
+        let minus_gcross_vy_leg2 = t68 * (t169 * t285 + t280 + 0.5 * t293);
+        let minus_grod_vy_leg2 = 0.8928571428571429 * t67;
+        let gcross_vy_leg3 = t131 * (t317 - t175 * t322 + 0.5 * t330);
+        let minus_grod_vy_leg3 = 0.8928571428571429 * t130;
         let t848 = t824 + garm_vy_leg2 * t574 - minus_gcross_vy_leg2 * t615
             - minus_grod_vy_leg2 * t634 + garm_vy_leg3 * t733 + gcross_vy_leg3 * t774
             - minus_grod_vy_leg3 * t793;
-        let t854 = t848 + t363 * parameters[51] + t363 * parameters[52] - t180 * t800;
-        let minus_gcross_vz_leg2 = t67 * (t64 * minus_s_arm_leg2);
+        let t854 = t848 + t364 * parameters[51] + t364 * parameters[52] - t181 * t800;
+        let minus_gcross_vz_leg2 = t68 * (t65 * minus_s_arm_leg2);
         let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t34);
-        let gcross_vz_leg3 = t130 * (t109 * s_arm_leg3);
+        let gcross_vz_leg3 = t131 * (t110 * s_arm_leg3);
         let t872 = gcross_vz_leg3 * t774 - minus_garm_vz_leg3 * t733
             - (minus_gcross_vz_leg2 * t615 + minus_garm_vz_leg2 * t574
-                + minus_garm_vz_leg1 * t436 + minus_gcross_vz_leg1 * t474);
-        let t873 = t361 + 9.81;
-        let t882 = t229
-            * (t872 + parameters[51] * t873 + parameters[52] * t873 + t211 * t800
-                - t219 * t854);
-        let t884 = t188 * t854 - t219 * t882;
-        let t888 = t137 * t800 - t180 * t884 + t211 * t882;
+                + minus_garm_vz_leg1 * t437 + minus_gcross_vz_leg1 * t475);
+        let t873 = t362 + 9.81;
+        let t882 = t230
+            * (t872 + parameters[51] * t873 + parameters[52] * t873 + t212 * t800
+                - t220 * t854);
+        let t884 = t189 * t854 - t220 * t882;
+        let t888 = t138 * t800 - t181 * t884 + t212 * t882;
         Ok([
             garm_vx_leg1 * t888 + garm_vy_leg1 * t884 - minus_garm_vz_leg1 * t882,
             garm_vx_leg2 * t888 + garm_vy_leg2 * t884 - minus_garm_vz_leg2 * t882,

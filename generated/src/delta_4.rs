@@ -1817,7 +1817,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 792 operations (240 additions, 518 multiplications, 34 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 628 intermediates.
+    /// 816 operations (247 additions, 540 multiplications, 29 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 652 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1827,507 +1827,524 @@ impl Delta4 {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = 0.4 * t1;
-        let t4 = pose[2] * pose[2];
-        let t5 = t1 * t1 + t4;
-        let t7 = pose[1] * pose[1] + -0.2809;
-        let t8 = t5 + t7;
-        let t9 = t8 + 0.04;
-        let t11 = 0.4 * pose[2];
-        let t12 = 0.16 * t5;
-        let t14 = t12 - t9 * t9;
-        ::overact::guard::reach(t14, "leg1")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
+        let t3 = pose[2] * pose[2];
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.16 * t4;
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t9 = pose[1] * pose[1] + -0.2809;
+        let t10 = t4 + t9;
+        let t11 = t10 + 0.04;
+        let t13 = 0.4 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t9));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t23 = 0.53 * c_rod_leg1;
-        let t24 = 0.4 * t23;
-        let c_cross_leg1 = (t8 + -0.04) / t24;
-        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let s_cross_leg1 = t15 / t24;
+        let t24 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.04) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t34 = 5.0 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 5.0 * t34;
+        let garm_vx_leg1 = c_armcross_leg1 * t35;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let grod_vy_leg1 = 0.4 / t24;
-        let t46 = pose[1] * grod_vy_leg1;
-        let t47 = t46 * twist[1];
-        let t48 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t47;
-        let rate_arm_leg1 = t34 * t48;
-        let t50 = 0.2 * c_cross_leg1;
-        let t51 = t50 * rate_arm_leg1;
-        let t56 = t51 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t56;
-        let t58 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t43 = 0.2 * c_cross_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
+        let t48 = pose[1] * grod_vy_leg1;
+        let t49 = t48 * twist[1];
+        let t50 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t49;
+        let rate_arm_leg1 = t35 * t50;
+        let t52 = rate_arm_leg1 * rate_arm_leg1;
+        let t54 = grod_vy_leg1 * t9;
+        let t59 = t43 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t59;
+        let t61 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t60 = rate_rod_leg1 * rate_rod_leg1;
-        let t66 = acceleration[1] + t47 * rate_rod_leg1;
-        let t67 = t46 * t66;
-        let rate_dot_arm_leg1 = t34
+        let t63 = rate_rod_leg1 * rate_rod_leg1;
+        let t69 = acceleration[1] + pose[1] * t63;
+        let t70 = t48 * t69;
+        let rate_dot_arm_leg1 = t35
             * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-                + rate_arm_leg1 * t51 + t23 * (t58 + t60) + t67);
-        let t70 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t34 * t46;
-        let t72 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
-        let t74 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
-        let t75 = 9.81 * c_arm_leg1;
-        let t79 = 9.81 * minus_s_arm_leg1;
-        let t89 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t89;
-        let t92 = rate_rod_leg1 * (1.8867924528301887 * t56);
+                + t43 * t52 - t54 * (t61 + t63) + t70);
+        let t73 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t35 * t48;
+        let t75 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
+        let t77 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t78 = 9.81 * c_arm_leg1;
+        let t82 = 9.81 * minus_s_arm_leg1;
+        let t92 = t34 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t92;
+        let t95 = rate_rod_leg1 * (1.8867924528301887 * t59);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t98 = t48 * rate_arm_leg1;
-        let t99 = t47 * minus_rate_cross_leg1;
+        let t97 = 0.2 * rate_dot_arm_leg1;
+        let t103 = t49 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t50 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-                + c_armcross_leg1 * acceleration[2] + t98 + t99 + t99);
-        let t105 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t107 = t92 + t105 + t92;
-        let t108 = c_rod_leg1 * t107;
-        let t109 = t46 * t108;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t50 * garm_vy_leg1);
-        let t114 = t58 * s_rod_leg1;
-        let t115 = c_rod_leg1 * t114;
-        let t116 = grod_vy_leg1 * t115;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t89;
-        let t120 = t109 - minus_rate_dot_cross_leg1;
-        let t122 = t46 * t120 - t108;
-        let t124 = t46 * t115;
-        let t125 = t60 - t124;
-        let t126 = t58 + t125;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t66;
-        let t135 = s_rod_leg1 * (t115 + rate_dot_rod_leg1);
-        let t137 = t135 + c_rod_leg1 * t125;
-        let t147 = 1.8867924528301887 * acceleration[1];
-        let t153 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t156 = 0.2 * s_cross_leg1;
-        let t161 = t50 * (t120 / c_rod_leg1) - (c_rod_leg1 * t156 * t126 + t135 * t156);
-        let t164 = 0.2 * rate_dot_arm_leg1 - t75;
-        let t167 = t79 - t98 / s_cross_leg1;
-        let t169 = c_cross_leg1 * t164 - s_cross_leg1 * t167;
-        let t170 = c_rod_leg1 * t169;
-        let t174 = 0.2 * t164;
-        let t175 = garm_vy_leg1 * t174;
-        let t184 = t50 * t107 - t156 * (t147 - t114);
-        let t186 = s_rod_leg1 * t169;
-        let t194 = c_cross_leg1 * t167 + s_cross_leg1 * t164;
-        let t202 = t50 * t58 - minus_rate_dot_cross_leg1 * t156;
-        let t215 = pose[1] + 0.05 - 0.2;
-        let t217 = t215 * t215 + t4;
-        let t218 = 0.16 * t217;
-        let t220 = 0.2809 - pose[0] * pose[0];
-        let t221 = t217 - t220;
-        let t222 = t221 + 0.04;
-        let t224 = t218 - t222 * t222;
-        ::overact::guard::reach(t224, "leg2")?;
-        let t225 = ::overact::math::sqrt(t224);
-        let t226 = 3.5599857600569598 * t220;
-        ::overact::guard::reach(t226, "leg2")?;
-        ::overact::guard::reach(t226, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t226);
+            * (c_cross_leg1 * t97 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t50 * rate_arm_leg1 + t103 + t103);
+        let t109 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t111 = t95 + t109 + t95;
+        let t112 = c_rod_leg1 * t111;
+        let t113 = t48 * t112;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t43 * garm_vy_leg1);
+        let t118 = pose[1] * t61;
+        let t119 = 3.5599857600569598 * t118;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t92;
+        let t123 = t113 - minus_rate_dot_cross_leg1;
+        let t125 = t48 * t123 - t112;
+        let t127 = pose[1] * t118;
+        let t135 = t54 * t119;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t69;
+        let t139 = 3.5599857600569598 * t127;
+        let t142 = s_rod_leg1 * (rate_dot_rod_leg1 - t135) + c_rod_leg1 * (t63 - t139);
+        let t148 = minus_gcross_vx_leg1 * t123;
+        let t150 = t119 - minus_gcross_vy_leg1 * t123;
+        let t151 = minus_gcross_vz_leg1 * t123;
+        let t152 = 1.8867924528301887 * acceleration[1];
+        let t158 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t159 = 1.8867924528301887 * acceleration[0];
+        let t160 = t97 - t78;
+        let t161 = 0.2 * t160;
+        let t162 = garm_vx_leg1 * t161;
+        let t168 = garm_vy_leg1 * t161;
+        let t176 = acceleration[2] + 9.81;
+        let t177 = 1.8867924528301887 * t176;
+        let t178 = minus_garm_vz_leg1 * t161;
+        let t184 = 0.9433962264150944 * t16;
+        let t192 = t48 * t184 * (t139 + t63) - t184 * (t135 + rate_dot_rod_leg1)
+            + t43 * t111;
+        let t196 = t82 - 0.2 * t52;
+        let t199 = s_rod_leg1 * (c_cross_leg1 * t160 - s_cross_leg1 * t196);
+        let t207 = c_cross_leg1 * t196 + s_cross_leg1 * t160;
+        let t216 = t43 * t61 - minus_rate_dot_cross_leg1 * (0.2 * s_cross_leg1);
+        let t227 = pose[1] + 0.05 - 0.2;
+        let t228 = t227 * t227;
+        let t230 = 0.16 * (t228 + t3);
+        let t231 = pose[0] * pose[0];
+        let t234 = t231 + t228 + t3 - 0.2809;
+        let t235 = t234 + 0.04;
+        let t237 = t230 - t235 * t235;
+        ::overact::guard::reach(t237, "leg2")?;
+        let t238 = ::overact::math::sqrt(t237);
+        let t240 = 3.5599857600569598 * t231;
+        let t241 = 1.0 - t240;
+        ::overact::guard::reach(t241, "leg2")?;
+        ::overact::guard::reach(t241, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t241);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t228 = 0.53 * c_rod_leg2;
-        let t229 = 0.4 * t228;
-        let s_cross_leg2 = t225 / t229;
+        let t243 = 0.212 * c_rod_leg2;
+        let t244 = 2.5 * t243;
+        let s_cross_leg2 = 2.5 * t238 / t244;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t231 = 5.0 / s_cross_leg2;
-        let minus_grod_vx_leg2 = 0.4 / t229;
-        let t233 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t231 * t233;
-        let t235 = 0.4 * t215;
-        let c_arm_leg2 = (t235 * t222 - t11 * t225) / t218;
-        let c_cross_leg2 = (-0.04 + t221) / t229;
-        let minus_s_arm_leg2 = (t11 * t222 + t235 * t225) / t218;
+        let t246 = 1.0 / s_cross_leg2;
+        let t247 = 5.0 * t246;
+        let minus_grod_vx_leg2 = 1.0 / t244;
+        let t249 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t247 * t249;
+        let t251 = 0.4 * t227;
+        let c_arm_leg2 = (t251 * t235 - t13 * t238) / t230;
+        let c_cross_leg2 = (-0.04 + t234) / t243;
+        let minus_s_arm_leg2 = (t13 * t235 + t251 * t238) / t230;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t258 = t233 * twist[0];
-        let t259 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t258;
-        let rate_arm_leg2 = t231 * t259;
-        let t261 = 0.2 * c_cross_leg2;
-        let t262 = t261 * rate_arm_leg2;
+        let t274 = t249 * twist[0];
+        let t275 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t274;
+        let rate_arm_leg2 = t247 * t275;
+        let t277 = t275 * rate_arm_leg2;
+        let t278 = t277 / s_cross_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t265 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t269 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2] + t262;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t269;
-        let t271 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t272 = t265 + t271;
-        let t277 = acceleration[0] + pose[0] * t265;
-        let t278 = t233 * t277;
-        let rate_dot_arm_leg2 = t231
+        let t281 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t285 = 0.2 * c_cross_leg2;
+        let t287 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t285 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t287;
+        let t289 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t295 = acceleration[0] + pose[0] * t281;
+        let t296 = t249 * t295;
+        let rate_dot_arm_leg2 = t247
             * (c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-                + rate_arm_leg2 * t262 + t228 * t272 + t278);
-        let t281 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t231;
-        let t283 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t231;
-        let t285 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let t286 = 9.81 * c_arm_leg2;
-        let t290 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t261 * garm_vx_leg2);
-        let t303 = minus_rate_rod_leg2 * (1.8867924528301887 * t269);
-        let t307 = t259 * rate_arm_leg2;
-        let t308 = t258 * minus_rate_cross_leg2;
+                + c_cross_leg2 * t278 + t244 * (t281 + t289) + t296);
+        let t299 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t247;
+        let t301 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t247;
+        let t303 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let t304 = 9.81 * c_arm_leg2;
+        let t308 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t285 * garm_vx_leg2);
+        let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
+        let t322 = minus_rate_rod_leg2 * (1.8867924528301887 * t287);
+        let t326 = t274 * minus_rate_cross_leg2;
+        let t330 = 0.2 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
             * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + t307 + t308 + t308 + t261 * rate_dot_arm_leg2);
-        let t315 = 1.8867924528301887 * minus_rate_dot_cross_leg2;
-        let t316 = pose[0] * t315;
-        let t318 = t303 + t316 + t303;
-        let t319 = c_rod_leg2 * t318;
-        let t320 = t233 * t319;
-        let t322 = t226 * t271;
-        let t323 = t233 * t322;
-        let t324 = minus_grod_vx_leg2 * t323;
-        let t326 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t326;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t326;
-        let t331 = t320 - minus_rate_dot_cross_leg2;
-        let t333 = t319 - t233 * t331;
-        let t335 = t322 + t265;
-        let t336 = t272 - t322;
-        let t342 = 0.2 * s_cross_leg2;
-        let t343 = c_rod_leg2 * t342;
-        let t344 = t233 * t343;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t277;
-        let t347 = t344 * (t323 + minus_rate_dot_rod_leg2);
-        let t351 = t231 * t347 + c_rod_leg2 * (t335 - t271);
-        let t361 = 1.8867924528301887 * acceleration[0];
-        let t366 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t371 = t261 * (t331 / c_rod_leg2) - (t343 * t335 + t347);
-        let t374 = 0.2 * rate_dot_arm_leg2 - t286;
-        let t375 = 0.2 * t374;
-        let t376 = garm_vx_leg2 * t375;
-        let t382 = t290 - t307 / s_cross_leg2;
-        let t385 = c_rod_leg2 * (c_cross_leg2 * t374 - s_cross_leg2 * t382);
-        let t396 = t343 * (minus_rate_dot_rod_leg2 - t323) - t344 * t336 - t261 * t318;
-        let t398 = t233 * t385;
-        let t403 = c_cross_leg2 * t382 + s_cross_leg2 * t374;
-        let t414 = t261 * t271 - minus_rate_dot_cross_leg2 * t342;
-        let t427 = pose[0] - 0.05 + 0.2;
-        let t428 = 0.4 * t427;
-        let t430 = t427 * t427 + t4;
-        let t431 = t430 + t7;
-        let t432 = t431 + 0.04;
-        let t434 = 0.16 * t430;
-        let t436 = t434 - t432 * t432;
-        ::overact::guard::reach(t436, "leg3")?;
-        let t437 = ::overact::math::sqrt(t436);
-        let minus_c_arm_leg3 = (t428 * t432 + t11 * t437) / t434;
-        let c_cross_leg3 = (-0.04 + t431) / t24;
-        let s_arm_leg3 = (t428 * t437 - t11 * t432) / t434;
-        let s_cross_leg3 = t437 / t24;
+                + t277 + t326 + t326 + c_cross_leg2 * t330);
+        let t334 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t336 = t322 + t334 + t322;
+        let t337 = minus_s_rod_leg2 * t336;
+        let t339 = t241 * t249;
+        let t340 = t289 * t339;
+        let t341 = t340 / t244;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * (t246 * minus_grod_vx_leg2);
+        let gcross_vz_leg2 = minus_grod_vx_leg2
+            * (t285 * minus_garm_vz_leg2 - c_armcross_leg2);
+        let t351 = t337 - minus_rate_dot_cross_leg2;
+        let t353 = c_rod_leg2 * t336 - t249 * t351;
+        let t355 = 0.2809 - t231;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t295;
+        let t366 = t240 * t289;
+        let t369 = minus_s_rod_leg2 * (t340 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t281 - t366);
+        let t376 = t341 - minus_gcross_vx_leg2 * t351;
+        let t377 = minus_gcross_vy_leg2 * t351;
+        let t378 = gcross_vz_leg2 * t351;
+        let t384 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t385 = t330 - t304;
+        let t386 = 0.2 * t385;
+        let t387 = garm_vx_leg2 * t386;
+        let t395 = garm_vy_leg2 * t386;
+        let t402 = minus_garm_vz_leg2 * t386;
+        let t410 = 0.2 * s_cross_leg2;
+        let t416 = 0.9433962264150944 * t238 * (minus_rate_dot_rod_leg2 - t340)
+            - minus_s_rod_leg2 * t410 * (t366 + t281) - t285 * t336;
+        let t419 = t308 - t278;
+        let t422 = minus_s_rod_leg2 * (c_cross_leg2 * t385 - s_cross_leg2 * t419);
+        let t427 = c_cross_leg2 * t419 + s_cross_leg2 * t385;
+        let t438 = t285 * t289 - minus_rate_dot_cross_leg2 * t410;
+        let t449 = pose[0] - 0.05 + 0.2;
+        let t451 = t449 * t449 + t3;
+        let t452 = 0.16 * t451;
+        let t453 = 1.0 / t452;
+        let t454 = 0.4 * t449;
+        let t455 = t451 + t9;
+        let t456 = t455 + 0.04;
+        let t459 = t452 - t456 * t456;
+        ::overact::guard::reach(t459, "leg3")?;
+        let t460 = ::overact::math::sqrt(t459);
+        let minus_c_arm_leg3 = t453 * (t454 * t456 + t13 * t460);
+        let c_cross_leg3 = (-0.04 + t455) / t24;
+        let s_arm_leg3 = t453 * (t454 * t460 - t13 * t456);
+        let s_cross_leg3 = t460 / t24;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t451 = 5.0 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t451;
+        let t474 = 1.0 / s_cross_leg3;
+        let t475 = 5.0 * t474;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t475;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t462 = minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t47;
-        let rate_arm_leg3 = t451 * t462;
-        let t464 = t462 * rate_arm_leg3;
-        let t465 = t464 / s_cross_leg3;
-        let t470 = 0.2 * c_cross_leg3;
-        let t472 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
-            - t470 * rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t472;
-        let t474 = rate_cross_leg3 * rate_cross_leg3;
-        let t475 = t60 + t474;
-        let rate_dot_arm_leg3 = t451
+        let t483 = 0.2 * c_cross_leg3;
+        let rate_arm_leg3 = t475
+            * (minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t49);
+        let t489 = rate_arm_leg3 * rate_arm_leg3;
+        let t495 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
+            - t483 * rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t495;
+        let t497 = rate_cross_leg3 * rate_cross_leg3;
+        let t498 = t63 + t497;
+        let rate_dot_arm_leg3 = t475
             * (minus_c_armcross_leg3 * acceleration[0]
-                - s_armcross_leg3 * acceleration[2] + c_cross_leg3 * t465 + t23 * t475
-                + t67);
-        let t481 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t46 * t451;
-        let t483 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t451;
-        let t485 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t486 = 9.81 * minus_c_arm_leg3;
-        let t490 = 9.81 * s_arm_leg3;
-        let t500 = grod_vy_leg1 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t500;
-        let t503 = rate_rod_leg1 * (1.8867924528301887 * t472);
-        let t507 = t47 * rate_cross_leg3;
+                - s_armcross_leg3 * acceleration[2] + t483 * t489 - t54 * t498 + t70);
+        let t504 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t48 * t475;
+        let t506 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t475;
+        let t508 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t509 = 9.81 * minus_c_arm_leg3;
+        let t513 = 9.81 * s_arm_leg3;
+        let t523 = grod_vy_leg1 * t474;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t523;
+        let t526 = rate_rod_leg1 * (1.8867924528301887 * t495);
+        let t530 = 0.2 * t489;
+        let t532 = t49 * rate_cross_leg3;
+        let t536 = 0.2 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
             * (s_armcross_leg3 * acceleration[0]
-                + minus_c_armcross_leg3 * acceleration[2] - (t464 - (t507 + t507))
-                - t470 * rate_dot_arm_leg3);
-        let t514 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t516 = t503 + t514 + t503;
-        let t517 = c_rod_leg1 * t516;
-        let t518 = t46 * t517;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t470 * garm_vy_leg3);
-        let t524 = 3.5599857600569598 * (pose[1] * t474);
-        let gcross_vz_leg3 = s_arm_leg3 * t500;
-        let t528 = rate_dot_cross_leg3 - t518;
-        let t530 = t46 * t528 + t517;
-        let t533 = t23 * t524;
-        let t534 = t46 * t533;
-        let t535 = t475 - t534;
-        let t536 = t534 + t60;
-        let t555 = t490 + t465;
-        let t558 = t486 + 0.2 * rate_dot_arm_leg3;
-        let t560 = s_cross_leg3 * t555 + c_cross_leg3 * t558;
-        let t561 = c_rod_leg1 * t560;
-        let t563 = 0.2 * s_cross_leg3;
-        let t564 = c_rod_leg1 * t563;
-        let t566 = s_rod_leg1 * t563;
-        let t572 = t564 * t535 + t566 * (t533 + rate_dot_rod_leg1)
-            - t528 * (t470 / c_rod_leg1);
-        let t576 = 0.2 * t558;
-        let t577 = garm_vy_leg3 * t576;
-        let t588 = t564 * (rate_dot_rod_leg1 - t533) - t566 * t536 + t470 * t516;
-        let t590 = s_rod_leg1 * t560;
-        let t598 = s_cross_leg3 * t558 - c_cross_leg3 * t555;
-        let t606 = rate_dot_cross_leg3 * t563 + t470 * t474;
-        let t619 = pose[1] - 0.05 + 0.2;
-        let t621 = t619 * t619 + t4;
-        let t622 = 0.16 * t621;
-        let t623 = t621 - t220;
-        let t624 = t623 + 0.04;
-        let t626 = t622 - t624 * t624;
-        ::overact::guard::reach(t626, "leg4")?;
-        let t627 = ::overact::math::sqrt(t626);
-        let s_cross_leg4 = t627 / t229;
+                + minus_c_armcross_leg3 * acceleration[2]
+                - (s_cross_leg3 * t530 - (t532 + t532)) - c_cross_leg3 * t536);
+        let t540 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t542 = t526 + t540 + t526;
+        let t543 = s_rod_leg1 * t542;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t483 * garm_vy_leg3);
+        let t549 = 3.5599857600569598 * (pose[1] * t497);
+        let gcross_vz_leg3 = s_arm_leg3 * t523;
+        let t553 = rate_dot_cross_leg3 - t543;
+        let t556 = t48 * t553 + c_rod_leg1 * t542;
+        let t559 = pose[1] * t549;
+        let t560 = t498 - t559;
+        let t561 = t559 + t63;
+        let t580 = t513 + t530;
+        let t582 = t509 + t536;
+        let t584 = s_cross_leg3 * t580 + c_cross_leg3 * t582;
+        let t585 = c_rod_leg1 * t584;
+        let t587 = 0.9433962264150944 * t460;
+        let t589 = t48 * t587;
+        let t590 = t54 * t549;
+        let t596 = t587 * t560 + t589 * (rate_dot_rod_leg1 - t590)
+            - t553 * (t483 / c_rod_leg1);
+        let t600 = 0.2 * t582;
+        let t601 = garm_vy_leg3 * t600;
+        let t612 = t587 * (rate_dot_rod_leg1 + t590) - t589 * t561 + t483 * t542;
+        let t614 = s_rod_leg1 * t584;
+        let t622 = s_cross_leg3 * t582 - c_cross_leg3 * t580;
+        let t631 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t483 * t497;
+        let t644 = pose[1] - 0.05 + 0.2;
+        let t646 = t644 * t644 + t3;
+        let t647 = 0.16 * t646;
+        let t648 = t646 - t355;
+        let t649 = t648 + 0.04;
+        let t651 = t647 - t649 * t649;
+        ::overact::guard::reach(t651, "leg4")?;
+        let t652 = ::overact::math::sqrt(t651);
+        let s_cross_leg4 = t652 / t243;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t629 = 5.0 / s_cross_leg4;
-        let garm_vx_leg4 = t233 * t629;
-        let t631 = 0.4 * t619;
-        let minus_c_arm_leg4 = (t631 * t624 + t11 * t627) / t622;
-        let c_cross_leg4 = (-0.04 + t623) / t229;
-        let s_arm_leg4 = (t631 * t627 - t11 * t624) / t622;
+        let t654 = 1.0 / s_cross_leg4;
+        let t655 = 5.0 * t654;
+        let garm_vx_leg4 = t249 * t655;
+        let t657 = 0.4 * t644;
+        let minus_c_arm_leg4 = (t657 * t649 + t13 * t652) / t647;
+        let c_cross_leg4 = (-0.04 + t648) / t243;
+        let s_arm_leg4 = (t657 * t652 - t13 * t649) / t647;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t654 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t258;
-        let rate_arm_leg4 = t629 * t654;
-        let t656 = t654 * rate_arm_leg4;
-        let t657 = t656 / s_cross_leg4;
-        let t662 = 0.2 * c_cross_leg4;
-        let t664 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
-            - t662 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t664;
-        let t666 = rate_cross_leg4 * rate_cross_leg4;
-        let t667 = t265 + t666;
-        let rate_dot_arm_leg4 = t629
+        let t680 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t274;
+        let rate_arm_leg4 = t655 * t680;
+        let t682 = t680 * rate_arm_leg4;
+        let t683 = t654 * t682;
+        let t688 = 0.2 * c_cross_leg4;
+        let t690 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
+            - t688 * rate_arm_leg4;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t690;
+        let t692 = rate_cross_leg4 * rate_cross_leg4;
+        let t693 = t281 + t692;
+        let rate_dot_arm_leg4 = t655
             * (minus_c_armcross_leg4 * acceleration[1]
-                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t657 + t228 * t667
-                + t278);
-        let t673 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t629;
-        let t675 = garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t629;
-        let t677 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let t678 = 9.81 * minus_c_arm_leg4;
-        let t682 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t662 * garm_vx_leg4);
-        let t695 = minus_rate_rod_leg2 * (1.8867924528301887 * t664);
-        let t699 = t258 * rate_cross_leg4;
-        let t703 = 0.2 * rate_dot_arm_leg4;
+                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t683 + t244 * t693
+                + t296);
+        let t699 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t655;
+        let t701 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t655;
+        let t703 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let t704 = 9.81 * minus_c_arm_leg4;
+        let t708 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t688 * garm_vx_leg4);
+        let t721 = minus_rate_rod_leg2 * (1.8867924528301887 * t690);
+        let t725 = t274 * rate_cross_leg4;
+        let t729 = 0.2 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * acceleration[1]
-                + minus_c_armcross_leg4 * acceleration[2] - (t656 - (t699 + t699))
-                - c_cross_leg4 * t703);
-        let t707 = 1.8867924528301887 * rate_dot_cross_leg4;
-        let t708 = pose[0] * t707;
-        let t710 = t695 + t708 + t695;
-        let t711 = c_rod_leg2 * t710;
-        let t712 = t233 * t711;
-        let t715 = t666 * (t226 * t233);
-        let t716 = minus_grod_vx_leg2 * t715;
-        let t718 = minus_grod_vx_leg2 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t718;
-        let gcross_vz_leg4 = s_arm_leg4 * t718;
-        let t723 = pose[0] * t716;
-        let t724 = t667 - t723;
-        let t725 = t723 + t265;
-        let t728 = rate_dot_cross_leg4 - t712;
-        let t730 = t711 + t233 * t728;
-        let t748 = 0.2 * s_cross_leg4;
-        let t749 = c_rod_leg2 * t748;
-        let t751 = t233 * t749;
-        let t757 = t749 * t724 + t751 * (t715 + minus_rate_dot_rod_leg2)
-            - t728 * (t662 / c_rod_leg2);
-        let t759 = t678 + t703;
-        let t760 = 0.2 * t759;
-        let t761 = garm_vx_leg4 * t760;
-        let t764 = t682 + t657;
-        let t768 = c_rod_leg2 * (s_cross_leg4 * t764 + c_cross_leg4 * t759);
-        let t780 = t749 * (t715 - minus_rate_dot_rod_leg2) + t751 * t725 - t662 * t710;
-        let t782 = t233 * t768;
-        let t787 = s_cross_leg4 * t759 - c_cross_leg4 * t764;
-        let t798 = rate_dot_cross_leg4 * t748 + t662 * t666;
+                + minus_c_armcross_leg4 * acceleration[2] - (t682 - (t725 + t725))
+                - c_cross_leg4 * t729);
+        let t733 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t735 = t721 + t733 + t721;
+        let t736 = c_rod_leg2 * t735;
+        let t737 = t249 * t736;
+        let t739 = t692 * t339;
+        let t740 = t739 / t244;
+        let t742 = minus_grod_vx_leg2 * t654;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t742;
+        let gcross_vz_leg4 = s_arm_leg4 * t742;
+        let t747 = pose[0] * t740;
+        let t748 = t693 - t747;
+        let t749 = t747 + t281;
+        let t752 = rate_dot_cross_leg4 - t737;
+        let t754 = t736 + t249 * t752;
+        let t773 = 0.9433962264150944 * t652;
+        let t775 = t773 / c_rod_leg2;
+        let t776 = minus_s_rod_leg2 * t775;
+        let t782 = t773 * t748 + t776 * (t739 + minus_rate_dot_rod_leg2)
+            - t752 * (t688 / c_rod_leg2);
+        let t784 = t704 + t729;
+        let t785 = 0.2 * t784;
+        let t786 = garm_vx_leg4 * t785;
+        let t789 = t708 + t683;
+        let t792 = s_cross_leg4 * t789 + c_cross_leg4 * t784;
+        let t793 = c_rod_leg2 * t792;
+        let t805 = t773 * (t739 - minus_rate_dot_rod_leg2) + t776 * t749 - t688 * t735;
+        let t807 = minus_s_rod_leg2 * t792;
+        let t812 = s_cross_leg4 * t784 - c_cross_leg4 * t789;
+        let t823 = rate_dot_cross_leg4 * t775 + t688 * t692;
         Ok([
             [
-                t70, -(garm_vx_leg1 * t75), -(garm_vx_leg1 * t79), t70,
+                t73, -(garm_vx_leg1 * t78), -(garm_vx_leg1 * t82), t73,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t109, -(minus_gcross_vx_leg1 * t122),
-                -(minus_gcross_vx_leg1 * t137), -(minus_gcross_vx_leg1 * t120),
-                -(minus_gcross_vx_leg1 * t147), 0.0,
-                garm_vx_leg1 * t161 - minus_gcross_vx_leg1 * t170,
-                garm_vx_leg1 * t184 + minus_gcross_vx_leg1 * t186,
-                garm_vx_leg1 * t202 - minus_gcross_vx_leg1 * t194, garm_vx_leg1 * t174, t281,
-                -(garm_vx_leg2 * t286), -(garm_vx_leg2 * t290), t281, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1, minus_gcross_vx_leg1 * t113, -(minus_gcross_vx_leg1 * t125),
+                -(minus_gcross_vx_leg1 * t142), -t148, -(minus_gcross_vx_leg1 * t152), 0.0,
+                t159 - 0.07547169811320754 * (25.0 * t162 - 7.0225 * t148),
+                garm_vx_leg1 * t192 + minus_gcross_vx_leg1 * t199,
+                garm_vx_leg1 * t216 - minus_gcross_vx_leg1 * t207, t162, t299,
+                -(garm_vx_leg2 * t304), -(garm_vx_leg2 * t308), t299, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t320 - t324,
-                -(minus_gcross_vx_leg2 * t333 + minus_grod_vx_leg2 * (t336 - t335)),
-                -(minus_gcross_vx_leg2 * t351 + minus_grod_vx_leg2 * t316),
-                t324 - minus_gcross_vx_leg2 * t331, minus_gcross_vx_leg2 * t361 + t315, t366,
-                garm_vx_leg2 * t371 - 1.8867924528301887 * t376,
-                garm_vx_leg2 * t396 - minus_gcross_vx_leg2 * t398
-                    + 1.8867924528301887 * t403,
-                garm_vx_leg2 * t414 - minus_gcross_vx_leg2 * t403,
+                minus_gcross_vx_leg2 * t337 - t341,
+                -(minus_gcross_vx_leg2 * t353
+                    + 6.716954264258415 * (t289 * (t231 - t355) / c_rod_leg2)),
+                -(minus_gcross_vx_leg2 * t369 + minus_grod_vx_leg2 * t334),
                 t376,
-                t481,
-                garm_vx_leg3 * t486,
-                garm_vx_leg3 * t490,
-                t481,
+                minus_gcross_vx_leg2 * t159
+                    + 1.8867924528301887 * minus_rate_dot_cross_leg2,
+                t384,
+                t159
+                    - 0.07547169811320754
+                        * (25.0 * t387 + 7.0225 * t376 + 7.0225 * t384),
+                garm_vx_leg2 * t416 - minus_gcross_vx_leg2 * t422
+                    + 1.8867924528301887 * t427,
+                garm_vx_leg2 * t438 - minus_gcross_vx_leg2 * t427,
+                t387,
+                t504,
+                garm_vx_leg3 * t509,
+                garm_vx_leg3 * t513,
+                t504,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t518),
-                minus_gcross_vx_leg3 * t530,
-                -(minus_gcross_vx_leg3 * t137),
-                -(minus_gcross_vx_leg3 * t528),
-                minus_gcross_vx_leg3 * t147,
+                -(minus_gcross_vx_leg3 * t543),
+                minus_gcross_vx_leg3 * t556,
+                -(minus_gcross_vx_leg3 * t142),
+                -(minus_gcross_vx_leg3 * t553),
+                minus_gcross_vx_leg3 * t152,
                 0.0,
-                -(minus_gcross_vx_leg3 * t561 + garm_vx_leg3 * t572),
-                garm_vx_leg3 * t588 - minus_gcross_vx_leg3 * t590,
-                garm_vx_leg3 * t606 - minus_gcross_vx_leg3 * t598,
-                garm_vx_leg3 * t576,
-                t673,
-                garm_vx_leg4 * t678,
-                garm_vx_leg4 * t682,
-                t673,
+                -(minus_gcross_vx_leg3 * t585 + garm_vx_leg3 * t596),
+                garm_vx_leg3 * t612 - minus_gcross_vx_leg3 * t614,
+                garm_vx_leg3 * t631 - minus_gcross_vx_leg3 * t622,
+                garm_vx_leg3 * t600,
+                t699,
+                garm_vx_leg4 * t704,
+                garm_vx_leg4 * t708,
+                t699,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t712 + t716),
-                -(minus_grod_vx_leg2 * (t724 - t725) + minus_gcross_vx_leg4 * t730),
-                minus_grod_vx_leg2 * t708 - minus_gcross_vx_leg4 * t351,
-                t716 - minus_gcross_vx_leg4 * t728,
-                t707 - minus_gcross_vx_leg4 * t361,
-                t366,
-                -(garm_vx_leg4 * t757 + 1.8867924528301887 * t761),
-                garm_vx_leg4 * t780 + minus_gcross_vx_leg4 * t782
-                    - 1.8867924528301887 * t787,
-                garm_vx_leg4 * t798 - minus_gcross_vx_leg4 * t787,
-                t761,
+                -(minus_gcross_vx_leg4 * t737 + t740),
+                -((t748 - t749) / t244 + minus_gcross_vx_leg4 * t754),
+                minus_grod_vx_leg2 * t733 - minus_gcross_vx_leg4 * t369,
+                t740 - minus_gcross_vx_leg4 * t752,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t159,
+                t384,
+                -(garm_vx_leg4 * t782 + 1.8867924528301887 * t786),
+                garm_vx_leg4 * t805 + minus_gcross_vx_leg4 * t807
+                    - 1.8867924528301887 * t812,
+                garm_vx_leg4 * t823 - minus_gcross_vx_leg4 * t812,
+                t786,
                 acceleration[0],
             ],
             [
-                t72, -(garm_vy_leg1 * t75), -(garm_vy_leg1 * t79), t72,
+                t75, -(garm_vy_leg1 * t78), -(garm_vy_leg1 * t82), t75,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t109 - t116,
-                -(grod_vy_leg1 * (t126 - (t124 + t60)) + minus_gcross_vy_leg1 * t122),
-                -(minus_gcross_vy_leg1 * t137 + grod_vy_leg1 * t105),
-                t116 - minus_gcross_vy_leg1 * t120,
-                -(minus_gcross_vy_leg1 * t147
+                garm_vy_leg1, minus_gcross_vy_leg1 * t113 - t119,
+                6.716954264258415 * ((t127 - t59 * t59) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t125,
+                -(minus_gcross_vy_leg1 * t142 + grod_vy_leg1 * t109),
+                t150,
+                -(minus_gcross_vy_leg1 * t152
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                t153,
-                garm_vy_leg1 * t161 - 1.8867924528301887 * t175,
-                garm_vy_leg1 * t184 + minus_gcross_vy_leg1 * t186
-                    - 1.8867924528301887 * t194,
-                garm_vy_leg1 * t202 - minus_gcross_vy_leg1 * t194,
-                t175,
-                t283,
-                -(garm_vy_leg2 * t286),
-                -(garm_vy_leg2 * t290),
-                t283,
+                t158,
+                t152
+                    - 0.07547169811320754
+                        * (25.0 * t168 + 7.0225 * t150 + 7.0225 * t158),
+                garm_vy_leg1 * t192 + minus_gcross_vy_leg1 * t199
+                    - 1.8867924528301887 * t207,
+                garm_vy_leg1 * t216 - minus_gcross_vy_leg1 * t207,
+                t168,
+                t301,
+                -(garm_vy_leg2 * t304),
+                -(garm_vy_leg2 * t308),
+                t301,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                minus_gcross_vy_leg2 * t320,
-                -(minus_gcross_vy_leg2 * t333),
-                -(minus_gcross_vy_leg2 * t351),
-                -(minus_gcross_vy_leg2 * t331),
-                minus_gcross_vy_leg2 * t361,
+                minus_gcross_vy_leg2 * t337,
+                -(minus_gcross_vy_leg2 * t353),
+                -(minus_gcross_vy_leg2 * t369),
+                -t377,
+                minus_gcross_vy_leg2 * t159,
                 0.0,
-                garm_vy_leg2 * t371 - minus_gcross_vy_leg2 * t385,
-                garm_vy_leg2 * t396 - minus_gcross_vy_leg2 * t398,
-                garm_vy_leg2 * t414 - minus_gcross_vy_leg2 * t403,
-                garm_vy_leg2 * t375,
-                t483,
-                garm_vy_leg3 * t486,
-                garm_vy_leg3 * t490,
-                t483,
+                t152 - 0.07547169811320754 * (25.0 * t395 - 7.0225 * t377),
+                garm_vy_leg2 * t416 - minus_gcross_vy_leg2 * t422,
+                garm_vy_leg2 * t438 - minus_gcross_vy_leg2 * t427,
+                t395,
+                t506,
+                garm_vy_leg3 * t509,
+                garm_vy_leg3 * t513,
+                t506,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t518 + t524),
-                minus_gcross_vy_leg3 * t530 + grod_vy_leg1 * (t535 - t536),
-                grod_vy_leg1 * t514 - minus_gcross_vy_leg3 * t137,
-                t524 - minus_gcross_vy_leg3 * t528,
-                minus_gcross_vy_leg3 * t147 - 1.8867924528301887 * rate_dot_cross_leg3,
-                t153,
-                -(garm_vy_leg3 * t572 + 1.8867924528301887 * t577),
-                garm_vy_leg3 * t588 - minus_gcross_vy_leg3 * t590
-                    + 1.8867924528301887 * t598,
-                garm_vy_leg3 * t606 - minus_gcross_vy_leg3 * t598,
-                t577,
-                t675,
-                garm_vy_leg4 * t678,
-                garm_vy_leg4 * t682,
-                t675,
+                -(minus_gcross_vy_leg3 * t543 + t549),
+                minus_gcross_vy_leg3 * t556 + grod_vy_leg1 * (t560 - t561),
+                grod_vy_leg1 * t540 - minus_gcross_vy_leg3 * t142,
+                t549 - minus_gcross_vy_leg3 * t553,
+                minus_gcross_vy_leg3 * t152 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t158,
+                -(garm_vy_leg3 * t596 + 1.8867924528301887 * t601),
+                garm_vy_leg3 * t612 - minus_gcross_vy_leg3 * t614
+                    + 1.8867924528301887 * t622,
+                garm_vy_leg3 * t631 - minus_gcross_vy_leg3 * t622,
+                t601,
+                t701,
+                garm_vy_leg4 * t704,
+                garm_vy_leg4 * t708,
+                t701,
                 garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
                 garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t712),
-                -(minus_gcross_vy_leg4 * t730),
-                -(minus_gcross_vy_leg4 * t351),
-                -(minus_gcross_vy_leg4 * t728),
-                -(minus_gcross_vy_leg4 * t361),
+                -(minus_gcross_vy_leg4 * t737),
+                -(minus_gcross_vy_leg4 * t754),
+                -(minus_gcross_vy_leg4 * t369),
+                -(minus_gcross_vy_leg4 * t752),
+                -(minus_gcross_vy_leg4 * t159),
                 0.0,
-                -(minus_gcross_vy_leg4 * t768 + garm_vy_leg4 * t757),
-                garm_vy_leg4 * t780 + minus_gcross_vy_leg4 * t782,
-                garm_vy_leg4 * t798 - minus_gcross_vy_leg4 * t787,
-                garm_vy_leg4 * t760,
+                -(minus_gcross_vy_leg4 * t793 + garm_vy_leg4 * t782),
+                garm_vy_leg4 * t805 + minus_gcross_vy_leg4 * t807,
+                garm_vy_leg4 * t823 - minus_gcross_vy_leg4 * t812,
+                garm_vy_leg4 * t785,
                 acceleration[1],
             ],
             [
-                -t74, minus_garm_vz_leg1 * t75, minus_garm_vz_leg1 * t79, -t74,
+                -t77, minus_garm_vz_leg1 * t78, minus_garm_vz_leg1 * t82, -t77,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t109, -(minus_gcross_vz_leg1 * t122),
-                -(minus_gcross_vz_leg1 * t137), -(minus_gcross_vz_leg1 * t120),
-                -(minus_gcross_vz_leg1 * t147), 0.0,
-                -(minus_garm_vz_leg1 * t161 + minus_gcross_vz_leg1 * t170),
-                minus_gcross_vz_leg1 * t186 - minus_garm_vz_leg1 * t184,
-                -(minus_garm_vz_leg1 * t202 + minus_gcross_vz_leg1 * t194),
-                -(minus_garm_vz_leg1 * t174), -t285, minus_garm_vz_leg2 * t286,
-                minus_garm_vz_leg2 * t290, -t285, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                minus_gcross_vz_leg1 * t113, -(minus_gcross_vz_leg1 * t125),
+                -(minus_gcross_vz_leg1 * t142), -t151, -(minus_gcross_vz_leg1 * t152), 0.0,
+                t177 + 0.07547169811320754 * (25.0 * t178 + 7.0225 * t151),
+                minus_gcross_vz_leg1 * t199 - minus_garm_vz_leg1 * t192,
+                -(minus_garm_vz_leg1 * t216 + minus_gcross_vz_leg1 * t207), -t178, -t303,
+                minus_garm_vz_leg2 * t304, minus_garm_vz_leg2 * t308, -t303,
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t320, -(minus_gcross_vz_leg2 * t333),
-                -(minus_gcross_vz_leg2 * t351), -(minus_gcross_vz_leg2 * t331),
-                minus_gcross_vz_leg2 * t361, 0.0,
-                -(minus_gcross_vz_leg2 * t385 + minus_garm_vz_leg2 * t371),
-                -(minus_gcross_vz_leg2 * t398 + minus_garm_vz_leg2 * t396),
-                -(minus_gcross_vz_leg2 * t403 + minus_garm_vz_leg2 * t414),
-                -(minus_garm_vz_leg2 * t375), -t485, -(minus_garm_vz_leg3 * t486),
-                -(minus_garm_vz_leg3 * t490), -t485, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                -(gcross_vz_leg2 * t337), gcross_vz_leg2 * t353, gcross_vz_leg2 * t369, t378,
+                -(gcross_vz_leg2 * t159), 0.0,
+                t177 - 0.07547169811320754 * (7.0225 * t378 - 25.0 * t402),
+                gcross_vz_leg2 * t422 - minus_garm_vz_leg2 * t416,
+                gcross_vz_leg2 * t427 - minus_garm_vz_leg2 * t438, -t402, -t508,
+                -(minus_garm_vz_leg3 * t509), -(minus_garm_vz_leg3 * t513), -t508,
+                -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t518, -(gcross_vz_leg3 * t530), gcross_vz_leg3 * t137,
-                gcross_vz_leg3 * t528, -(gcross_vz_leg3 * t147), 0.0,
-                minus_garm_vz_leg3 * t572 + gcross_vz_leg3 * t561,
-                gcross_vz_leg3 * t590 - minus_garm_vz_leg3 * t588,
-                gcross_vz_leg3 * t598 - minus_garm_vz_leg3 * t606, -(minus_garm_vz_leg3 * t576),
-                -t677, -(minus_garm_vz_leg4 * t678), -(minus_garm_vz_leg4 * t682), -t677,
+                gcross_vz_leg3 * t543, -(gcross_vz_leg3 * t556), gcross_vz_leg3 * t142,
+                gcross_vz_leg3 * t553, -(gcross_vz_leg3 * t152), 0.0,
+                minus_garm_vz_leg3 * t596 + gcross_vz_leg3 * t585,
+                gcross_vz_leg3 * t614 - minus_garm_vz_leg3 * t612,
+                gcross_vz_leg3 * t622 - minus_garm_vz_leg3 * t631, -(minus_garm_vz_leg3 * t600),
+                -t703, -(minus_garm_vz_leg4 * t704), -(minus_garm_vz_leg4 * t708), -t703,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t712, gcross_vz_leg4 * t730, gcross_vz_leg4 * t351,
-                gcross_vz_leg4 * t728, gcross_vz_leg4 * t361, 0.0,
-                minus_garm_vz_leg4 * t757 + gcross_vz_leg4 * t768,
-                -(minus_garm_vz_leg4 * t780 + gcross_vz_leg4 * t782),
-                gcross_vz_leg4 * t787 - minus_garm_vz_leg4 * t798, -(minus_garm_vz_leg4 * t760),
-                acceleration[2] + 9.81,
+                gcross_vz_leg4 * t737, gcross_vz_leg4 * t754, gcross_vz_leg4 * t369,
+                gcross_vz_leg4 * t752, gcross_vz_leg4 * t159, 0.0,
+                minus_garm_vz_leg4 * t782 + gcross_vz_leg4 * t793,
+                -(minus_garm_vz_leg4 * t805 + gcross_vz_leg4 * t807),
+                gcross_vz_leg4 * t812 - minus_garm_vz_leg4 * t823, -(minus_garm_vz_leg4 * t785),
+                t176,
             ],
         ])
     }
@@ -2342,7 +2359,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 731 operations (212 additions, 499 multiplications, 20 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 582 intermediates.
+    /// 736 operations (209 additions, 508 multiplications, 19 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 587 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2384,10 +2401,9 @@ impl Delta4 {
         let t34 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
         let t36 = rate_rod_leg1 * rate_rod_leg1;
-        let t37 = t34 + t36;
         let t42 = acceleration[1] + t21 * rate_rod_leg1;
         let t44 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + rate_arm_leg1 * t25 + 0.53 * c_rod_leg1 * t37 + t20 * t42;
+            + rate_arm_leg1 * t25 + 0.53 * c_rod_leg1 * (t34 + t36) + t20 * t42;
         let rate_dot_arm_leg1 = t10 * t44;
         let t46 = garm_vx_leg1 * rate_dot_arm_leg1;
         let garm_vy_leg1 = t10 * t20;
@@ -2398,331 +2414,325 @@ impl Delta4 {
         let t55 = 9.81 * s_arm_leg1;
         let t65 = grod_vy_leg1 / s_cross_leg1;
         let minus_gcross_vx_leg1 = c_arm_leg1 * t65;
-        let t71 = t22 * rate_arm_leg1;
-        let t72 = t21 * minus_rate_cross_leg1;
-        let t73 = t72 + t72;
-        let t76 = t24 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t71 + t73;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t76;
-        let t79 = 1.8867924528301887 * (t73 - t76);
-        let t80 = c_rod_leg1 * t79;
-        let t81 = minus_rate_dot_cross_leg1 + t80;
+        let t67 = 1.8867924528301887 * t32;
+        let t68 = rate_rod_leg1 * t67;
+        let t69 = 0.2 * rate_dot_arm_leg1;
+        let t74 = t22 * rate_arm_leg1;
+        let t75 = t21 * minus_rate_cross_leg1;
+        let t76 = t75 + t75;
+        let t79 = c_cross_leg1 * t69 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t74 + t76;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t79;
+        let t81 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t83 = t68 + t81 + t68;
+        let t84 = s_rod_leg1 * t83;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t24 * garm_vy_leg1);
-        let t86 = 1.8867924528301887 * t32;
-        let t87 = t86 * t86;
-        let t88 = t20 * t87;
-        let t89 = grod_vy_leg1 * t88;
+        let t89 = t67 * t67;
+        let t90 = t20 * t89;
+        let t91 = grod_vy_leg1 * t90;
         let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t65;
-        let t94 = rate_rod_leg1 * t86;
-        let t95 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t97 = t94 + t95 + t94;
-        let t99 = t20 * t80 - c_rod_leg1 * t97;
-        let t101 = t87 + t36;
-        let t102 = t37 - t87;
+        let t96 = 1.8867924528301887 * (t76 - t79);
+        let t99 = s_rod_leg1 * t96 - c_rod_leg1 * t83;
+        let t101 = t20 * t90;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t42;
-        let t109 = t88 + rate_dot_rod_leg1;
-        let t113 = s_rod_leg1 * t109 + c_rod_leg1 * (t101 - t34);
+        let t108 = t90 + rate_dot_rod_leg1;
+        let t112 = s_rod_leg1 * t108 + c_rod_leg1 * (t36 - t101);
+        let t118 = c_rod_leg1 * t96;
         let t123 = 1.8867924528301887 * acceleration[1];
         let t131 = 0.2 * s_cross_leg1;
         let t132 = c_rod_leg1 * t131;
-        let t134 = t131 * s_rod_leg1;
-        let t137 = t24 * t79 - (t132 * t101 + t134 * t109);
-        let t140 = t55 + t71 / s_cross_leg1;
-        let t143 = 0.2 * rate_dot_arm_leg1 - t51;
-        let t145 = s_cross_leg1 * t140 + c_cross_leg1 * t143;
+        let t135 = t131 * s_rod_leg1;
+        let t138 = t24 * t96 - (t132 * (t89 + t36) + t135 * t108);
+        let t141 = t55 + t74 / s_cross_leg1;
+        let t143 = t69 - t51;
+        let t145 = s_cross_leg1 * t141 + c_cross_leg1 * t143;
         let t146 = c_rod_leg1 * t145;
         let t150 = 0.2 * t143;
         let t151 = garm_vy_leg1 * t150;
-        let t162 = t132 * (t88 - rate_dot_rod_leg1) + t134 * t102 + t24 * t97;
-        let t164 = s_rod_leg1 * t145;
-        let t172 = s_cross_leg1 * t143 - c_cross_leg1 * t140;
-        let t180 = t24 * t34 - t131 * minus_rate_dot_cross_leg1;
-        let t194 = 5.0 / s_cross_leg2;
-        let t197 = s_rod_leg2 / c_rod_leg2;
-        let minus_garm_vx_leg2 = t194 * t197;
+        let t163 = t132 * (t90 - rate_dot_rod_leg1) + t135 * (t101 + t36) + t24 * t83;
+        let t165 = s_rod_leg1 * t145;
+        let t173 = s_cross_leg1 * t143 - c_cross_leg1 * t141;
+        let t181 = t24 * t34 - t131 * minus_rate_dot_cross_leg1;
+        let t195 = 5.0 / s_cross_leg2;
+        let t198 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t195 * t198;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t213 = t197 * twist[0];
-        let t214 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t213;
-        let rate_arm_leg2 = t194 * t214;
-        let t216 = t214 * rate_arm_leg2;
-        let t217 = t216 / s_cross_leg2;
+        let t211 = 0.2 * c_cross_leg2;
+        let t215 = t198 * twist[0];
+        let rate_arm_leg2 = t195
+            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t215);
+        let t218 = rate_arm_leg2 * rate_arm_leg2;
         let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t222 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t226 = 0.2 * c_cross_leg2;
+        let t223 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
         let t228 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t226 * rate_arm_leg2;
+            + t211 * rate_arm_leg2;
         let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t228;
         let t230 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t231 = t222 + t230;
-        let t236 = acceleration[0] - t213 * minus_rate_rod_leg2;
+        let t236 = acceleration[0] - t215 * minus_rate_rod_leg2;
         let t238 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + c_cross_leg2 * t217 + 0.53 * c_rod_leg2 * t231 - t197 * t236;
-        let rate_dot_arm_leg2 = t194 * t238;
+            + t211 * t218 + 0.53 * c_rod_leg2 * (t223 + t230) - t198 * t236;
+        let rate_dot_arm_leg2 = t195 * t238;
         let t240 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t194;
+        let garm_vy_leg2 = c_armcross_leg2 * t195;
         let t242 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t194;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t195;
         let t244 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
         let t245 = 9.81 * c_arm_leg2;
         let t249 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t226 * minus_garm_vx_leg2);
-        let t264 = t213 * minus_rate_cross_leg2;
-        let t265 = t264 + t264;
-        let t269 = s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-            + t216 - t265 + t226 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t269;
-        let t271 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t272 = 1.8867924528301887 * t228;
-        let t273 = minus_rate_rod_leg2 * t272;
-        let t275 = t273 - t271 + t273;
-        let t276 = s_rod_leg2 * t275;
-        let t278 = t272 * t272;
-        let t279 = t197 * t278;
-        let t280 = minus_grod_vx_leg2 * t279;
-        let t282 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t282;
-        let gcross_vz_leg2 = s_arm_leg2 * t282;
-        let t288 = 1.8867924528301887 * (t269 + t265);
-        let t289 = c_rod_leg2 * t288;
-        let t292 = c_rod_leg2 * t275 - t197 * t289;
-        let t294 = t278 + t222;
-        let t295 = t231 - t278;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t211 * minus_garm_vx_leg2);
+        let t264 = 0.2 * s_cross_leg2;
+        let t266 = t215 * minus_rate_cross_leg2;
+        let t267 = t266 + t266;
+        let t271 = s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
+            + t264 * t218 - t267 + t211 * rate_dot_arm_leg2;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t271;
+        let t273 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t274 = 1.8867924528301887 * t228;
+        let t275 = minus_rate_rod_leg2 * t274;
+        let t277 = t275 - t273 + t275;
+        let t278 = s_rod_leg2 * t277;
+        let t280 = t274 * t274;
+        let t281 = t198 * t280;
+        let t282 = minus_grod_vx_leg2 * t281;
+        let t284 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t284;
+        let gcross_vz_leg2 = s_arm_leg2 * t284;
+        let t290 = 1.8867924528301887 * (t271 + t267);
+        let t293 = c_rod_leg2 * t277 - s_rod_leg2 * t290;
+        let t295 = t198 * t281;
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t236;
-        let t302 = t279 - minus_rate_dot_rod_leg2;
-        let t306 = s_rod_leg2 * t302 + c_rod_leg2 * (t294 - t230);
-        let t316 = 1.8867924528301887 * acceleration[0];
-        let t324 = 0.2 * s_cross_leg2;
-        let t325 = c_rod_leg2 * t324;
-        let t327 = t324 * s_rod_leg2;
-        let t330 = t226 * t288 + t325 * t294 + t327 * t302;
-        let t333 = 0.2 * rate_dot_arm_leg2 - t245;
-        let t334 = 0.2 * t333;
-        let t335 = minus_garm_vx_leg2 * t334;
-        let t339 = t249 + t217;
-        let t342 = s_cross_leg2 * t339 + c_cross_leg2 * t333;
-        let t343 = c_rod_leg2 * t342;
-        let t351 = s_cross_leg2 * t333 - c_cross_leg2 * t339;
-        let t358 = t325 * (t279 + minus_rate_dot_rod_leg2) + t327 * t295 - t226 * t275;
-        let t360 = s_rod_leg2 * t342;
-        let t373 = t226 * t230 - t324 * minus_rate_dot_cross_leg2;
+        let t302 = t281 - minus_rate_dot_rod_leg2;
+        let t306 = s_rod_leg2 * t302 + c_rod_leg2 * (t223 - t295);
+        let t312 = c_rod_leg2 * t290;
+        let t317 = 1.8867924528301887 * acceleration[0];
+        let t325 = c_rod_leg2 * t264;
+        let t328 = t264 * s_rod_leg2;
+        let t331 = t211 * t290 + t325 * (t280 + t223) + t328 * t302;
+        let t334 = 0.2 * rate_dot_arm_leg2 - t245;
+        let t335 = 0.2 * t334;
+        let t336 = minus_garm_vx_leg2 * t335;
+        let t341 = t249 + 0.2 * t218;
+        let t344 = s_cross_leg2 * t341 + c_cross_leg2 * t334;
+        let t345 = c_rod_leg2 * t344;
+        let t353 = s_cross_leg2 * t334 - c_cross_leg2 * t341;
+        let t361 = t325 * (t281 + minus_rate_dot_rod_leg2) + t328 * (t295 + t223)
+            - t211 * t277;
+        let t363 = s_rod_leg2 * t344;
+        let t376 = t211 * t230 - t264 * minus_rate_dot_cross_leg2;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t394 = 5.0 / s_cross_leg3;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t394;
-        let t401 = s_rod_leg3 / c_rod_leg3;
-        let t402 = t401 * twist[1];
-        let t403 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t402;
-        let minus_rate_arm_leg3 = t394 * t403;
-        let t405 = t403 * minus_rate_arm_leg3;
-        let t406 = t405 / s_cross_leg3;
+        let t397 = 5.0 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t397;
+        let t399 = 0.2 * c_cross_leg3;
+        let t405 = s_rod_leg3 / c_rod_leg3;
+        let t406 = t405 * twist[1];
+        let minus_rate_arm_leg3 = t397
+            * (c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t406);
+        let t409 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
         let minus_grod_vy_leg3 = 1.8867924528301887 / c_rod_leg3;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t411 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t415 = 0.2 * c_cross_leg3;
-        let t417 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
-            + t415 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t417;
-        let t419 = rate_cross_leg3 * rate_cross_leg3;
-        let t420 = t411 + t419;
-        let t428 = acceleration[1] - t402 * minus_rate_rod_leg3;
-        let t430 = c_cross_leg3 * t406 + 0.53 * c_rod_leg3 * t420
+        let t414 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t419 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
+            + t399 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t419;
+        let t421 = rate_cross_leg3 * rate_cross_leg3;
+        let t430 = acceleration[1] - t406 * minus_rate_rod_leg3;
+        let t432 = t399 * t409 + 0.53 * c_rod_leg3 * (t414 + t421)
             - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2])
-            - t401 * t428;
-        let rate_dot_arm_leg3 = t394 * t430;
-        let t432 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t394 * t401;
-        let t434 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t394;
-        let t436 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
-        let t437 = 9.81 * c_arm_leg3;
-        let t441 = 9.81 * s_arm_leg3;
-        let t451 = minus_grod_vy_leg3 / s_cross_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t451;
-        let t456 = t402 * rate_cross_leg3;
-        let t457 = t456 + t456;
-        let t460 = 0.2 * rate_dot_arm_leg3;
-        let t462 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-            - (t405 + t457) - c_cross_leg3 * t460;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t462;
-        let t465 = 1.8867924528301887 * (t462 + t457);
-        let t466 = c_rod_leg3 * t465;
-        let t467 = rate_dot_cross_leg3 - t466;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t415 * minus_garm_vy_leg3);
-        let t472 = 1.8867924528301887 * t417;
-        let t473 = t472 * t472;
-        let t474 = t401 * t473;
-        let t475 = minus_grod_vy_leg3 * t474;
-        let gcross_vz_leg3 = s_arm_leg3 * t451;
-        let t480 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t481 = minus_rate_rod_leg3 * t472;
-        let t483 = t480 - t481 - t481;
-        let t485 = s_rod_leg3 * t465 + c_rod_leg3 * t483;
-        let t488 = t473 + t411;
-        let t489 = t420 - t473;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t428;
-        let t495 = t474 - minus_rate_dot_rod_leg3;
-        let t499 = s_rod_leg3 * t495 + c_rod_leg3 * (t488 - t419);
-        let t515 = t441 + t406;
-        let t517 = t460 - t437;
-        let t519 = s_cross_leg3 * t515 + c_cross_leg3 * t517;
-        let t520 = c_rod_leg3 * t519;
-        let t523 = 0.2 * s_cross_leg3;
+            - t405 * t430;
+        let rate_dot_arm_leg3 = t397 * t432;
+        let t434 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t397 * t405;
+        let t436 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t397;
+        let t438 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t439 = 9.81 * c_arm_leg3;
+        let t443 = 9.81 * s_arm_leg3;
+        let t453 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t453;
+        let t458 = 0.2 * s_cross_leg3;
+        let t460 = t406 * rate_cross_leg3;
+        let t461 = t460 + t460;
+        let t465 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t458 * t409 + t461) - t399 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t465;
+        let t467 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t468 = 1.8867924528301887 * t419;
+        let t469 = minus_rate_rod_leg3 * t468;
+        let t471 = t467 - t469 - t469;
+        let t472 = c_rod_leg3 * t471;
+        let t473 = t405 * t472;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t399 * minus_garm_vy_leg3);
+        let t478 = t468 * t468;
+        let t479 = t405 * t478;
+        let t480 = minus_grod_vy_leg3 * t479;
+        let gcross_vz_leg3 = s_arm_leg3 * t453;
+        let t485 = 1.8867924528301887 * (t465 + t461);
+        let t487 = s_rod_leg3 * t485 + t472;
+        let t490 = t405 * t479;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t430;
+        let t496 = t479 - minus_rate_dot_rod_leg3;
+        let t500 = s_rod_leg3 * t496 + c_rod_leg3 * (t414 - t490);
+        let t506 = c_rod_leg3 * t485;
+        let t518 = t443 + 0.2 * t409;
+        let t521 = 0.2 * rate_dot_arm_leg3 - t439;
+        let t523 = s_cross_leg3 * t518 + c_cross_leg3 * t521;
         let t524 = c_rod_leg3 * t523;
-        let t526 = t523 * s_rod_leg3;
-        let t529 = t415 * t465 - (t524 * t488 + t526 * t495);
-        let t533 = 0.2 * t517;
-        let t534 = minus_garm_vy_leg3 * t533;
-        let t545 = t524 * (t474 + minus_rate_dot_rod_leg3) + t526 * t489 - t415 * t483;
-        let t547 = s_rod_leg3 * t519;
-        let t552 = s_cross_leg3 * t517 - c_cross_leg3 * t515;
-        let t564 = t523 * rate_dot_cross_leg3 + t415 * t419;
-        let t577 = 5.0 / s_cross_leg4;
-        let t580 = s_rod_leg4 / c_rod_leg4;
-        let garm_vx_leg4 = t577 * t580;
-        let t582 = t580 * twist[0];
+        let t527 = c_rod_leg3 * t458;
+        let t530 = t458 * s_rod_leg3;
+        let t533 = t399 * t485 - (t527 * (t478 + t414) + t530 * t496);
+        let t537 = 0.2 * t521;
+        let t538 = minus_garm_vy_leg3 * t537;
+        let t550 = t527 * (t479 + minus_rate_dot_rod_leg3) + t530 * (t490 + t414)
+            - t399 * t471;
+        let t552 = s_rod_leg3 * t523;
+        let t557 = s_cross_leg3 * t521 - c_cross_leg3 * t518;
+        let t569 = t458 * rate_dot_cross_leg3 + t399 * t421;
+        let t582 = 5.0 / s_cross_leg4;
+        let t585 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t582 * t585;
+        let t587 = t585 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t594 = t582 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
-        let rate_arm_leg4 = t577 * t594;
-        let t596 = t594 * rate_arm_leg4;
-        let t597 = t596 / s_cross_leg4;
+        let t599 = t587 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t582 * t599;
+        let t601 = 0.2 * c_cross_leg4;
+        let t602 = t601 * rate_arm_leg4;
         let grod_vx_leg4 = 1.8867924528301887 / c_rod_leg4;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t602 = rate_rod_leg4 * rate_rod_leg4;
-        let t606 = 0.2 * c_cross_leg4;
-        let t608 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t606 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t608;
-        let t610 = rate_cross_leg4 * rate_cross_leg4;
-        let t611 = t602 + t610;
-        let t619 = acceleration[0] + t582 * rate_rod_leg4;
-        let t621 = c_cross_leg4 * t597 + 0.53 * c_rod_leg4 * t611
+        let t607 = rate_rod_leg4 * rate_rod_leg4;
+        let t611 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2] - t602;
+        let rate_cross_leg4 = grod_vx_leg4 * t611;
+        let t613 = rate_cross_leg4 * rate_cross_leg4;
+        let t622 = acceleration[0] + t587 * rate_rod_leg4;
+        let t624 = rate_arm_leg4 * t602 + 0.53 * c_rod_leg4 * (t607 + t613)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2])
-            + t580 * t619;
-        let rate_dot_arm_leg4 = t577 * t621;
-        let t623 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t577;
-        let t625 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t577;
-        let t627 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let t628 = 9.81 * c_arm_leg4;
-        let t632 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t606 * garm_vx_leg4);
-        let t647 = t582 * rate_cross_leg4;
-        let t648 = t647 + t647;
-        let t652 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-            - (t596 - t648) - t606 * rate_dot_arm_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * t652;
-        let t655 = 1.8867924528301887 * (t648 - t652);
-        let t656 = c_rod_leg4 * t655;
-        let t657 = rate_dot_cross_leg4 + t656;
-        let t659 = 1.8867924528301887 * t608;
-        let t660 = t659 * t659;
-        let t661 = t580 * t660;
-        let t662 = grod_vx_leg4 * t661;
-        let t664 = grod_vx_leg4 / s_cross_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t664;
-        let gcross_vz_leg4 = s_arm_leg4 * t664;
-        let t669 = t660 + t602;
-        let t670 = t611 - t660;
-        let t673 = rate_rod_leg4 * t659;
-        let t674 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t676 = t673 + t674 + t673;
-        let t679 = c_rod_leg4 * t676 - t580 * t656;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t619;
-        let t686 = t661 + rate_dot_rod_leg4;
-        let t690 = s_rod_leg4 * t686 + c_rod_leg4 * (t669 - t610);
-        let t705 = 0.2 * s_cross_leg4;
-        let t706 = c_rod_leg4 * t705;
-        let t708 = t705 * s_rod_leg4;
-        let t712 = t706 * t669 + t708 * t686 + t606 * t655;
-        let t715 = 0.2 * rate_dot_arm_leg4 - t628;
-        let t716 = 0.2 * t715;
-        let t717 = garm_vx_leg4 * t716;
-        let t721 = t632 + t597;
-        let t724 = s_cross_leg4 * t721 + c_cross_leg4 * t715;
-        let t725 = c_rod_leg4 * t724;
-        let t736 = t706 * (t661 - rate_dot_rod_leg4) + t708 * t670 - t606 * t676;
-        let t738 = s_rod_leg4 * t724;
-        let t743 = s_cross_leg4 * t715 - c_cross_leg4 * t721;
-        let t754 = t705 * rate_dot_cross_leg4 + t606 * t610;
+            + t585 * t622;
+        let rate_dot_arm_leg4 = t582 * t624;
+        let t626 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t582;
+        let t628 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t582;
+        let t630 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let t631 = 9.81 * c_arm_leg4;
+        let t635 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t601 * garm_vx_leg4);
+        let t647 = 1.8867924528301887 * t611;
+        let t648 = rate_rod_leg4 * t647;
+        let t652 = t599 * rate_arm_leg4;
+        let t653 = t587 * rate_cross_leg4;
+        let t657 = 0.2 * rate_dot_arm_leg4;
+        let rate_dot_cross_leg4 = grod_vx_leg4
+            * (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+                - (t652 - (t653 + t653)) - c_cross_leg4 * t657);
+        let t661 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t663 = t648 + t661 + t648;
+        let t664 = s_rod_leg4 * t663;
+        let t666 = t647 * t647;
+        let t667 = t585 * t666;
+        let t668 = grod_vx_leg4 * t667;
+        let t670 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t670;
+        let gcross_vz_leg4 = s_arm_leg4 * t670;
+        let t675 = t666 + t607;
+        let t676 = t585 * t667;
+        let t677 = t676 + t607;
+        let t681 = rate_dot_cross_leg4 - t664;
+        let t683 = c_rod_leg4 * t663 + t585 * t681;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t622;
+        let t690 = t667 + rate_dot_rod_leg4;
+        let t694 = s_rod_leg4 * t690 + c_rod_leg4 * (t607 - t676);
+        let t709 = 0.2 * s_cross_leg4;
+        let t710 = c_rod_leg4 * t709;
+        let t712 = t709 * s_rod_leg4;
+        let t717 = t710 * t675 + t712 * t690 - t601 * (t681 / c_rod_leg4);
+        let t719 = t657 - t631;
+        let t720 = 0.2 * t719;
+        let t721 = garm_vx_leg4 * t720;
+        let t726 = t635 + t652 / s_cross_leg4;
+        let t729 = s_cross_leg4 * t726 + c_cross_leg4 * t719;
+        let t730 = c_rod_leg4 * t729;
+        let t741 = t710 * (t667 - rate_dot_rod_leg4) + t712 * t677 - t601 * t663;
+        let t743 = s_rod_leg4 * t729;
+        let t748 = s_cross_leg4 * t719 - c_cross_leg4 * t726;
+        let t759 = t709 * rate_dot_cross_leg4 + t601 * t613;
         Ok([
             [
                 t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t81, -(minus_gcross_vx_leg1 * t99),
-                -(minus_gcross_vx_leg1 * t113), -(minus_gcross_vx_leg1 * t80),
+                minus_gcross_vx_leg1 * t84, -(minus_gcross_vx_leg1 * t99),
+                -(minus_gcross_vx_leg1 * t112), -(minus_gcross_vx_leg1 * t118),
                 -(minus_gcross_vx_leg1 * t123), 0.0,
-                garm_vx_leg1 * t137 - minus_gcross_vx_leg1 * t146,
-                garm_vx_leg1 * t162 + minus_gcross_vx_leg1 * t164,
-                garm_vx_leg1 * t180 - minus_gcross_vx_leg1 * t172, garm_vx_leg1 * t150, -t240,
+                garm_vx_leg1 * t138 - minus_gcross_vx_leg1 * t146,
+                garm_vx_leg1 * t163 + minus_gcross_vx_leg1 * t165,
+                garm_vx_leg1 * t181 - minus_gcross_vx_leg1 * t173, garm_vx_leg1 * t150, -t240,
                 minus_garm_vx_leg2 * t245, -(minus_garm_vx_leg2 * t249), -t240,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t276 + t280,
-                gcross_vx_leg2 * t292 - minus_grod_vx_leg2 * (t295 - t294),
-                gcross_vx_leg2 * t306 + minus_grod_vx_leg2 * t271, -(gcross_vx_leg2 * t289 + t280),
-                -(gcross_vx_leg2 * t316
+                gcross_vx_leg2 * t278 + t282,
+                gcross_vx_leg2 * t293 - minus_grod_vx_leg2 * (t295 - t280),
+                gcross_vx_leg2 * t306 + minus_grod_vx_leg2 * t273, -(gcross_vx_leg2 * t312 + t282),
+                -(gcross_vx_leg2 * t317
                     - 1.8867924528301887 * minus_rate_dot_cross_leg2),
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                minus_garm_vx_leg2 * t330 + 1.8867924528301887 * t335,
-                1.8867924528301887 * t351
-                    - (minus_garm_vx_leg2 * t358 + gcross_vx_leg2 * t360),
-                gcross_vx_leg2 * t351 - minus_garm_vx_leg2 * t373,
-                -t335,
-                -t432,
-                minus_garm_vx_leg3 * t437,
-                -(minus_garm_vx_leg3 * t441),
-                -t432,
+                minus_garm_vx_leg2 * t331 + 1.8867924528301887 * t336,
+                1.8867924528301887 * t353
+                    - (minus_garm_vx_leg2 * t361 + gcross_vx_leg2 * t363),
+                gcross_vx_leg2 * t353 - minus_garm_vx_leg2 * t376,
+                -t336,
+                -t434,
+                minus_garm_vx_leg3 * t439,
+                -(minus_garm_vx_leg3 * t443),
+                -t434,
                 minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 -minus_garm_vx_leg3,
-                gcross_vx_leg3 * t467,
-                gcross_vx_leg3 * t485,
-                gcross_vx_leg3 * t499,
-                gcross_vx_leg3 * t466,
+                gcross_vx_leg3 * t473,
+                gcross_vx_leg3 * t487,
+                gcross_vx_leg3 * t500,
+                gcross_vx_leg3 * t506,
                 -(gcross_vx_leg3 * t123),
                 0.0,
-                gcross_vx_leg3 * t520 - minus_garm_vx_leg3 * t529,
-                -(minus_garm_vx_leg3 * t545 + gcross_vx_leg3 * t547),
-                gcross_vx_leg3 * t552 - minus_garm_vx_leg3 * t564,
-                -(minus_garm_vx_leg3 * t533),
-                t623,
-                -(garm_vx_leg4 * t628),
-                garm_vx_leg4 * t632,
-                t623,
+                gcross_vx_leg3 * t524 - minus_garm_vx_leg3 * t533,
+                -(minus_garm_vx_leg3 * t550 + gcross_vx_leg3 * t552),
+                gcross_vx_leg3 * t557 - minus_garm_vx_leg3 * t569,
+                -(minus_garm_vx_leg3 * t537),
+                t626,
+                -(garm_vx_leg4 * t631),
+                garm_vx_leg4 * t635,
+                t626,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t657 + t662),
-                grod_vx_leg4 * (t670 - t669) - minus_gcross_vx_leg4 * t679,
-                grod_vx_leg4 * t674 - minus_gcross_vx_leg4 * t690,
-                t662 + minus_gcross_vx_leg4 * t656,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t316,
+                -(minus_gcross_vx_leg4 * t664 + t668),
+                grod_vx_leg4 * (t677 - t675) - minus_gcross_vx_leg4 * t683,
+                grod_vx_leg4 * t661 - minus_gcross_vx_leg4 * t694,
+                t668 - minus_gcross_vx_leg4 * t681,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t317,
                 grod_vx_leg4 * rate_dot_rod_leg4,
-                -(garm_vx_leg4 * t712 + 1.8867924528301887 * t717),
-                garm_vx_leg4 * t736 + minus_gcross_vx_leg4 * t738
-                    - 1.8867924528301887 * t743,
-                garm_vx_leg4 * t754 - minus_gcross_vx_leg4 * t743,
-                t717,
+                -(garm_vx_leg4 * t717 + 1.8867924528301887 * t721),
+                garm_vx_leg4 * t741 + minus_gcross_vx_leg4 * t743
+                    - 1.8867924528301887 * t748,
+                garm_vx_leg4 * t759 - minus_gcross_vx_leg4 * t748,
+                t721,
                 acceleration[0],
             ],
             [
                 t48, -(garm_vy_leg1 * t51), garm_vy_leg1 * t55, t48, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t81 - t89,
-                grod_vy_leg1 * (t102 - t101) - minus_gcross_vy_leg1 * t99,
-                -(minus_gcross_vy_leg1 * t113 + grod_vy_leg1 * t95),
-                t89 - minus_gcross_vy_leg1 * t80,
+                minus_gcross_vy_leg1 * t84 - t91,
+                grod_vy_leg1 * (t101 - t89) - minus_gcross_vy_leg1 * t99,
+                -(minus_gcross_vy_leg1 * t112 + grod_vy_leg1 * t81),
+                t91 - minus_gcross_vy_leg1 * t118,
                 -(minus_gcross_vy_leg1 * t123
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
                 grod_vy_leg1 * rate_dot_rod_leg1,
-                garm_vy_leg1 * t137 - 1.8867924528301887 * t151,
-                garm_vy_leg1 * t162 + minus_gcross_vy_leg1 * t164
-                    - 1.8867924528301887 * t172,
-                garm_vy_leg1 * t180 - minus_gcross_vy_leg1 * t172,
+                garm_vy_leg1 * t138 - 1.8867924528301887 * t151,
+                garm_vy_leg1 * t163 + minus_gcross_vy_leg1 * t165
+                    - 1.8867924528301887 * t173,
+                garm_vy_leg1 * t181 - minus_gcross_vy_leg1 * t173,
                 t151,
                 t242,
                 -(garm_vy_leg2 * t245),
@@ -2731,87 +2741,87 @@ impl Delta4 {
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t276),
-                -(minus_gcross_vy_leg2 * t292),
+                -(minus_gcross_vy_leg2 * t278),
+                -(minus_gcross_vy_leg2 * t293),
                 -(minus_gcross_vy_leg2 * t306),
-                minus_gcross_vy_leg2 * t289,
-                minus_gcross_vy_leg2 * t316,
+                minus_gcross_vy_leg2 * t312,
+                minus_gcross_vy_leg2 * t317,
                 0.0,
-                -(garm_vy_leg2 * t330 + minus_gcross_vy_leg2 * t343),
-                garm_vy_leg2 * t358 + minus_gcross_vy_leg2 * t360,
-                garm_vy_leg2 * t373 - minus_gcross_vy_leg2 * t351,
-                garm_vy_leg2 * t334,
-                -t434,
-                minus_garm_vy_leg3 * t437,
-                -(minus_garm_vy_leg3 * t441),
-                -t434,
+                -(garm_vy_leg2 * t331 + minus_gcross_vy_leg2 * t345),
+                garm_vy_leg2 * t361 + minus_gcross_vy_leg2 * t363,
+                garm_vy_leg2 * t376 - minus_gcross_vy_leg2 * t353,
+                garm_vy_leg2 * t335,
+                -t436,
+                minus_garm_vy_leg3 * t439,
+                -(minus_garm_vy_leg3 * t443),
+                -t436,
                 minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -minus_garm_vy_leg3,
-                gcross_vy_leg3 * t467 + t475,
-                gcross_vy_leg3 * t485 - minus_grod_vy_leg3 * (t489 - t488),
-                gcross_vy_leg3 * t499 - minus_grod_vy_leg3 * t480,
-                gcross_vy_leg3 * t466 - t475,
+                gcross_vy_leg3 * t473 + t480,
+                gcross_vy_leg3 * t487 - minus_grod_vy_leg3 * (t490 - t478),
+                gcross_vy_leg3 * t500 - minus_grod_vy_leg3 * t467,
+                gcross_vy_leg3 * t506 - t480,
                 -(gcross_vy_leg3 * t123 + 1.8867924528301887 * rate_dot_cross_leg3),
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                1.8867924528301887 * t534 - minus_garm_vy_leg3 * t529,
-                1.8867924528301887 * t552
-                    - (minus_garm_vy_leg3 * t545 + gcross_vy_leg3 * t547),
-                gcross_vy_leg3 * t552 - minus_garm_vy_leg3 * t564,
-                -t534,
-                -t625,
-                minus_garm_vy_leg4 * t628,
-                -(minus_garm_vy_leg4 * t632),
-                -t625,
+                1.8867924528301887 * t538 - minus_garm_vy_leg3 * t533,
+                1.8867924528301887 * t557
+                    - (minus_garm_vy_leg3 * t550 + gcross_vy_leg3 * t552),
+                gcross_vy_leg3 * t557 - minus_garm_vy_leg3 * t569,
+                -t538,
+                -t628,
+                minus_garm_vy_leg4 * t631,
+                -(minus_garm_vy_leg4 * t635),
+                -t628,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4),
                 -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t657,
-                gcross_vy_leg4 * t679,
-                gcross_vy_leg4 * t690,
-                -(gcross_vy_leg4 * t656),
-                gcross_vy_leg4 * t316,
+                gcross_vy_leg4 * t664,
+                gcross_vy_leg4 * t683,
+                gcross_vy_leg4 * t694,
+                gcross_vy_leg4 * t681,
+                gcross_vy_leg4 * t317,
                 0.0,
-                minus_garm_vy_leg4 * t712 + gcross_vy_leg4 * t725,
-                -(minus_garm_vy_leg4 * t736 + gcross_vy_leg4 * t738),
-                gcross_vy_leg4 * t743 - minus_garm_vy_leg4 * t754,
-                -(minus_garm_vy_leg4 * t716),
+                minus_garm_vy_leg4 * t717 + gcross_vy_leg4 * t730,
+                -(minus_garm_vy_leg4 * t741 + gcross_vy_leg4 * t743),
+                gcross_vy_leg4 * t748 - minus_garm_vy_leg4 * t759,
+                -(minus_garm_vy_leg4 * t720),
                 acceleration[1],
             ],
             [
                 -t50, minus_garm_vz_leg1 * t51, -(minus_garm_vz_leg1 * t55), -t50,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t81), minus_minus_gcross_vz_leg1 * t99,
-                minus_minus_gcross_vz_leg1 * t113, minus_minus_gcross_vz_leg1 * t80,
+                -(minus_minus_gcross_vz_leg1 * t84), minus_minus_gcross_vz_leg1 * t99,
+                minus_minus_gcross_vz_leg1 * t112, minus_minus_gcross_vz_leg1 * t118,
                 minus_minus_gcross_vz_leg1 * t123, 0.0,
-                -(minus_garm_vz_leg1 * t137 - minus_minus_gcross_vz_leg1 * t146),
-                -(minus_minus_gcross_vz_leg1 * t164 + minus_garm_vz_leg1 * t162),
-                -(minus_garm_vz_leg1 * t180 - minus_minus_gcross_vz_leg1 * t172),
+                -(minus_garm_vz_leg1 * t138 - minus_minus_gcross_vz_leg1 * t146),
+                -(minus_minus_gcross_vz_leg1 * t165 + minus_garm_vz_leg1 * t163),
+                -(minus_garm_vz_leg1 * t181 - minus_minus_gcross_vz_leg1 * t173),
                 -(minus_garm_vz_leg1 * t150), -t244, minus_garm_vz_leg2 * t245,
                 -(minus_garm_vz_leg2 * t249), -t244, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t276, gcross_vz_leg2 * t292, gcross_vz_leg2 * t306,
-                -(gcross_vz_leg2 * t289), -(gcross_vz_leg2 * t316), 0.0,
-                gcross_vz_leg2 * t343 + minus_garm_vz_leg2 * t330,
-                -(minus_garm_vz_leg2 * t358 + gcross_vz_leg2 * t360),
-                gcross_vz_leg2 * t351 - minus_garm_vz_leg2 * t373, -(minus_garm_vz_leg2 * t334),
-                -t436, minus_garm_vz_leg3 * t437, -(minus_garm_vz_leg3 * t441), -t436,
+                gcross_vz_leg2 * t278, gcross_vz_leg2 * t293, gcross_vz_leg2 * t306,
+                -(gcross_vz_leg2 * t312), -(gcross_vz_leg2 * t317), 0.0,
+                gcross_vz_leg2 * t345 + minus_garm_vz_leg2 * t331,
+                -(minus_garm_vz_leg2 * t361 + gcross_vz_leg2 * t363),
+                gcross_vz_leg2 * t353 - minus_garm_vz_leg2 * t376, -(minus_garm_vz_leg2 * t335),
+                -t438, minus_garm_vz_leg3 * t439, -(minus_garm_vz_leg3 * t443), -t438,
                 minus_garm_vz_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t467, gcross_vz_leg3 * t485,
-                gcross_vz_leg3 * t499, gcross_vz_leg3 * t466, -(gcross_vz_leg3 * t123), 0.0,
-                gcross_vz_leg3 * t520 - minus_garm_vz_leg3 * t529,
-                -(minus_garm_vz_leg3 * t545 + gcross_vz_leg3 * t547),
-                gcross_vz_leg3 * t552 - minus_garm_vz_leg3 * t564, -(minus_garm_vz_leg3 * t533),
-                -t627, minus_garm_vz_leg4 * t628, -(minus_garm_vz_leg4 * t632), -t627,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t473, gcross_vz_leg3 * t487,
+                gcross_vz_leg3 * t500, gcross_vz_leg3 * t506, -(gcross_vz_leg3 * t123), 0.0,
+                gcross_vz_leg3 * t524 - minus_garm_vz_leg3 * t533,
+                -(minus_garm_vz_leg3 * t550 + gcross_vz_leg3 * t552),
+                gcross_vz_leg3 * t557 - minus_garm_vz_leg3 * t569, -(minus_garm_vz_leg3 * t537),
+                -t630, minus_garm_vz_leg4 * t631, -(minus_garm_vz_leg4 * t635), -t630,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t657, gcross_vz_leg4 * t679, gcross_vz_leg4 * t690,
-                -(gcross_vz_leg4 * t656), gcross_vz_leg4 * t316, 0.0,
-                minus_garm_vz_leg4 * t712 + gcross_vz_leg4 * t725,
-                -(minus_garm_vz_leg4 * t736 + gcross_vz_leg4 * t738),
-                gcross_vz_leg4 * t743 - minus_garm_vz_leg4 * t754, -(minus_garm_vz_leg4 * t716),
+                gcross_vz_leg4 * t664, gcross_vz_leg4 * t683, gcross_vz_leg4 * t694,
+                gcross_vz_leg4 * t681, gcross_vz_leg4 * t317, 0.0,
+                minus_garm_vz_leg4 * t717 + gcross_vz_leg4 * t730,
+                -(minus_garm_vz_leg4 * t741 + gcross_vz_leg4 * t743),
+                gcross_vz_leg4 * t748 - minus_garm_vz_leg4 * t759, -(minus_garm_vz_leg4 * t720),
                 acceleration[2] + 9.81,
             ],
         ])
@@ -2827,7 +2837,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 930 operations (298 additions, 588 multiplications, 44 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 764 intermediates.
+    /// 948 operations (301 additions, 617 multiplications, 30 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 782 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2842,7 +2852,8 @@ impl Delta4 {
         let t2 = 0.4 * t1;
         let t4 = pose[2] * pose[2];
         let t5 = t1 * t1 + t4;
-        let t7 = pose[1] * pose[1] + -0.2809;
+        let t6 = pose[1] * pose[1];
+        let t7 = t6 + -0.2809;
         let t8 = t5 + t7;
         let t9 = t8 + 0.04;
         let t11 = 0.4 * pose[2];
@@ -2853,559 +2864,566 @@ impl Delta4 {
         let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
         let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t23 = 0.53 * c_rod_leg1;
-        let t24 = 0.4 * t23;
-        let c_cross_leg1 = (t8 + -0.04) / t24;
+        let t23 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t8 + -0.04) / t23;
         let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let t31 = 0.9433962264150944 * t15;
-        let t32 = t31 / c_rod_leg1;
-        let s_cross_leg1 = 5.0 * t32;
+        let s_cross_leg1 = t15 / t23;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t36 = 5.0 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t36;
-        let t40 = 0.2809 - pose[0] * pose[0];
-        let t41 = 3.5599857600569598 * t40;
-        ::overact::guard::reach(t41, "leg2")?;
-        ::overact::guard::reach(t41, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t41);
+        let t33 = 1.0 / s_cross_leg1;
+        let t34 = 5.0 * t33;
+        let garm_vx_leg1 = c_armcross_leg1 * t34;
+        let t38 = pose[1] + 0.05 - 0.2;
+        let t40 = t38 * t38 + t4;
+        let t41 = 0.16 * t40;
+        let t43 = 0.2809 - pose[0] * pose[0];
+        let t44 = t40 - t43;
+        let t45 = t44 + 0.04;
+        let t47 = t41 - t45 * t45;
+        ::overact::guard::reach(t47, "leg2")?;
+        let t48 = ::overact::math::sqrt(t47);
+        let t49 = 3.5599857600569598 * t43;
+        ::overact::guard::reach(t49, "leg2")?;
+        ::overact::guard::reach(t49, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t49);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
-        let t44 = 0.53 * minus_grod_vx_leg2;
-        let t46 = pose[1] + 0.05 - 0.2;
-        let t48 = t46 * t46 + t4;
-        let t49 = 0.16 * t48;
-        let t50 = t48 - t40;
-        let t51 = t50 + 0.04;
-        let t53 = t49 - t51 * t51;
-        ::overact::guard::reach(t53, "leg2")?;
-        let t54 = ::overact::math::sqrt(t53);
-        let t55 = 0.9433962264150944 * t54;
-        let t56 = t44 * t55;
-        let s_cross_leg2 = 5.0 * t56;
+        let t51 = 0.212 * c_rod_leg2;
+        let s_cross_leg2 = t48 / t51;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t58 = 5.0 / s_cross_leg2;
-        let t59 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t58 * t59;
-        let t64 = pose[0] - 0.05 + 0.2;
-        let t65 = 0.4 * t64;
-        let t67 = t64 * t64 + t4;
-        let t68 = t67 + t7;
+        let t53 = 1.0 / s_cross_leg2;
+        let t54 = 5.0 * t53;
+        let t55 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t55;
+        let t57 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t54 * t57;
+        let t62 = pose[0] - 0.05 + 0.2;
+        let t64 = t62 * t62 + t4;
+        let t65 = 0.16 * t64;
+        let t66 = 1.0 / t65;
+        let t67 = 0.4 * t62;
+        let t68 = t64 + t7;
         let t69 = t68 + 0.04;
-        let t71 = 0.16 * t67;
-        let t73 = t71 - t69 * t69;
-        ::overact::guard::reach(t73, "leg3")?;
-        let t74 = ::overact::math::sqrt(t73);
-        let minus_c_arm_leg3 = (t65 * t69 + t11 * t74) / t71;
-        let c_cross_leg3 = (-0.04 + t68) / t24;
-        let s_arm_leg3 = (t65 * t74 - t11 * t69) / t71;
-        let t85 = 0.9433962264150944 * t74;
-        let t86 = t85 / c_rod_leg1;
-        let s_cross_leg3 = 5.0 * t86;
+        let t72 = t65 - t69 * t69;
+        ::overact::guard::reach(t72, "leg3")?;
+        let t73 = ::overact::math::sqrt(t72);
+        let minus_c_arm_leg3 = t66 * (t67 * t69 + t11 * t73);
+        let c_cross_leg3 = (-0.04 + t68) / t23;
+        let s_arm_leg3 = t66 * (t67 * t73 - t11 * t69);
+        let s_cross_leg3 = t73 / t23;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t90 = 5.0 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t90;
-        let t95 = pose[1] - 0.05 + 0.2;
-        let t97 = t95 * t95 + t4;
-        let t98 = 0.16 * t97;
-        let t99 = t97 - t40;
-        let t100 = t99 + 0.04;
-        let t102 = t98 - t100 * t100;
-        ::overact::guard::reach(t102, "leg4")?;
-        let t103 = ::overact::math::sqrt(t102);
-        let t104 = t54 / s_cross_leg2;
-        let s_cross_leg4 = t103 / t104;
+        let t87 = 1.0 / s_cross_leg3;
+        let t88 = 5.0 * t87;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t88;
+        let t93 = pose[1] - 0.05 + 0.2;
+        let t95 = t93 * t93 + t4;
+        let t96 = 0.16 * t95;
+        let t97 = t95 - t43;
+        let t98 = t97 + 0.04;
+        let t100 = t96 - t98 * t98;
+        ::overact::guard::reach(t100, "leg4")?;
+        let t101 = ::overact::math::sqrt(t100);
+        let s_cross_leg4 = t101 / t51;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t106 = 5.0 / s_cross_leg4;
-        let garm_vx_leg4 = t59 * t106;
-        let t109 = garm_vx_leg1 * actuator_velocities[0]
+        let t103 = 1.0 / s_cross_leg4;
+        let t104 = 5.0 * t103;
+        let garm_vx_leg4 = t57 * t104;
+        let t107 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t107, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t107, 22.533170865545554, "actuators")?;
+        let t108 = 1.0 / t107;
+        let t109 = 0.2 * c_cross_leg1;
+        let t116 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t116 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
         let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
         let t119 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t36 * t119;
-        let t122 = 0.4 * t46;
-        let c_arm_leg2 = (t122 * t51 - t11 * t54) / t49;
-        let c_cross_leg2 = (-0.04 + t50) / t104;
-        let minus_s_arm_leg2 = (t11 * t51 + t122 * t54) / t49;
+        let garm_vy_leg1 = t34 * t119;
+        let t122 = 0.4 * t38;
+        let c_arm_leg2 = (t122 * t45 - t11 * t48) / t41;
+        let c_cross_leg2 = (-0.04 + t44) / t51;
+        let minus_s_arm_leg2 = (t11 * t45 + t122 * t48) / t41;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t58;
-        let garm_vy_leg3 = t119 * t90;
-        let t142 = 0.4 * t95;
-        let minus_c_arm_leg4 = (t142 * t100 + t11 * t103) / t98;
-        let c_cross_leg4 = (-0.04 + t99) / t104;
-        let s_arm_leg4 = (t142 * t103 - t11 * t100) / t98;
+        let garm_vy_leg2 = c_armcross_leg2 * t54;
+        let garm_vy_leg3 = t119 * t88;
+        let t142 = 1.0 / t96;
+        let t143 = 0.4 * t93;
+        let minus_c_arm_leg4 = t142 * (t143 * t98 + t11 * t101);
+        let c_cross_leg4 = (-0.04 + t97) / t51;
+        let s_arm_leg4 = t142 * (t143 * t101 - t11 * t98);
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t106;
-        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t104;
+        let t159 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t159 = t158 / t116;
-        let t168 = garm_vy_leg1 * actuator_velocities[0]
+        let t160 = t159 * t108;
+        let t169 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t109 * t159;
-        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
-        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
+            + garm_vy_leg4 * actuator_velocities[3] - t116 * t160;
+        let t178 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t159 * t160;
+        ::overact::guard::platform(t178, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t178, 22.533170865545554, "actuators")?;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t36;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t34;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t58;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t54;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t90;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t88;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t106;
-        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t104;
+        let t202 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t202 = t201 / t116;
-        let t211 = t158 * t202
+        let t203 = t202 * t108;
+        let t212 = t159 * t203
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t212 = t211 / t177;
-        let t223 = t109 * t202
+        let t213 = t212 / t178;
+        let t224 = t116 * t203
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t212 * t168;
-        let t234 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t213 * t169;
+        let t235 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t201 * t202 - t211 * t212;
-        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
-        let t235 = t223 / t234;
-        let t237 = t168 / t177 - t212 * t235;
-        let t241 = t109 / t116 - t159 * t237 + t202 * t235;
-        let t245 = t119 * t237;
-        let t246 = c_armcross_leg1 * t241 - s_armcross_leg1 * t235 + t245;
-        let rate_arm_leg1 = t36 * t246;
-        let t248 = 0.2 * c_cross_leg1;
-        let t249 = t248 * rate_arm_leg1;
-        let t254 = t249 + s_armcross_leg1 * t241 + c_armcross_leg1 * t235;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t254;
-        let t256 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t237;
-        let t258 = rate_rod_leg1 * rate_rod_leg1;
-        let t259 = t256 + t258;
-        let t261 = rate_arm_leg1 * t249 + t23 * t259;
-        let t262 = t245 * rate_rod_leg1;
-        let t263 = t119 * t262;
-        let rate_dot_arm_leg1 = t36 * (t261 + t263);
-        let t266 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t271 = t59 * t241;
-        let t272 = c_armcross_leg2 * t237 - s_armcross_leg2 * t235 + t271;
-        let rate_arm_leg2 = t58 * t272;
-        let t274 = t272 * rate_arm_leg2;
-        let t275 = t274 / s_cross_leg2;
-        let t277 = 0.53 * c_rod_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t241;
-        let t279 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t283 = 0.2 * c_cross_leg2;
-        let t285 = s_armcross_leg2 * t237 + c_armcross_leg2 * t235
-            + t283 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t285;
-        let t287 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t288 = t279 + t287;
-        let t290 = c_cross_leg2 * t275 + t277 * t288;
-        let t291 = t271 * minus_rate_rod_leg2;
-        let t292 = t59 * t291;
-        let rate_dot_arm_leg2 = t58 * (t290 + t292);
-        let t295 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t301 = minus_c_armcross_leg3 * t241 - s_armcross_leg3 * t235 + t245;
-        let rate_arm_leg3 = t90 * t301;
-        let t303 = 0.2 * c_cross_leg3;
-        let t304 = t303 * rate_arm_leg3;
-        let t309 = s_armcross_leg3 * t241 + minus_c_armcross_leg3 * t235 - t304;
-        let rate_cross_leg3 = grod_vy_leg1 * t309;
-        let t311 = rate_cross_leg3 * rate_cross_leg3;
-        let t312 = t258 + t311;
-        let t314 = rate_arm_leg3 * t304 + t23 * t312;
-        let rate_dot_arm_leg3 = t90 * (t314 + t263);
-        let t317 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t323 = minus_c_armcross_leg4 * t237 - s_armcross_leg4 * t235 + t271;
-        let rate_arm_leg4 = t106 * t323;
-        let t325 = t323 * rate_arm_leg4;
-        let t326 = t325 / s_cross_leg4;
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t202 * t203 - t212 * t213;
+        ::overact::guard::platform(t235, 66.4019122371629, "actuators")?;
+        ::overact::guard::platform(t235, 66.4019122371629, "actuators")?;
+        let t236 = t224 / t235;
+        let t238 = t169 / t178 - t213 * t236;
+        let t242 = t116 * t108 - t160 * t238 + t203 * t236;
+        let t246 = t119 * t238;
+        let rate_arm_leg1 = t34
+            * (c_armcross_leg1 * t242 - s_armcross_leg1 * t236 + t246);
+        let t249 = rate_arm_leg1 * rate_arm_leg1;
+        let t251 = grod_vy_leg1 * t7;
+        let t256 = t109 * rate_arm_leg1 + s_armcross_leg1 * t242
+            + c_armcross_leg1 * t236;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t256;
+        let t258 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t238;
+        let t260 = rate_rod_leg1 * rate_rod_leg1;
+        let t263 = t109 * t249 - t251 * (t258 + t260);
+        let t264 = pose[1] * t260;
+        let t265 = t119 * t264;
+        let rate_dot_arm_leg1 = t34 * (t263 + t265);
+        let t268 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t273 = t57 * t242;
+        let t274 = c_armcross_leg2 * t238 - s_armcross_leg2 * t236 + t273;
+        let rate_arm_leg2 = t54 * t274;
+        let t276 = t274 * rate_arm_leg2;
+        let t277 = t53 * t276;
+        let t279 = minus_grod_vx_leg2 * t43;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t242;
+        let t281 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t285 = 0.2 * c_cross_leg2;
+        let t287 = s_armcross_leg2 * t238 + c_armcross_leg2 * t236
+            + t285 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t287;
+        let t289 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t292 = c_cross_leg2 * t277 + t279 * (t281 + t289);
+        let t293 = t273 * minus_rate_rod_leg2;
+        let t294 = t57 * t293;
+        let rate_dot_arm_leg2 = t54 * (t292 + t294);
+        let t297 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t303 = minus_c_armcross_leg3 * t242 - s_armcross_leg3 * t236 + t246;
+        let rate_arm_leg3 = t88 * t303;
+        let t305 = t303 * rate_arm_leg3;
+        let t306 = t87 * t305;
+        let t311 = 0.2 * c_cross_leg3;
+        let t313 = s_armcross_leg3 * t242 + minus_c_armcross_leg3 * t236
+            - t311 * rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t313;
+        let t315 = rate_cross_leg3 * rate_cross_leg3;
+        let t316 = t260 + t315;
+        let t318 = c_cross_leg3 * t306 - t251 * t316;
+        let rate_dot_arm_leg3 = t88 * (t318 + t265);
+        let t321 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t327 = minus_c_armcross_leg4 * t238 - s_armcross_leg4 * t236 + t273;
+        let rate_arm_leg4 = t104 * t327;
+        let t329 = t327 * rate_arm_leg4;
+        let t330 = t329 / s_cross_leg4;
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t332 = 0.2 * c_cross_leg4;
-        let t334 = s_armcross_leg4 * t237 + minus_c_armcross_leg4 * t235
-            - t332 * rate_arm_leg4;
-        let t335 = 1.8867924528301887 * t334;
-        let t336 = t335 * t335;
-        let t337 = t336 / c_rod_leg2;
-        let t338 = minus_s_rod_leg2 * t337;
-        let t339 = minus_grod_vx_leg2 * t338;
-        let t340 = pose[0] * t339;
-        let t341 = t340 + t279;
-        let t344 = c_cross_leg4 * t326 + t277 * (t341 + t336);
-        let rate_dot_arm_leg4 = t106 * (t344 + t292);
-        let t347 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t349 = garm_vx_leg1 * t266 + garm_vx_leg2 * t295 + garm_vx_leg3 * t317
-            + garm_vx_leg4 * t347;
-        let t359 = garm_vy_leg1 * t266 + garm_vy_leg2 * t295 + garm_vy_leg3 * t317
-            + garm_vy_leg4 * t347 - t159 * t349;
-        let t371 = t202 * t349
-            - (minus_garm_vz_leg1 * t266 + minus_garm_vz_leg2 * t295
-                + minus_garm_vz_leg3 * t317 + minus_garm_vz_leg4 * t347) - t212 * t359;
-        let t372 = t371 / t234;
-        let t374 = t359 / t177 - t212 * t372;
-        let t378 = t349 / t116 - t159 * t374 + t202 * t372;
-        let t383 = t374 + t262;
-        let t384 = t119 * t383;
-        let rate_dot_arm_leg1_2 = t36
-            * (c_armcross_leg1 * t378 - s_armcross_leg1 * t372 + t261 + t384);
-        let t387 = garm_vx_leg1 * rate_dot_arm_leg1_2;
-        let t388 = garm_vy_leg1 * rate_dot_arm_leg1_2;
-        let t389 = minus_garm_vz_leg1 * rate_dot_arm_leg1_2;
-        let t390 = 9.81 * c_arm_leg1;
-        let t394 = 9.81 * minus_s_arm_leg1;
-        let t404 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t404;
-        let t407 = rate_rod_leg1 * (1.8867924528301887 * t254);
+        let t336 = 0.2 * c_cross_leg4;
+        let t338 = s_armcross_leg4 * t238 + minus_c_armcross_leg4 * t236
+            - t336 * rate_arm_leg4;
+        let t339 = 1.8867924528301887 * t338;
+        let t340 = t339 * t339;
+        let t341 = t55 * t340;
+        let t342 = minus_s_rod_leg2 * t341;
+        let t343 = t57 * t342;
+        let t344 = t343 + t281;
+        let t347 = c_cross_leg4 * t330 + t279 * (t344 + t340);
+        let rate_dot_arm_leg4 = t104 * (t347 + t294);
+        let t350 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t352 = garm_vx_leg1 * t268 + garm_vx_leg2 * t297 + garm_vx_leg3 * t321
+            + garm_vx_leg4 * t350;
+        let t362 = garm_vy_leg1 * t268 + garm_vy_leg2 * t297 + garm_vy_leg3 * t321
+            + garm_vy_leg4 * t350 - t160 * t352;
+        let t374 = t203 * t352
+            - (minus_garm_vz_leg1 * t268 + minus_garm_vz_leg2 * t297
+                + minus_garm_vz_leg3 * t321 + minus_garm_vz_leg4 * t350) - t213 * t362;
+        let t375 = t374 / t235;
+        let t377 = t362 / t178 - t213 * t375;
+        let t381 = t108 * t352 - t160 * t377 + t203 * t375;
+        let t386 = t377 + t264;
+        let t387 = t119 * t386;
+        let rate_dot_arm_leg1_2 = t34
+            * (c_armcross_leg1 * t381 - s_armcross_leg1 * t375 + t263 + t387);
+        let t390 = garm_vx_leg1 * rate_dot_arm_leg1_2;
+        let t391 = garm_vy_leg1 * rate_dot_arm_leg1_2;
+        let t392 = minus_garm_vz_leg1 * rate_dot_arm_leg1_2;
+        let t393 = 9.81 * c_arm_leg1;
+        let t397 = 9.81 * minus_s_arm_leg1;
+        let t407 = t33 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t407;
+        let t410 = rate_rod_leg1 * (1.8867924528301887 * t256);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t409 = 0.2 * rate_dot_arm_leg1_2;
-        let t414 = t246 * rate_arm_leg1;
-        let t415 = t245 * minus_rate_cross_leg1;
+        let t412 = 0.2 * rate_dot_arm_leg1_2;
+        let t417 = 0.2 * t249;
+        let t419 = t246 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t409 + s_armcross_leg1 * t378 + c_armcross_leg1 * t372
-                + t414 + t415 + t415);
-        let t421 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t423 = t407 + t421 + t407;
-        let t424 = c_rod_leg1 * t423;
-        let t425 = t119 * t424;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t248 * garm_vy_leg1);
-        let t430 = t256 * s_rod_leg1;
-        let t431 = c_rod_leg1 * t430;
-        let t432 = grod_vy_leg1 * t431;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t404;
-        let t436 = t425 - minus_rate_dot_cross_leg1;
-        let t438 = t119 * t436 - t424;
-        let t440 = pose[1] * t432;
-        let t441 = t259 - t440;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t383;
-        let t450 = s_rod_leg1 * (t431 + rate_dot_rod_leg1);
-        let t453 = t450 + c_rod_leg1 * (t258 - t440);
-        let t463 = 1.8867924528301887 * t374;
-        let t469 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t475 = t248 * (t436 / c_rod_leg1) - (t31 * t441 + t450 * t32);
-        let t477 = t409 - t390;
-        let t480 = t394 - t414 / s_cross_leg1;
-        let t482 = c_cross_leg1 * t477 - s_cross_leg1 * t480;
-        let t483 = c_rod_leg1 * t482;
-        let t487 = 0.2 * t477;
-        let t488 = garm_vy_leg1 * t487;
-        let t497 = t248 * t423 - t32 * (t463 - t430);
-        let t499 = s_rod_leg1 * t482;
-        let t507 = c_cross_leg1 * t480 + s_cross_leg1 * t477;
-        let t515 = t248 * t256 - minus_rate_dot_cross_leg1 * t32;
-        let t531 = t378 + t291;
-        let t532 = t59 * t531;
-        let rate_dot_arm_leg2_2 = t58
-            * (c_armcross_leg2 * t374 - s_armcross_leg2 * t372 + t290 + t532);
-        let t535 = garm_vx_leg2 * rate_dot_arm_leg2_2;
-        let t536 = garm_vy_leg2 * rate_dot_arm_leg2_2;
-        let t537 = minus_garm_vz_leg2 * rate_dot_arm_leg2_2;
-        let t538 = 9.81 * c_arm_leg2;
-        let t542 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t283 * garm_vx_leg2);
-        let t554 = 1.8867924528301887 * t285;
-        let t555 = minus_rate_rod_leg2 * t554;
-        let t559 = t271 * minus_rate_cross_leg2;
-        let t563 = 0.2 * rate_dot_arm_leg2_2;
+            * (c_cross_leg1 * t412 + s_armcross_leg1 * t381 + c_armcross_leg1 * t375
+                + s_cross_leg1 * t417 + t419 + t419);
+        let t425 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t427 = t410 + t425 + t410;
+        let t428 = c_rod_leg1 * t427;
+        let t429 = t119 * t428;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t109 * garm_vy_leg1);
+        let t435 = 3.5599857600569598 * (pose[1] * t258);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t407;
+        let t439 = t429 - minus_rate_dot_cross_leg1;
+        let t441 = t119 * t439 - t428;
+        let t450 = t251 * t435;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t386;
+        let t454 = t119 * t450;
+        let t457 = s_rod_leg1 * (rate_dot_rod_leg1 - t450) + c_rod_leg1 * (t260 + t454);
+        let t463 = minus_gcross_vx_leg1 * t439;
+        let t465 = t435 - minus_gcross_vy_leg1 * t439;
+        let t466 = minus_gcross_vz_leg1 * t439;
+        let t467 = 1.8867924528301887 * t377;
+        let t473 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t474 = 1.8867924528301887 * t381;
+        let t475 = t412 - t393;
+        let t476 = 0.2 * t475;
+        let t477 = garm_vx_leg1 * t476;
+        let t483 = garm_vy_leg1 * t476;
+        let t491 = t375 + 9.81;
+        let t492 = 1.8867924528301887 * t491;
+        let t493 = minus_garm_vz_leg1 * t476;
+        let t499 = 0.9433962264150944 * t15;
+        let t507 = t119 * t499 * (t260 - t454) - t499 * (t450 + rate_dot_rod_leg1)
+            + t109 * t427;
+        let t510 = t397 - t417;
+        let t513 = s_rod_leg1 * (c_cross_leg1 * t475 - s_cross_leg1 * t510);
+        let t521 = c_cross_leg1 * t510 + s_cross_leg1 * t475;
+        let t530 = t109 * t258 - minus_rate_dot_cross_leg1 * (t499 / c_rod_leg1);
+        let t544 = t381 + t293;
+        let t545 = t57 * t544;
+        let rate_dot_arm_leg2_2 = t54
+            * (c_armcross_leg2 * t377 - s_armcross_leg2 * t375 + t292 + t545);
+        let t548 = garm_vx_leg2 * rate_dot_arm_leg2_2;
+        let t549 = garm_vy_leg2 * rate_dot_arm_leg2_2;
+        let t550 = minus_garm_vz_leg2 * rate_dot_arm_leg2_2;
+        let t551 = 9.81 * c_arm_leg2;
+        let t555 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t285 * garm_vx_leg2);
+        let t568 = minus_rate_rod_leg2 * (1.8867924528301887 * t287);
+        let t572 = t273 * minus_rate_cross_leg2;
+        let t576 = 0.2 * rate_dot_arm_leg2_2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t374 + c_armcross_leg2 * t372 + t274 + t559 + t559
-                + c_cross_leg2 * t563);
-        let t567 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t569 = t555 + t567 + t555;
-        let t570 = minus_s_rod_leg2 * t569;
-        let t572 = t554 * t554;
-        let t573 = t59 * t572;
-        let t574 = minus_grod_vx_leg2 * t573;
-        let t576 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t576;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t576;
-        let t582 = t570 - minus_rate_dot_cross_leg2;
-        let t584 = c_rod_leg2 * t569 - t59 * t582;
-        let t586 = t572 + t279;
-        let t587 = t288 - t572;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t531;
-        let t594 = t573 + minus_rate_dot_rod_leg2;
-        let t598 = minus_s_rod_leg2 * t594 + c_rod_leg2 * (t586 - t287);
-        let t608 = 1.8867924528301887 * t378;
-        let t614 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t618 = minus_s_rod_leg2 * t56;
-        let t621 = t283 * (t44 * t582) - (t55 * t586 + t618 * t594);
-        let t623 = t563 - t538;
-        let t624 = 0.2 * t623;
-        let t625 = garm_vx_leg2 * t624;
-        let t630 = t542 - t275;
-        let t632 = c_cross_leg2 * t623 - s_cross_leg2 * t630;
-        let t633 = c_rod_leg2 * t632;
-        let t644 = t55 * (minus_rate_dot_rod_leg2 - t573) - t618 * t587 - t283 * t569;
-        let t646 = minus_s_rod_leg2 * t632;
-        let t651 = c_cross_leg2 * t630 + s_cross_leg2 * t623;
-        let t662 = t283 * t287 - minus_rate_dot_cross_leg2 * t56;
-        let rate_dot_arm_leg3_2 = t90
-            * (minus_c_armcross_leg3 * t378 - s_armcross_leg3 * t372 + t314 + t384);
-        let t680 = garm_vx_leg3 * rate_dot_arm_leg3_2;
-        let t681 = garm_vy_leg3 * rate_dot_arm_leg3_2;
-        let t682 = minus_garm_vz_leg3 * rate_dot_arm_leg3_2;
-        let t683 = 9.81 * minus_c_arm_leg3;
-        let t687 = 9.81 * s_arm_leg3;
-        let t697 = grod_vy_leg1 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t697;
-        let t700 = rate_rod_leg1 * (1.8867924528301887 * t309);
-        let t704 = t301 * rate_arm_leg3;
-        let t705 = t245 * rate_cross_leg3;
-        let t709 = 0.2 * rate_dot_arm_leg3_2;
+            * (s_armcross_leg2 * t377 + c_armcross_leg2 * t375 + t276 + t572 + t572
+                + c_cross_leg2 * t576);
+        let t580 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t582 = t568 + t580 + t568;
+        let t583 = minus_s_rod_leg2 * t582;
+        let t585 = t287 * t287;
+        let t587 = 3.5599857600569598 * (t57 * t585);
+        let t588 = minus_grod_vx_leg2 * t587;
+        let t590 = t53 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t590;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t590;
+        let t596 = t583 - minus_rate_dot_cross_leg2;
+        let t598 = c_rod_leg2 * t582 - t57 * t596;
+        let t600 = pose[0] * t588;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t544;
+        let t613 = minus_s_rod_leg2 * (t587 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t281 - t600);
+        let t620 = t588 - minus_gcross_vx_leg2 * t596;
+        let t621 = minus_gcross_vy_leg2 * t596;
+        let t622 = minus_gcross_vz_leg2 * t596;
+        let t628 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t629 = t576 - t551;
+        let t630 = 0.2 * t629;
+        let t631 = garm_vx_leg2 * t630;
+        let t639 = garm_vy_leg2 * t630;
+        let t646 = minus_garm_vz_leg2 * t630;
+        let t651 = 0.9433962264150944 * t48;
+        let t659 = t651 * (minus_rate_dot_rod_leg2 - t587) - t57 * t651 * (t600 + t281)
+            - t285 * t582;
+        let t662 = t555 - t277;
+        let t665 = minus_s_rod_leg2 * (c_cross_leg2 * t629 - s_cross_leg2 * t662);
+        let t670 = c_cross_leg2 * t662 + s_cross_leg2 * t629;
+        let t682 = t285 * t289 - minus_rate_dot_cross_leg2 * (t55 * t651);
+        let rate_dot_arm_leg3_2 = t88
+            * (minus_c_armcross_leg3 * t381 - s_armcross_leg3 * t375 + t318 + t387);
+        let t698 = garm_vx_leg3 * rate_dot_arm_leg3_2;
+        let t699 = garm_vy_leg3 * rate_dot_arm_leg3_2;
+        let t700 = minus_garm_vz_leg3 * rate_dot_arm_leg3_2;
+        let t701 = 9.81 * minus_c_arm_leg3;
+        let t705 = 9.81 * s_arm_leg3;
+        let t715 = t87 * grod_vy_leg1;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t715;
+        let t718 = rate_rod_leg1 * (1.8867924528301887 * t313);
+        let t722 = t246 * rate_cross_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
-            * (s_armcross_leg3 * t378 + minus_c_armcross_leg3 * t372
-                - (t704 - (t705 + t705)) - c_cross_leg3 * t709);
-        let t713 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t715 = t700 + t713 + t700;
-        let t716 = c_rod_leg1 * t715;
-        let t717 = t119 * t716;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t303 * garm_vy_leg3);
-        let t723 = 3.5599857600569598 * (pose[1] * t311);
-        let gcross_vz_leg3 = s_arm_leg3 * t697;
-        let t727 = rate_dot_cross_leg3 - t717;
-        let t729 = t119 * t727 + t716;
-        let t732 = t23 * t723;
+            * (s_armcross_leg3 * t381 + minus_c_armcross_leg3 * t375
+                - (t305 - (t722 + t722)) - t311 * rate_dot_arm_leg3_2);
+        let t729 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t731 = t718 + t729 + t718;
+        let t732 = c_rod_leg1 * t731;
         let t733 = t119 * t732;
-        let t734 = t312 - t733;
-        let t735 = t733 + t258;
-        let t755 = t687 + t704 / s_cross_leg3;
-        let t757 = t683 + t709;
-        let t759 = s_cross_leg3 * t755 + c_cross_leg3 * t757;
-        let t760 = c_rod_leg1 * t759;
-        let t763 = s_rod_leg1 * t86;
-        let t769 = t85 * t734 + t763 * (t732 + rate_dot_rod_leg1)
-            - t727 * (t303 / c_rod_leg1);
-        let t773 = 0.2 * t757;
-        let t774 = garm_vy_leg3 * t773;
-        let t785 = t85 * (rate_dot_rod_leg1 - t732) - t763 * t735 + t303 * t715;
-        let t787 = s_rod_leg1 * t759;
-        let t795 = s_cross_leg3 * t757 - c_cross_leg3 * t755;
-        let t803 = rate_dot_cross_leg3 * t86 + t303 * t311;
-        let rate_dot_arm_leg4_2 = t106
-            * (minus_c_armcross_leg4 * t374 - s_armcross_leg4 * t372 + t344 + t532);
-        let t821 = garm_vx_leg4 * rate_dot_arm_leg4_2;
-        let t822 = garm_vy_leg4 * rate_dot_arm_leg4_2;
-        let t823 = minus_garm_vz_leg4 * rate_dot_arm_leg4_2;
-        let t824 = 9.81 * minus_c_arm_leg4;
-        let t828 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t332 * garm_vx_leg4);
-        let t840 = minus_rate_rod_leg2 * t335;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t334;
-        let t845 = t271 * rate_cross_leg4;
-        let t849 = 0.2 * rate_dot_arm_leg4_2;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t311 * garm_vy_leg3);
+        let t739 = 3.5599857600569598 * (pose[1] * t315);
+        let gcross_vz_leg3 = s_arm_leg3 * t715;
+        let t743 = rate_dot_cross_leg3 - t733;
+        let t745 = t119 * t743 + t732;
+        let t748 = t251 * t739;
+        let t749 = t119 * t748;
+        let t750 = t316 + t749;
+        let t751 = t260 - t749;
+        let t770 = t705 + t306;
+        let t773 = t701 + 0.2 * rate_dot_arm_leg3_2;
+        let t775 = s_cross_leg3 * t770 + c_cross_leg3 * t773;
+        let t776 = c_rod_leg1 * t775;
+        let t778 = 0.9433962264150944 * t73;
+        let t780 = t119 * t778;
+        let t786 = t778 * t750 + t780 * (rate_dot_rod_leg1 - t748)
+            - t743 * (t311 / c_rod_leg1);
+        let t790 = 0.2 * t773;
+        let t791 = garm_vy_leg3 * t790;
+        let t802 = t778 * (rate_dot_rod_leg1 + t748) - t780 * t751 + t311 * t731;
+        let t804 = s_rod_leg1 * t775;
+        let t812 = s_cross_leg3 * t773 - c_cross_leg3 * t770;
+        let t821 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t311 * t315;
+        let rate_dot_arm_leg4_2 = t104
+            * (minus_c_armcross_leg4 * t377 - s_armcross_leg4 * t375 + t347 + t545);
+        let t839 = garm_vx_leg4 * rate_dot_arm_leg4_2;
+        let t840 = garm_vy_leg4 * rate_dot_arm_leg4_2;
+        let t841 = minus_garm_vz_leg4 * rate_dot_arm_leg4_2;
+        let t842 = 9.81 * minus_c_arm_leg4;
+        let t846 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t336 * garm_vx_leg4);
+        let t858 = minus_rate_rod_leg2 * t339;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t338;
+        let t863 = t273 * rate_cross_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
-            * (s_armcross_leg4 * t374 + minus_c_armcross_leg4 * t372
-                - (t325 - (t845 + t845)) - c_cross_leg4 * t849);
-        let t853 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t855 = t840 + t853 + t840;
-        let t856 = minus_s_rod_leg2 * t855;
-        let t859 = minus_grod_vx_leg2 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t859;
-        let gcross_vz_leg4 = s_arm_leg4 * t859;
-        let t867 = rate_dot_cross_leg4 - t856;
-        let t869 = c_rod_leg2 * t855 + t59 * t867;
-        let t888 = 0.9433962264150944 * t103;
-        let t889 = t888 / c_rod_leg2;
-        let t892 = t332 / c_rod_leg2;
-        let t894 = t889 * (t598 + t337) - t867 * t892;
-        let t896 = t824 + t849;
-        let t897 = 0.2 * t896;
-        let t898 = garm_vx_leg4 * t897;
-        let t901 = t828 + t326;
-        let t904 = s_cross_leg4 * t901 + c_cross_leg4 * t896;
-        let t905 = c_rod_leg2 * t904;
-        let t918 = t888 * (t338 - minus_rate_dot_rod_leg2) + t59 * t888 * t341
-            - t332 * t855;
-        let t920 = minus_s_rod_leg2 * t904;
-        let t925 = s_cross_leg4 * t896 - c_cross_leg4 * t901;
-        let t936 = rate_dot_cross_leg4 * t889 + t892 * t337;
+            * (s_armcross_leg4 * t377 + minus_c_armcross_leg4 * t375
+                - (t329 - (t863 + t863)) - t336 * rate_dot_arm_leg4_2);
+        let t870 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t872 = t858 + t870 + t858;
+        let t873 = minus_s_rod_leg2 * t872;
+        let t875 = minus_grod_vx_leg2 * t342;
+        let t877 = minus_grod_vx_leg2 * t103;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t877;
+        let gcross_vz_leg4 = s_arm_leg4 * t877;
+        let t885 = rate_dot_cross_leg4 - t873;
+        let t887 = c_rod_leg2 * t872 + t57 * t885;
+        let t906 = 0.2 * s_cross_leg4;
+        let t909 = t55 * t336;
+        let t911 = t906 * (t613 + t341) - t885 * t909;
+        let t914 = t842 + 0.2 * rate_dot_arm_leg4_2;
+        let t915 = 0.2 * t914;
+        let t916 = garm_vx_leg4 * t915;
+        let t919 = t846 + t330;
+        let t922 = s_cross_leg4 * t919 + c_cross_leg4 * t914;
+        let t923 = c_rod_leg2 * t922;
+        let t930 = 0.9433962264150944 * t101;
+        let t937 = t930 * (t342 - minus_rate_dot_rod_leg2) + t57 * t930 * t344
+            - t336 * t872;
+        let t939 = minus_s_rod_leg2 * t922;
+        let t944 = s_cross_leg4 * t914 - c_cross_leg4 * t919;
+        let t955 = rate_dot_cross_leg4 * t906 + t909 * t341;
         Ok([
             [
-                t387, -(garm_vx_leg1 * t390), -(garm_vx_leg1 * t394), t387,
+                t390, -(garm_vx_leg1 * t393), -(garm_vx_leg1 * t397), t390,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t425, -(minus_gcross_vx_leg1 * t438),
-                -(minus_gcross_vx_leg1 * t453), -(minus_gcross_vx_leg1 * t436),
-                -(minus_gcross_vx_leg1 * t463), 0.0,
-                garm_vx_leg1 * t475 - minus_gcross_vx_leg1 * t483,
-                garm_vx_leg1 * t497 + minus_gcross_vx_leg1 * t499,
-                garm_vx_leg1 * t515 - minus_gcross_vx_leg1 * t507, garm_vx_leg1 * t487, t535,
-                -(garm_vx_leg2 * t538), -(garm_vx_leg2 * t542), t535, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1, minus_gcross_vx_leg1 * t429, -(minus_gcross_vx_leg1 * t441),
+                -(minus_gcross_vx_leg1 * t457), -t463, -(minus_gcross_vx_leg1 * t467), 0.0,
+                t474 - 0.07547169811320754 * (25.0 * t477 - 7.0225 * t463),
+                garm_vx_leg1 * t507 + minus_gcross_vx_leg1 * t513,
+                garm_vx_leg1 * t530 - minus_gcross_vx_leg1 * t521, t477, t548,
+                -(garm_vx_leg2 * t551), -(garm_vx_leg2 * t555), t548, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t570 - t574,
-                -(minus_gcross_vx_leg2 * t584 + minus_grod_vx_leg2 * (t587 - t586)),
-                -(minus_gcross_vx_leg2 * t598 + minus_grod_vx_leg2 * t567),
-                t574 - minus_gcross_vx_leg2 * t582,
-                minus_gcross_vx_leg2 * t608
+                minus_gcross_vx_leg2 * t583 - t588,
+                -(minus_gcross_vx_leg2 * t598
+                    + 6.716954264258415 * (t55 * (0.2809 * t600 - t585))),
+                -(minus_gcross_vx_leg2 * t613 + minus_grod_vx_leg2 * t580),
+                t620,
+                minus_gcross_vx_leg2 * t474
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                t614,
-                garm_vx_leg2 * t621 - 1.8867924528301887 * t625,
-                garm_vx_leg2 * t644 - minus_gcross_vx_leg2 * t646
-                    + 1.8867924528301887 * t651,
-                garm_vx_leg2 * t662 - minus_gcross_vx_leg2 * t651,
-                t625,
-                t680,
-                garm_vx_leg3 * t683,
-                garm_vx_leg3 * t687,
-                t680,
+                t628,
+                t474
+                    - 0.07547169811320754
+                        * (25.0 * t631 + 7.0225 * t620 + 7.0225 * t628),
+                garm_vx_leg2 * t659 - minus_gcross_vx_leg2 * t665
+                    + 1.8867924528301887 * t670,
+                garm_vx_leg2 * t682 - minus_gcross_vx_leg2 * t670,
+                t631,
+                t698,
+                garm_vx_leg3 * t701,
+                garm_vx_leg3 * t705,
+                t698,
                 garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t717),
-                minus_gcross_vx_leg3 * t729,
-                -(minus_gcross_vx_leg3 * t453),
-                -(minus_gcross_vx_leg3 * t727),
-                minus_gcross_vx_leg3 * t463,
+                -(minus_gcross_vx_leg3 * t733),
+                minus_gcross_vx_leg3 * t745,
+                -(minus_gcross_vx_leg3 * t457),
+                -(minus_gcross_vx_leg3 * t743),
+                minus_gcross_vx_leg3 * t467,
                 0.0,
-                -(minus_gcross_vx_leg3 * t760 + garm_vx_leg3 * t769),
-                garm_vx_leg3 * t785 - minus_gcross_vx_leg3 * t787,
-                garm_vx_leg3 * t803 - minus_gcross_vx_leg3 * t795,
-                garm_vx_leg3 * t773,
-                t821,
-                garm_vx_leg4 * t824,
-                garm_vx_leg4 * t828,
-                t821,
+                -(minus_gcross_vx_leg3 * t776 + garm_vx_leg3 * t786),
+                garm_vx_leg3 * t802 - minus_gcross_vx_leg3 * t804,
+                garm_vx_leg3 * t821 - minus_gcross_vx_leg3 * t812,
+                garm_vx_leg3 * t790,
+                t839,
+                garm_vx_leg4 * t842,
+                garm_vx_leg4 * t846,
+                t839,
                 garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
                 garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t856 + t339),
-                -(minus_grod_vx_leg2 * (t336 - t340) + minus_gcross_vx_leg4 * t869),
-                minus_grod_vx_leg2 * t853 - minus_gcross_vx_leg4 * t598,
-                t339 - minus_gcross_vx_leg4 * t867,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t608,
-                t614,
-                -(garm_vx_leg4 * t894 + 1.8867924528301887 * t898),
-                garm_vx_leg4 * t918 + minus_gcross_vx_leg4 * t920
-                    - 1.8867924528301887 * t925,
-                garm_vx_leg4 * t936 - minus_gcross_vx_leg4 * t925,
-                t898,
-                t378,
+                -(minus_gcross_vx_leg4 * t873 + t875),
+                -(minus_grod_vx_leg2 * (t340 - t343) + minus_gcross_vx_leg4 * t887),
+                minus_grod_vx_leg2 * t870 - minus_gcross_vx_leg4 * t613,
+                t875 - minus_gcross_vx_leg4 * t885,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t474,
+                t628,
+                -(garm_vx_leg4 * t911 + 1.8867924528301887 * t916),
+                garm_vx_leg4 * t937 + minus_gcross_vx_leg4 * t939
+                    - 1.8867924528301887 * t944,
+                garm_vx_leg4 * t955 - minus_gcross_vx_leg4 * t944,
+                t916,
+                t381,
             ],
             [
-                t388, -(garm_vy_leg1 * t390), -(garm_vy_leg1 * t394), t388,
+                t391, -(garm_vy_leg1 * t393), -(garm_vy_leg1 * t397), t391,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t425 - t432,
-                -(grod_vy_leg1 * (t441 - (t440 + t258)) + minus_gcross_vy_leg1 * t438),
-                -(minus_gcross_vy_leg1 * t453 + grod_vy_leg1 * t421),
-                t432 - minus_gcross_vy_leg1 * t436,
-                -(minus_gcross_vy_leg1 * t463
+                garm_vy_leg1, minus_gcross_vy_leg1 * t429 - t435,
+                6.716954264258415 * (t258 * (t6 + t7) / c_rod_leg1)
+                    - minus_gcross_vy_leg1 * t441,
+                -(minus_gcross_vy_leg1 * t457 + grod_vy_leg1 * t425),
+                t465,
+                -(minus_gcross_vy_leg1 * t467
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                t469,
-                garm_vy_leg1 * t475 - 1.8867924528301887 * t488,
-                garm_vy_leg1 * t497 + minus_gcross_vy_leg1 * t499
-                    - 1.8867924528301887 * t507,
-                garm_vy_leg1 * t515 - minus_gcross_vy_leg1 * t507,
-                t488,
-                t536,
-                -(garm_vy_leg2 * t538),
-                -(garm_vy_leg2 * t542),
-                t536,
+                t473,
+                t467
+                    - 0.07547169811320754
+                        * (25.0 * t483 + 7.0225 * t465 + 7.0225 * t473),
+                garm_vy_leg1 * t507 + minus_gcross_vy_leg1 * t513
+                    - 1.8867924528301887 * t521,
+                garm_vy_leg1 * t530 - minus_gcross_vy_leg1 * t521,
+                t483,
+                t549,
+                -(garm_vy_leg2 * t551),
+                -(garm_vy_leg2 * t555),
+                t549,
                 garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 garm_vy_leg2,
-                minus_gcross_vy_leg2 * t570,
-                -(minus_gcross_vy_leg2 * t584),
+                minus_gcross_vy_leg2 * t583,
                 -(minus_gcross_vy_leg2 * t598),
-                -(minus_gcross_vy_leg2 * t582),
-                minus_gcross_vy_leg2 * t608,
+                -(minus_gcross_vy_leg2 * t613),
+                -t621,
+                minus_gcross_vy_leg2 * t474,
                 0.0,
-                garm_vy_leg2 * t621 - minus_gcross_vy_leg2 * t633,
-                garm_vy_leg2 * t644 - minus_gcross_vy_leg2 * t646,
-                garm_vy_leg2 * t662 - minus_gcross_vy_leg2 * t651,
-                garm_vy_leg2 * t624,
-                t681,
-                garm_vy_leg3 * t683,
-                garm_vy_leg3 * t687,
-                t681,
+                t467 - 0.07547169811320754 * (25.0 * t639 - 7.0225 * t621),
+                garm_vy_leg2 * t659 - minus_gcross_vy_leg2 * t665,
+                garm_vy_leg2 * t682 - minus_gcross_vy_leg2 * t670,
+                t639,
+                t699,
+                garm_vy_leg3 * t701,
+                garm_vy_leg3 * t705,
+                t699,
                 garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t717 + t723),
-                minus_gcross_vy_leg3 * t729 + grod_vy_leg1 * (t734 - t735),
-                grod_vy_leg1 * t713 - minus_gcross_vy_leg3 * t453,
-                t723 - minus_gcross_vy_leg3 * t727,
-                minus_gcross_vy_leg3 * t463 - 1.8867924528301887 * rate_dot_cross_leg3,
-                t469,
-                -(garm_vy_leg3 * t769 + 1.8867924528301887 * t774),
-                garm_vy_leg3 * t785 - minus_gcross_vy_leg3 * t787
-                    + 1.8867924528301887 * t795,
-                garm_vy_leg3 * t803 - minus_gcross_vy_leg3 * t795,
-                t774,
-                t822,
-                garm_vy_leg4 * t824,
-                garm_vy_leg4 * t828,
-                t822,
+                -(minus_gcross_vy_leg3 * t733 + t739),
+                minus_gcross_vy_leg3 * t745 + grod_vy_leg1 * (t750 - t751),
+                grod_vy_leg1 * t729 - minus_gcross_vy_leg3 * t457,
+                t739 - minus_gcross_vy_leg3 * t743,
+                minus_gcross_vy_leg3 * t467 - 1.8867924528301887 * rate_dot_cross_leg3,
+                t473,
+                -(garm_vy_leg3 * t786 + 1.8867924528301887 * t791),
+                garm_vy_leg3 * t802 - minus_gcross_vy_leg3 * t804
+                    + 1.8867924528301887 * t812,
+                garm_vy_leg3 * t821 - minus_gcross_vy_leg3 * t812,
+                t791,
+                t840,
+                garm_vy_leg4 * t842,
+                garm_vy_leg4 * t846,
+                t840,
                 garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4),
                 garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t856),
-                -(minus_gcross_vy_leg4 * t869),
-                -(minus_gcross_vy_leg4 * t598),
-                -(minus_gcross_vy_leg4 * t867),
-                -(minus_gcross_vy_leg4 * t608),
+                -(minus_gcross_vy_leg4 * t873),
+                -(minus_gcross_vy_leg4 * t887),
+                -(minus_gcross_vy_leg4 * t613),
+                -(minus_gcross_vy_leg4 * t885),
+                -(minus_gcross_vy_leg4 * t474),
                 0.0,
-                -(minus_gcross_vy_leg4 * t905 + garm_vy_leg4 * t894),
-                garm_vy_leg4 * t918 + minus_gcross_vy_leg4 * t920,
-                garm_vy_leg4 * t936 - minus_gcross_vy_leg4 * t925,
-                garm_vy_leg4 * t897,
-                t374,
+                -(minus_gcross_vy_leg4 * t923 + garm_vy_leg4 * t911),
+                garm_vy_leg4 * t937 + minus_gcross_vy_leg4 * t939,
+                garm_vy_leg4 * t955 - minus_gcross_vy_leg4 * t944,
+                garm_vy_leg4 * t915,
+                t377,
             ],
             [
-                -t389, minus_garm_vz_leg1 * t390, minus_garm_vz_leg1 * t394, -t389,
+                -t392, minus_garm_vz_leg1 * t393, minus_garm_vz_leg1 * t397, -t392,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t425, -(minus_gcross_vz_leg1 * t438),
-                -(minus_gcross_vz_leg1 * t453), -(minus_gcross_vz_leg1 * t436),
-                -(minus_gcross_vz_leg1 * t463), 0.0,
-                -(minus_garm_vz_leg1 * t475 + minus_gcross_vz_leg1 * t483),
-                minus_gcross_vz_leg1 * t499 - minus_garm_vz_leg1 * t497,
-                -(minus_garm_vz_leg1 * t515 + minus_gcross_vz_leg1 * t507),
-                -(minus_garm_vz_leg1 * t487), -t537, minus_garm_vz_leg2 * t538,
-                minus_garm_vz_leg2 * t542, -t537, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                minus_gcross_vz_leg1 * t429, -(minus_gcross_vz_leg1 * t441),
+                -(minus_gcross_vz_leg1 * t457), -t466, -(minus_gcross_vz_leg1 * t467), 0.0,
+                t492 + 0.07547169811320754 * (25.0 * t493 + 7.0225 * t466),
+                minus_gcross_vz_leg1 * t513 - minus_garm_vz_leg1 * t507,
+                -(minus_garm_vz_leg1 * t530 + minus_gcross_vz_leg1 * t521), -t493, -t550,
+                minus_garm_vz_leg2 * t551, minus_garm_vz_leg2 * t555, -t550,
+                -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t570, -(minus_gcross_vz_leg2 * t584),
-                -(minus_gcross_vz_leg2 * t598), -(minus_gcross_vz_leg2 * t582),
-                minus_gcross_vz_leg2 * t608, 0.0,
-                -(minus_gcross_vz_leg2 * t633 + minus_garm_vz_leg2 * t621),
-                -(minus_gcross_vz_leg2 * t646 + minus_garm_vz_leg2 * t644),
-                -(minus_gcross_vz_leg2 * t651 + minus_garm_vz_leg2 * t662),
-                -(minus_garm_vz_leg2 * t624), -t682, -(minus_garm_vz_leg3 * t683),
-                -(minus_garm_vz_leg3 * t687), -t682, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                minus_gcross_vz_leg2 * t583, -(minus_gcross_vz_leg2 * t598),
+                -(minus_gcross_vz_leg2 * t613), -t622, minus_gcross_vz_leg2 * t474, 0.0,
+                t492 + 0.07547169811320754 * (7.0225 * t622 + 25.0 * t646),
+                -(minus_gcross_vz_leg2 * t665 + minus_garm_vz_leg2 * t659),
+                -(minus_gcross_vz_leg2 * t670 + minus_garm_vz_leg2 * t682), -t646, -t700,
+                -(minus_garm_vz_leg3 * t701), -(minus_garm_vz_leg3 * t705), -t700,
+                -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t717, -(gcross_vz_leg3 * t729), gcross_vz_leg3 * t453,
-                gcross_vz_leg3 * t727, -(gcross_vz_leg3 * t463), 0.0,
-                minus_garm_vz_leg3 * t769 + gcross_vz_leg3 * t760,
-                gcross_vz_leg3 * t787 - minus_garm_vz_leg3 * t785,
-                gcross_vz_leg3 * t795 - minus_garm_vz_leg3 * t803, -(minus_garm_vz_leg3 * t773),
-                -t823, -(minus_garm_vz_leg4 * t824), -(minus_garm_vz_leg4 * t828), -t823,
+                gcross_vz_leg3 * t733, -(gcross_vz_leg3 * t745), gcross_vz_leg3 * t457,
+                gcross_vz_leg3 * t743, -(gcross_vz_leg3 * t467), 0.0,
+                minus_garm_vz_leg3 * t786 + gcross_vz_leg3 * t776,
+                gcross_vz_leg3 * t804 - minus_garm_vz_leg3 * t802,
+                gcross_vz_leg3 * t812 - minus_garm_vz_leg3 * t821, -(minus_garm_vz_leg3 * t790),
+                -t841, -(minus_garm_vz_leg4 * t842), -(minus_garm_vz_leg4 * t846), -t841,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t856, gcross_vz_leg4 * t869, gcross_vz_leg4 * t598,
-                gcross_vz_leg4 * t867, gcross_vz_leg4 * t608, 0.0,
-                minus_garm_vz_leg4 * t894 + gcross_vz_leg4 * t905,
-                -(minus_garm_vz_leg4 * t918 + gcross_vz_leg4 * t920),
-                gcross_vz_leg4 * t925 - minus_garm_vz_leg4 * t936, -(minus_garm_vz_leg4 * t897),
-                t372 + 9.81,
+                gcross_vz_leg4 * t873, gcross_vz_leg4 * t887, gcross_vz_leg4 * t613,
+                gcross_vz_leg4 * t885, gcross_vz_leg4 * t474, 0.0,
+                minus_garm_vz_leg4 * t911 + gcross_vz_leg4 * t923,
+                -(minus_garm_vz_leg4 * t937 + gcross_vz_leg4 * t939),
+                gcross_vz_leg4 * t944 - minus_garm_vz_leg4 * t955, -(minus_garm_vz_leg4 * t915),
+                t491,
             ],
         ])
     }
@@ -3419,7 +3437,7 @@ impl Delta4 {
     /// Output: 3 x 69.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1018 operations (348 additions, 651 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 886 intermediates.
+    /// 1025 operations (350 additions, 656 multiplications, 19 divisions), 6 square roots, 0 trigonometric pairs, 6 signs, 893 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3429,435 +3447,437 @@ impl Delta4 {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 69]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
+        let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
-        let t4 = t1 * t1 + t3;
-        let t5 = 0.16 * t4;
+        let t5 = 0.16 * (t2 + t3);
         let t6 = pose[1] * pose[1];
-        let t8 = t4 + t6 - 0.2809;
-        let t9 = t8 + 0.04;
-        let t11 = t5 - t9 * t9;
-        ::overact::guard::reach(t11, "leg1")?;
-        let t12 = ::overact::math::sqrt(t11);
-        let t13 = 3.5599857600569598 * t6;
-        let t14 = 1.0 - t13;
-        ::overact::guard::reach(t14, "leg1")?;
-        ::overact::guard::reach(t14, "leg3")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t14);
+        let t9 = t2 + t6 + t3 - 0.2809;
+        let t10 = t9 + 0.04;
+        let t12 = t5 - t10 * t10;
+        ::overact::guard::reach(t12, "leg1")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t15 = 3.5599857600569598 * t6;
+        let t16 = 1.0 - t15;
+        ::overact::guard::reach(t16, "leg1")?;
+        ::overact::guard::reach(t16, "leg3")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t16);
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t16 = 0.212 * c_rod_leg1;
-        let s_cross_leg1 = t12 / t16;
+        let t18 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t13 / t18;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
-        let t18 = 1.0 / s_cross_leg1;
-        let t19 = 5.0 * t18;
-        let t20 = 1.0 / t5;
-        let t21 = 0.4 * t1;
-        let t23 = 0.4 * pose[2];
-        let c_arm_leg1 = t20 * (t21 * t9 - t23 * t12);
-        let c_cross_leg1 = (t8 + -0.04) / t16;
-        let minus_s_arm_leg1 = t20 * (t23 * t9 + t21 * t12);
+        let t20 = 1.0 / s_cross_leg1;
+        let t21 = 5.0 * t20;
+        let t22 = 1.0 / t5;
+        let t23 = 0.4 * t1;
+        let t25 = 0.4 * pose[2];
+        let c_arm_leg1 = t22 * (t23 * t10 - t25 * t13);
+        let t30 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t9 + -0.04) / t30;
+        let minus_s_arm_leg1 = t22 * (t25 * t10 + t23 * t13);
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t42 = 0.2 * c_cross_leg1;
+        let t45 = 0.2 * c_cross_leg1;
+        let t48 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2];
         let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
-        let t47 = pose[1] * grod_vy_leg1;
-        let t48 = t47 * twist[1];
-        let rate_arm_leg1 = t19
-            * (c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t48);
-        let t51 = rate_arm_leg1 * rate_arm_leg1;
-        let t53 = 0.53 * c_rod_leg1;
-        let t58 = t42 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+        let t50 = pose[1] * grod_vy_leg1;
+        let t51 = t50 * twist[1];
+        let rate_arm_leg1 = t21 * (t48 + t51);
+        let t54 = rate_arm_leg1 * rate_arm_leg1;
+        let garm_vy_leg1 = t21 * t50;
+        let t59 = t45 * garm_vy_leg1;
+        let t65 = c_cross_leg1 * t20 * t48 + t59 * twist[1] + s_armcross_leg1 * twist[0]
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t58;
-        let t60 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t65;
+        let t67 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t62 = rate_rod_leg1 * rate_rod_leg1;
-        let t68 = acceleration[1] + pose[1] * t62;
-        let t69 = t47 * t68;
-        let rate_dot_arm_leg1 = t19
+        let t69 = rate_rod_leg1 * rate_rod_leg1;
+        let t75 = acceleration[1] + pose[1] * t69;
+        let t76 = t50 * t75;
+        let rate_dot_arm_leg1 = t21
             * (c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-                + t42 * t51 + t53 * (t60 + t62) + t69);
-        let t72 = 9.81 * c_arm_leg1;
-        let t73 = 9.81 * minus_s_arm_leg1;
-        let t76 = pose[1] + 0.05 - 0.2;
-        let t78 = t76 * t76 + t3;
-        let t79 = 0.16 * t78;
-        let t80 = pose[0] * pose[0];
-        let t82 = t78 + t80 - 0.2809;
-        let t83 = t82 + 0.04;
-        let t85 = t79 - t83 * t83;
-        ::overact::guard::reach(t85, "leg2")?;
-        let t86 = ::overact::math::sqrt(t85);
-        let t87 = 3.5599857600569598 * t80;
-        let t88 = 1.0 - t87;
-        ::overact::guard::reach(t88, "leg2")?;
-        ::overact::guard::reach(t88, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t88);
+                + t45 * t54 + t18 * (t67 + t69) + t76);
+        let t79 = 9.81 * c_arm_leg1;
+        let t80 = 9.81 * minus_s_arm_leg1;
+        let t83 = pose[1] + 0.05 - 0.2;
+        let t85 = t83 * t83 + t3;
+        let t86 = 0.16 * t85;
+        let t87 = pose[0] * pose[0];
+        let t89 = t85 + t87 - 0.2809;
+        let t90 = t89 + 0.04;
+        let t92 = t86 - t90 * t90;
+        ::overact::guard::reach(t92, "leg2")?;
+        let t93 = ::overact::math::sqrt(t92);
+        let t94 = 3.5599857600569598 * t87;
+        let t95 = 1.0 - t94;
+        ::overact::guard::reach(t95, "leg2")?;
+        ::overact::guard::reach(t95, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t95);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t90 = 0.212 * c_rod_leg2;
-        let s_cross_leg2 = t86 / t90;
+        let t97 = 0.212 * c_rod_leg2;
+        let s_cross_leg2 = t93 / t97;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t92 = 1.0 / s_cross_leg2;
-        let t93 = 5.0 * t92;
+        let t99 = 1.0 / s_cross_leg2;
+        let t100 = 5.0 * t99;
         let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
-        let t95 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t93 * t95;
-        let t98 = pose[0] - 0.05 + 0.2;
-        let t100 = t98 * t98 + t3;
-        let t101 = 0.16 * t100;
-        let t102 = 1.0 / t101;
-        let t103 = 0.4 * t98;
-        let t105 = t6 + t100 - 0.2809;
-        let t106 = t105 + 0.04;
-        let t108 = t101 - t106 * t106;
-        ::overact::guard::reach(t108, "leg3")?;
-        let t109 = ::overact::math::sqrt(t108);
-        let s_arm_leg3 = t102 * (t103 * t109 - t23 * t106);
-        let c_cross_leg3 = (-0.04 + t105) / t16;
-        let minus_c_arm_leg3 = t102 * (t103 * t106 + t23 * t109);
-        let s_cross_leg3 = t109 / t16;
+        let t102 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t100 * t102;
+        let t105 = pose[0] - 0.05 + 0.2;
+        let t107 = t105 * t105 + t3;
+        let t108 = 0.16 * t107;
+        let t109 = 1.0 / t108;
+        let t110 = 0.4 * t105;
+        let t112 = t6 + t107 - 0.2809;
+        let t113 = t112 + 0.04;
+        let t115 = t108 - t113 * t113;
+        ::overact::guard::reach(t115, "leg3")?;
+        let t116 = ::overact::math::sqrt(t115);
+        let s_arm_leg3 = t109 * (t110 * t116 - t25 * t113);
+        let c_cross_leg3 = (-0.04 + t112) / t30;
+        let minus_c_arm_leg3 = t109 * (t110 * t113 + t25 * t116);
+        let s_cross_leg3 = t116 / t30;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t124 = 1.0 / s_cross_leg3;
-        let t125 = 5.0 * t124;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t125;
-        let t128 = 1.0 / t79;
-        let t129 = 0.4 * t76;
-        let c_arm_leg2 = t128 * (t129 * t83 - t23 * t86);
-        let minus_s_arm_leg2 = t128 * (t23 * t83 + t129 * t86);
-        let c_cross_leg2 = (-0.04 + t82) / t90;
+        let t131 = 1.0 / s_cross_leg3;
+        let t132 = 5.0 * t131;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
+        let t135 = 1.0 / t86;
+        let t136 = 0.4 * t83;
+        let c_arm_leg2 = t135 * (t136 * t90 - t25 * t93);
+        let minus_s_arm_leg2 = t135 * (t25 * t90 + t136 * t93);
+        let c_cross_leg2 = (-0.04 + t89) / t97;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t93;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t100;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t125;
-        let garm_vy_leg1 = t19 * t47;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t19;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t132;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t21;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t93;
-        let t158 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
-        let garm_vy_leg3 = t47 * t125;
-        let garm_vx_leg1 = c_armcross_leg1 * t19;
-        let t164 = garm_vx_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vx_leg2;
-        let t169 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
-        let t171 = garm_vx_leg3 * t158 - garm_vy_leg3 * t164 - minus_garm_vz_leg3 * t169;
-        ::overact::guard::platform(t171, 91.80843988045554, "kept actuators")?;
-        ::overact::guard::platform(t171, 91.80843988045554, "kept actuators")?;
-        ::overact::guard::platform(t171, 91.80843988045554, "kept actuators")?;
-        let t172 = 1.0 / t171;
-        let t173 = (garm_vx_leg2 * minus_garm_vz_leg3
-            - minus_garm_vz_leg2 * garm_vx_leg3) * t172;
-        let t174 = grod_vy_leg1 * t173;
-        let t175 = pose[1] * minus_rate_cross_leg1;
-        let t177 = 3.5599857600569598 * (t58 * t175);
-        let t178 = t174 * t177;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t42 * garm_vy_leg1);
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t18 * c_arm_leg1);
-        let t187 = (garm_vy_leg2 * minus_garm_vz_leg3
-            - minus_garm_vz_leg2 * garm_vy_leg3) * t172;
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t18 * minus_s_arm_leg1);
-        let t195 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t172;
-        let t197 = minus_gcross_vy_leg1 * t173 - minus_gcross_vx_leg1 * t187
-            - minus_gcross_vz_leg1 * t195;
-        let t199 = rate_rod_leg1 * (1.8867924528301887 * t58);
-        let t200 = 0.2 * rate_dot_arm_leg1;
-        let t205 = 0.2 * t51;
-        let t207 = t48 * minus_rate_cross_leg1;
-        let t211 = c_cross_leg1 * t200 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t205 + t207 + t207;
-        let t212 = 1.8867924528301887 * t211;
-        let t213 = t47 * t212;
-        let t215 = t199 + t213 + t199;
-        let t216 = c_rod_leg1 * t215;
-        let t217 = t47 * t216;
-        let t223 = (garm_vy_leg1 * minus_garm_vz_leg3
-            - minus_garm_vz_leg1 * garm_vy_leg3) * t172;
-        let t228 = (garm_vx_leg1 * minus_garm_vz_leg3
-            - minus_garm_vz_leg1 * garm_vx_leg3) * t172;
-        let t234 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t172;
-        let t236 = minus_gcross_vx_leg1 * t223 - minus_gcross_vy_leg1 * t228
-            + minus_gcross_vz_leg1 * t234;
-        let t238 = grod_vy_leg1 * t228;
-        let t239 = t238 * t177;
-        let t241 = t164 * t172;
-        let t242 = grod_vy_leg1 * t241;
-        let t243 = t242 * t177;
-        let t245 = t158 * t172;
-        let t248 = t169 * t172;
-        let t250 = minus_gcross_vy_leg1 * t241 - minus_gcross_vx_leg1 * t245
-            - minus_gcross_vz_leg1 * t248;
+        let garm_vy_leg2 = c_armcross_leg2 * t100;
+        let t164 = garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2;
+        let garm_vy_leg3 = t50 * t132;
+        let garm_vx_leg1 = c_armcross_leg1 * t21;
+        let t170 = garm_vx_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vx_leg2;
+        let t175 = garm_vy_leg1 * garm_vx_leg2 - garm_vx_leg1 * garm_vy_leg2;
+        let t177 = garm_vx_leg3 * t164 - garm_vy_leg3 * t170 - minus_garm_vz_leg3 * t175;
+        ::overact::guard::platform(t177, 91.80843988045554, "kept actuators")?;
+        ::overact::guard::platform(t177, 91.80843988045554, "kept actuators")?;
+        ::overact::guard::platform(t177, 91.80843988045554, "kept actuators")?;
+        let t178 = 1.0 / t177;
+        let t179 = (garm_vx_leg2 * minus_garm_vz_leg3
+            - minus_garm_vz_leg2 * garm_vx_leg3) * t178;
+        let t180 = grod_vy_leg1 * t179;
+        let t181 = pose[1] * minus_rate_cross_leg1;
+        let t183 = 3.5599857600569598 * (t65 * t181);
+        let t184 = t180 * t183;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t59;
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (t20 * c_arm_leg1);
+        let t192 = (garm_vy_leg2 * minus_garm_vz_leg3
+            - minus_garm_vz_leg2 * garm_vy_leg3) * t178;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (t20 * minus_s_arm_leg1);
+        let t200 = (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t178;
+        let t202 = minus_gcross_vy_leg1 * t179 - minus_gcross_vx_leg1 * t192
+            - minus_gcross_vz_leg1 * t200;
+        let t204 = rate_rod_leg1 * (1.8867924528301887 * t65);
+        let t205 = 0.2 * rate_dot_arm_leg1;
+        let t210 = 0.2 * t54;
+        let t213 = pose[1] * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t217 = c_cross_leg1 * t205 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t210 + t213 + t213;
+        let t218 = 1.8867924528301887 * t217;
+        let t219 = t50 * t218;
+        let t221 = t204 + t219 + t204;
+        let t222 = c_rod_leg1 * t221;
+        let t223 = t50 * t222;
+        let t229 = (garm_vy_leg1 * minus_garm_vz_leg3
+            - minus_garm_vz_leg1 * garm_vy_leg3) * t178;
+        let t234 = (garm_vx_leg1 * minus_garm_vz_leg3
+            - minus_garm_vz_leg1 * garm_vx_leg3) * t178;
+        let t240 = (garm_vy_leg1 * garm_vx_leg3 - garm_vx_leg1 * garm_vy_leg3) * t178;
+        let t242 = minus_gcross_vx_leg1 * t229 - minus_gcross_vy_leg1 * t234
+            + minus_gcross_vz_leg1 * t240;
+        let t244 = grod_vy_leg1 * t234;
+        let t245 = t244 * t183;
+        let t247 = t170 * t178;
+        let t248 = grod_vy_leg1 * t247;
+        let t249 = t248 * t183;
+        let t251 = t164 * t178;
+        let t254 = t175 * t178;
+        let t256 = minus_gcross_vy_leg1 * t247 - minus_gcross_vx_leg1 * t251
+            - minus_gcross_vz_leg1 * t254;
+        let t264 = c_rod_leg1 * (1.8867924528301887 * t213)
+            + c_rod_leg1 * (1.8867924528301887 * (t213 - t217));
+        let t266 = t50 * t264 - t222;
+        let t268 = t181 * t181;
+        let t271 = 3.5599857600569598 * (t268 - t65 * t65);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t258 = s_rod_leg1 * t199 + c_rod_leg1 * (1.8867924528301887 * (t207 - t211));
-        let t260 = t47 * t258 - t216;
-        let t262 = t175 * t175;
-        let t265 = 3.5599857600569598 * (t262 - t58 * t58);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t68;
-        let t277 = 3.5599857600569598 * t262;
-        let t280 = s_rod_leg1 * (t177 + rate_dot_rod_leg1) + c_rod_leg1 * (t62 - t277);
-        let t284 = t236 * t280;
-        let t291 = t197 * t258 - t178;
-        let t293 = t236 * t258 + t239;
-        let t295 = t250 * t258 - t243;
-        let t296 = 1.8867924528301887 * acceleration[1];
-        let t300 = t236 * t296;
-        let t306 = t174 * rate_dot_rod_leg1;
-        let t307 = t238 * rate_dot_rod_leg1;
-        let t308 = t242 * rate_dot_rod_leg1;
-        let t312 = acceleration[2] + 9.81;
-        let t314 = t187 * acceleration[0] - t173 * acceleration[1] + t195 * t312;
-        let t315 = 1.8867924528301887 * t314;
-        let t316 = t200 - t72;
-        let t328 = t228 * acceleration[1] - t223 * acceleration[0] - t234 * t312;
-        let t329 = 1.8867924528301887 * t328;
-        let t337 = t245 * acceleration[0] - t241 * acceleration[1] + t248 * t312;
-        let t338 = 1.8867924528301887 * t337;
-        let t342 = 0.9433962264150944 * t12;
-        let t345 = t47 * t342;
-        let t352 = t73 - t205;
-        let t355 = s_rod_leg1 * (c_cross_leg1 * t316 - s_cross_leg1 * t352);
-        let t360 = c_cross_leg1 * t352 + s_cross_leg1 * t316;
-        let t361 = c_rod_leg1 * t360;
-        let t363 = t342 * (t177 - rate_dot_rod_leg1) + t345 * (t277 + t62) + t42 * t215
-            - t197 * t355 + t174 * t361;
-        let t383 = 0.2 * c_cross_leg2;
-        let t386 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2];
-        let t387 = t95 * twist[0];
-        let rate_arm_leg2 = t93 * (t386 + t387);
-        let t390 = rate_arm_leg2 * rate_arm_leg2;
-        let t392 = 0.53 * c_rod_leg2;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t75;
+        let t284 = 3.5599857600569598 * t268;
+        let t287 = s_rod_leg1 * (t183 + rate_dot_rod_leg1) + c_rod_leg1 * (t69 - t284);
+        let t291 = t242 * t287;
+        let t298 = t202 * t264 - t184;
+        let t300 = t242 * t264 + t245;
+        let t302 = t256 * t264 - t249;
+        let t303 = 1.8867924528301887 * acceleration[1];
+        let t307 = t242 * t303;
+        let t313 = t180 * rate_dot_rod_leg1;
+        let t314 = t244 * rate_dot_rod_leg1;
+        let t315 = t248 * rate_dot_rod_leg1;
+        let t319 = acceleration[2] + 9.81;
+        let t321 = t192 * acceleration[0] - t179 * acceleration[1] + t200 * t319;
+        let t322 = 1.8867924528301887 * t321;
+        let t323 = t205 - t79;
+        let t335 = t234 * acceleration[1] - t229 * acceleration[0] - t240 * t319;
+        let t336 = 1.8867924528301887 * t335;
+        let t344 = t251 * acceleration[0] - t247 * acceleration[1] + t254 * t319;
+        let t345 = 1.8867924528301887 * t344;
+        let t349 = 0.9433962264150944 * t13;
+        let t352 = t50 * t349;
+        let t359 = t80 - t210;
+        let t362 = s_rod_leg1 * (c_cross_leg1 * t323 - s_cross_leg1 * t359);
+        let t367 = c_cross_leg1 * t359 + s_cross_leg1 * t323;
+        let t368 = c_rod_leg1 * t367;
+        let t370 = t349 * (t183 - rate_dot_rod_leg1) + t352 * (t284 + t69) + t45 * t221
+            - t202 * t362 + t180 * t368;
+        let t390 = 0.2 * c_cross_leg2;
+        let t393 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2];
+        let t394 = t102 * twist[0];
+        let rate_arm_leg2 = t100 * (t393 + t394);
+        let t397 = rate_arm_leg2 * rate_arm_leg2;
+        let t399 = 0.53 * c_rod_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t394 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t395 = c_cross_leg2 * t92;
-        let t401 = t383 * garm_vx_leg2;
-        let t403 = t395 * t386 + s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t401 * twist[0];
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t403;
-        let t405 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t409 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t383 * t390 + t392 * (t394 + t405);
-        let t411 = acceleration[0] + pose[0] * t394;
-        let t412 = t95 * t411;
-        let rate_dot_arm_leg2 = t93 * (t409 + t412);
-        let t415 = 9.81 * c_arm_leg2;
-        let t416 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t92 * c_arm_leg2);
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t401;
-        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t92 * minus_s_arm_leg2);
-        let t427 = minus_gcross_vy_leg2 * t173 - minus_gcross_vx_leg2 * t187
-            - minus_gcross_vz_leg2 * t195;
-        let t429 = minus_rate_rod_leg2 * (1.8867924528301887 * t403);
-        let t434 = 0.2 * t390;
-        let t436 = t387 * minus_rate_cross_leg2;
-        let t442 = t395 * t409 + s_armcross_leg2 * acceleration[1]
-            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t434 + t436 + t436
-            + t401 * t411;
-        let t443 = 1.8867924528301887 * t442;
-        let t444 = t95 * t443;
-        let t446 = t429 + t444 + t429;
-        let t447 = c_rod_leg2 * t446;
-        let t448 = t95 * t447;
-        let t450 = minus_grod_vx_leg2 * t187;
-        let t451 = pose[0] * minus_rate_cross_leg2;
-        let t453 = 3.5599857600569598 * (t403 * t451);
-        let t454 = t450 * t453;
-        let t456 = minus_grod_vx_leg2 * t223;
-        let t457 = t456 * t453;
-        let t462 = minus_gcross_vx_leg2 * t223 - minus_gcross_vy_leg2 * t228
-            + minus_gcross_vz_leg2 * t234;
-        let t469 = minus_gcross_vy_leg2 * t241 - minus_gcross_vx_leg2 * t245
-            - minus_gcross_vz_leg2 * t248;
-        let t471 = minus_grod_vx_leg2 * t245;
-        let t472 = t471 * t453;
+        let t401 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t402 = c_cross_leg2 * t99;
+        let t408 = t390 * garm_vx_leg2;
+        let t410 = t402 * t393 + s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t408 * twist[0];
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t410;
+        let t412 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t416 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + t390 * t397 + t399 * (t401 + t412);
+        let t418 = acceleration[0] + pose[0] * t401;
+        let t419 = t102 * t418;
+        let rate_dot_arm_leg2 = t100 * (t416 + t419);
+        let t422 = 9.81 * c_arm_leg2;
+        let t423 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t99 * c_arm_leg2);
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t408;
+        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t99 * minus_s_arm_leg2);
+        let t434 = minus_gcross_vy_leg2 * t179 - minus_gcross_vx_leg2 * t192
+            - minus_gcross_vz_leg2 * t200;
+        let t436 = minus_rate_rod_leg2 * (1.8867924528301887 * t410);
+        let t441 = 0.2 * t397;
+        let t443 = t394 * minus_rate_cross_leg2;
+        let t449 = t402 * t416 + s_armcross_leg2 * acceleration[1]
+            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t441 + t443 + t443
+            + t408 * t418;
+        let t450 = 1.8867924528301887 * t449;
+        let t451 = t102 * t450;
+        let t453 = t436 + t451 + t436;
+        let t454 = c_rod_leg2 * t453;
+        let t455 = t102 * t454;
+        let t457 = minus_grod_vx_leg2 * t192;
+        let t458 = pose[0] * minus_rate_cross_leg2;
+        let t460 = 3.5599857600569598 * (t410 * t458);
+        let t461 = t457 * t460;
+        let t463 = minus_grod_vx_leg2 * t229;
+        let t464 = t463 * t460;
+        let t469 = minus_gcross_vx_leg2 * t229 - minus_gcross_vy_leg2 * t234
+            + minus_gcross_vz_leg2 * t240;
+        let t476 = minus_gcross_vy_leg2 * t247 - minus_gcross_vx_leg2 * t251
+            - minus_gcross_vz_leg2 * t254;
+        let t478 = minus_grod_vx_leg2 * t251;
+        let t479 = t478 * t460;
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t479 = minus_s_rod_leg2 * t429
-            + c_rod_leg2 * (1.8867924528301887 * (t436 - t442));
-        let t481 = t447 - t95 * t479;
-        let t483 = t451 * t451;
-        let t486 = 3.5599857600569598 * (t483 - t403 * t403);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t411;
-        let t498 = 3.5599857600569598 * t483;
-        let t501 = minus_s_rod_leg2 * (t453 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t394 - t498);
-        let t512 = t427 * t479 + t454;
-        let t514 = t462 * t479 - t457;
-        let t516 = t469 * t479 + t472;
-        let t518 = 1.8867924528301887 * acceleration[0];
-        let t527 = t450 * minus_rate_dot_rod_leg2;
-        let t528 = t456 * minus_rate_dot_rod_leg2;
-        let t529 = t471 * minus_rate_dot_rod_leg2;
-        let t534 = 0.2 * rate_dot_arm_leg2 - t415;
-        let t546 = t416 - t434;
-        let t549 = minus_s_rod_leg2 * (c_cross_leg2 * t534 - s_cross_leg2 * t546);
-        let t553 = c_cross_leg2 * t546 + s_cross_leg2 * t534;
-        let t554 = c_rod_leg2 * t553;
-        let t557 = 0.9433962264150944 * t86;
-        let t560 = t95 * t557;
-        let t569 = t557 * (minus_rate_dot_rod_leg2 - t453) - t560 * (t498 + t394)
-            - t383 * t446 + t462 * t549 - t456 * t554;
-        let t586 = 0.2 * c_cross_leg3;
-        let t589 = minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2];
-        let rate_arm_leg3 = t125 * (t589 + t48);
-        let t592 = rate_arm_leg3 * rate_arm_leg3;
-        let t597 = c_cross_leg3 * t124;
-        let t600 = t586 * garm_vy_leg3;
-        let t602 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
-            - t597 * t589 - t600 * twist[1];
-        let rate_cross_leg3 = grod_vy_leg1 * t602;
-        let t604 = rate_cross_leg3 * rate_cross_leg3;
-        let t608 = minus_c_armcross_leg3 * acceleration[0]
-            - s_armcross_leg3 * acceleration[2] + t586 * t592 + t53 * (t62 + t604);
-        let rate_dot_arm_leg3 = t125 * (t608 + t69);
-        let t611 = 9.81 * minus_c_arm_leg3;
-        let t612 = 9.81 * s_arm_leg3;
-        let minus_gcross_vx_leg3 = grod_vy_leg1 * (minus_c_arm_leg3 * t124);
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * t600;
-        let gcross_vz_leg3 = grod_vy_leg1 * (s_arm_leg3 * t124);
-        let t623 = minus_gcross_vy_leg3 * t173 - minus_gcross_vx_leg3 * t187
-            + gcross_vz_leg3 * t195;
-        let t625 = rate_rod_leg1 * (1.8867924528301887 * t602);
-        let t629 = 0.2 * t592;
-        let t631 = t48 * rate_cross_leg3;
-        let t638 = s_armcross_leg3 * acceleration[0]
+        let t486 = minus_s_rod_leg2 * t436
+            + c_rod_leg2 * (1.8867924528301887 * (t443 - t449));
+        let t488 = t454 - t102 * t486;
+        let t490 = t458 * t458;
+        let t493 = 3.5599857600569598 * (t490 - t410 * t410);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t418;
+        let t505 = 3.5599857600569598 * t490;
+        let t508 = minus_s_rod_leg2 * (t460 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t401 - t505);
+        let t519 = t434 * t486 + t461;
+        let t521 = t469 * t486 - t464;
+        let t523 = t476 * t486 + t479;
+        let t525 = 1.8867924528301887 * acceleration[0];
+        let t534 = t457 * minus_rate_dot_rod_leg2;
+        let t535 = t463 * minus_rate_dot_rod_leg2;
+        let t536 = t478 * minus_rate_dot_rod_leg2;
+        let t541 = 0.2 * rate_dot_arm_leg2 - t422;
+        let t553 = t423 - t441;
+        let t556 = minus_s_rod_leg2 * (c_cross_leg2 * t541 - s_cross_leg2 * t553);
+        let t560 = c_cross_leg2 * t553 + s_cross_leg2 * t541;
+        let t561 = c_rod_leg2 * t560;
+        let t564 = 0.9433962264150944 * t93;
+        let t567 = t102 * t564;
+        let t576 = t564 * (minus_rate_dot_rod_leg2 - t460) - t567 * (t505 + t401)
+            - t390 * t453 + t469 * t556 - t463 * t561;
+        let t593 = 0.2 * c_cross_leg3;
+        let t596 = minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2];
+        let rate_arm_leg3 = t132 * (t596 + t51);
+        let t599 = rate_arm_leg3 * rate_arm_leg3;
+        let t604 = c_cross_leg3 * t131;
+        let t607 = t593 * garm_vy_leg3;
+        let t609 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
+            - t604 * t596 - t607 * twist[1];
+        let rate_cross_leg3 = grod_vy_leg1 * t609;
+        let t611 = rate_cross_leg3 * rate_cross_leg3;
+        let t615 = minus_c_armcross_leg3 * acceleration[0]
+            - s_armcross_leg3 * acceleration[2] + t593 * t599 + t18 * (t69 + t611);
+        let rate_dot_arm_leg3 = t132 * (t615 + t76);
+        let t618 = 9.81 * minus_c_arm_leg3;
+        let t619 = 9.81 * s_arm_leg3;
+        let minus_gcross_vx_leg3 = grod_vy_leg1 * (minus_c_arm_leg3 * t131);
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * t607;
+        let gcross_vz_leg3 = grod_vy_leg1 * (s_arm_leg3 * t131);
+        let t630 = minus_gcross_vy_leg3 * t179 - minus_gcross_vx_leg3 * t192
+            + gcross_vz_leg3 * t200;
+        let t632 = rate_rod_leg1 * (1.8867924528301887 * t609);
+        let t636 = 0.2 * t599;
+        let t638 = t51 * rate_cross_leg3;
+        let t645 = s_armcross_leg3 * acceleration[0]
             + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t629 - t631 - t631) - t597 * t608 - t600 * t68;
-        let t639 = 1.8867924528301887 * t638;
-        let t640 = t47 * t639;
-        let t642 = t625 + t640 + t625;
-        let t643 = c_rod_leg1 * t642;
-        let t644 = t47 * t643;
-        let t646 = t14 * t604;
-        let t647 = t47 * t646;
-        let t648 = t174 * t647;
-        let t651 = t238 * t647;
-        let t657 = minus_gcross_vy_leg3 * t241 - minus_gcross_vx_leg3 * t245
-            + gcross_vz_leg3 * t248;
-        let t659 = t242 * t647;
-        let t661 = t638 - t631;
-        let t665 = c_rod_leg1 * (1.8867924528301887 * t661) - s_rod_leg1 * t625;
-        let t667 = t47 * t665 + t643;
-        let t669 = t13 * t604;
-        let t670 = t669 - t646;
-        let t701 = t612 + t629;
-        let t704 = t611 + 0.2 * rate_dot_arm_leg3;
-        let t706 = s_cross_leg3 * t701 + c_cross_leg3 * t704;
-        let t707 = c_rod_leg1 * t706;
-        let t711 = s_cross_leg3 * t704 - c_cross_leg3 * t701;
-        let t712 = s_rod_leg1 * t711;
-        let t719 = 0.9433962264150944 * t109;
-        let t722 = t47 * t719;
-        let t730 = t657 * t707
-            - (t719 * (t646 + t62) + t722 * (t647 + rate_dot_rod_leg1)
-                + 0.37735849056603776 * (c_cross_leg3 * (t631 - t661)));
-        let t733 = s_rod_leg1 * t706;
-        let t735 = c_rod_leg1 * t711;
-        let t751 = t719 * (rate_dot_rod_leg1 - t647) - t722 * (t669 + t62) + t586 * t642
-            + t657 * t733 - t242 * t735;
-        let t763 = pose[1] - 0.05 + 0.2;
-        let t765 = t763 * t763 + t3;
-        let t766 = 0.16 * t765;
-        let t768 = t80 + t765 - 0.2809;
-        let t769 = t768 + 0.04;
-        let t771 = t766 - t769 * t769;
-        ::overact::guard::reach(t771, "leg4")?;
-        let t772 = ::overact::math::sqrt(t771);
-        let s_cross_leg4 = t772 / t90;
+            - (s_cross_leg3 * t636 - t638 - t638) - t604 * t615 - t607 * t75;
+        let t646 = 1.8867924528301887 * t645;
+        let t647 = t50 * t646;
+        let t649 = t632 + t647 + t632;
+        let t650 = c_rod_leg1 * t649;
+        let t651 = t50 * t650;
+        let t653 = t16 * t611;
+        let t654 = t50 * t653;
+        let t655 = t180 * t654;
+        let t658 = t244 * t654;
+        let t664 = minus_gcross_vy_leg3 * t247 - minus_gcross_vx_leg3 * t251
+            + gcross_vz_leg3 * t254;
+        let t666 = t248 * t654;
+        let t668 = t645 - t638;
+        let t672 = c_rod_leg1 * (1.8867924528301887 * t668) - s_rod_leg1 * t632;
+        let t674 = t50 * t672 + t650;
+        let t676 = t15 * t611;
+        let t677 = t676 - t653;
+        let t708 = t619 + t636;
+        let t711 = t618 + 0.2 * rate_dot_arm_leg3;
+        let t713 = s_cross_leg3 * t708 + c_cross_leg3 * t711;
+        let t714 = c_rod_leg1 * t713;
+        let t718 = s_cross_leg3 * t711 - c_cross_leg3 * t708;
+        let t719 = s_rod_leg1 * t718;
+        let t726 = 0.9433962264150944 * t116;
+        let t729 = t50 * t726;
+        let t737 = t664 * t714
+            - (t726 * (t653 + t69) + t729 * (t654 + rate_dot_rod_leg1)
+                + 0.37735849056603776 * (c_cross_leg3 * (t638 - t668)));
+        let t740 = s_rod_leg1 * t713;
+        let t742 = c_rod_leg1 * t718;
+        let t758 = t726 * (rate_dot_rod_leg1 - t654) - t729 * (t676 + t69) + t593 * t649
+            + t664 * t740 - t248 * t742;
+        let t770 = pose[1] - 0.05 + 0.2;
+        let t772 = t770 * t770 + t3;
+        let t773 = 0.16 * t772;
+        let t775 = t87 + t772 - 0.2809;
+        let t776 = t775 + 0.04;
+        let t778 = t773 - t776 * t776;
+        ::overact::guard::reach(t778, "leg4")?;
+        let t779 = ::overact::math::sqrt(t778);
+        let s_cross_leg4 = t779 / t97;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t774 = 1.0 / s_cross_leg4;
-        let t775 = 5.0 * t774;
-        let garm_vx_leg4 = t95 * t775;
-        let t778 = 1.0 / t766;
-        let t779 = 0.4 * t763;
-        let minus_c_arm_leg4 = t778 * (t779 * t769 + t23 * t772);
-        let c_cross_leg4 = (-0.04 + t768) / t90;
-        let s_arm_leg4 = t778 * (t779 * t772 - t23 * t769);
+        let t781 = 1.0 / s_cross_leg4;
+        let t782 = 5.0 * t781;
+        let garm_vx_leg4 = t102 * t782;
+        let t785 = 1.0 / t773;
+        let t786 = 0.4 * t770;
+        let minus_c_arm_leg4 = t785 * (t786 * t776 + t25 * t779);
+        let c_cross_leg4 = (-0.04 + t775) / t97;
+        let s_arm_leg4 = t785 * (t786 * t779 - t25 * t776);
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t775;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t782;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t775;
-        let t801 = garm_vx_leg4 * t187 - garm_vy_leg4 * t173 - minus_garm_vz_leg4 * t195;
-        let t805 = 0.2 * c_cross_leg4;
-        let t808 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2];
-        let rate_arm_leg4 = t775 * (t808 + t387);
-        let t811 = rate_arm_leg4 * rate_arm_leg4;
-        let t816 = c_cross_leg4 * t774;
-        let t819 = t805 * garm_vx_leg4;
-        let t821 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
-            - t816 * t808 - t819 * twist[0];
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t821;
-        let t823 = rate_cross_leg4 * rate_cross_leg4;
-        let t827 = minus_c_armcross_leg4 * acceleration[1]
-            - s_armcross_leg4 * acceleration[2] + t805 * t811 + t392 * (t394 + t823);
-        let rate_dot_arm_leg4 = t775 * (t827 + t412);
-        let t830 = t801 * rate_dot_arm_leg4;
-        let t835 = garm_vy_leg4 * t228 - garm_vx_leg4 * t223 + minus_garm_vz_leg4 * t234;
-        let t836 = t835 * rate_dot_arm_leg4;
-        let t841 = garm_vx_leg4 * t245 - garm_vy_leg4 * t241 - minus_garm_vz_leg4 * t248;
-        let t842 = t841 * rate_dot_arm_leg4;
-        let t843 = 9.81 * minus_c_arm_leg4;
-        let t847 = 9.81 * s_arm_leg4;
-        let gcross_vz_leg4 = minus_grod_vx_leg2 * (t774 * s_arm_leg4);
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * t819;
-        let minus_gcross_vy_leg4 = minus_grod_vx_leg2 * (t774 * minus_c_arm_leg4);
-        let t866 = gcross_vz_leg4 * t195
-            - (minus_gcross_vx_leg4 * t187 - minus_gcross_vy_leg4 * t173);
-        let t868 = minus_rate_rod_leg2 * (1.8867924528301887 * t821);
-        let t872 = 0.2 * t811;
-        let t874 = t387 * rate_cross_leg4;
-        let t881 = s_armcross_leg4 * acceleration[1]
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t782;
+        let t808 = garm_vx_leg4 * t192 - garm_vy_leg4 * t179 - minus_garm_vz_leg4 * t200;
+        let t812 = 0.2 * c_cross_leg4;
+        let t815 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2];
+        let rate_arm_leg4 = t782 * (t815 + t394);
+        let t818 = rate_arm_leg4 * rate_arm_leg4;
+        let t823 = c_cross_leg4 * t781;
+        let t826 = t812 * garm_vx_leg4;
+        let t828 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
+            - t823 * t815 - t826 * twist[0];
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t828;
+        let t830 = rate_cross_leg4 * rate_cross_leg4;
+        let t834 = minus_c_armcross_leg4 * acceleration[1]
+            - s_armcross_leg4 * acceleration[2] + t812 * t818 + t399 * (t401 + t830);
+        let rate_dot_arm_leg4 = t782 * (t834 + t419);
+        let t837 = t808 * rate_dot_arm_leg4;
+        let t842 = garm_vy_leg4 * t234 - garm_vx_leg4 * t229 + minus_garm_vz_leg4 * t240;
+        let t843 = t842 * rate_dot_arm_leg4;
+        let t848 = garm_vx_leg4 * t251 - garm_vy_leg4 * t247 - minus_garm_vz_leg4 * t254;
+        let t849 = t848 * rate_dot_arm_leg4;
+        let t850 = 9.81 * minus_c_arm_leg4;
+        let t854 = 9.81 * s_arm_leg4;
+        let gcross_vz_leg4 = minus_grod_vx_leg2 * (t781 * s_arm_leg4);
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * t826;
+        let minus_gcross_vy_leg4 = minus_grod_vx_leg2 * (t781 * minus_c_arm_leg4);
+        let t873 = gcross_vz_leg4 * t200
+            - (minus_gcross_vx_leg4 * t192 - minus_gcross_vy_leg4 * t179);
+        let t875 = minus_rate_rod_leg2 * (1.8867924528301887 * t828);
+        let t879 = 0.2 * t818;
+        let t881 = t394 * rate_cross_leg4;
+        let t888 = s_armcross_leg4 * acceleration[1]
             + minus_c_armcross_leg4 * acceleration[2]
-            - (s_cross_leg4 * t872 - t874 - t874) - t816 * t827 - t819 * t411;
-        let t882 = 1.8867924528301887 * t881;
-        let t883 = t95 * t882;
-        let t885 = t868 + t883 + t868;
-        let t886 = c_rod_leg2 * t885;
-        let t887 = t95 * t886;
-        let t889 = t88 * t823;
-        let t890 = t95 * t889;
-        let t891 = t450 * t890;
-        let t897 = minus_gcross_vx_leg4 * t223 - minus_gcross_vy_leg4 * t228
-            - gcross_vz_leg4 * t234;
-        let t899 = t456 * t890;
-        let t905 = gcross_vz_leg4 * t248
-            - (minus_gcross_vx_leg4 * t245 - minus_gcross_vy_leg4 * t241);
-        let t907 = t471 * t890;
-        let t909 = t881 - t874;
-        let t913 = c_rod_leg2 * (1.8867924528301887 * t909) - minus_s_rod_leg2 * t868;
-        let t915 = t886 + t95 * t913;
-        let t917 = t87 * t823;
-        let t918 = t917 - t889;
-        let t951 = t847 + t872;
-        let t954 = t843 + 0.2 * rate_dot_arm_leg4;
-        let t956 = s_cross_leg4 * t951 + c_cross_leg4 * t954;
-        let t957 = c_rod_leg2 * t956;
-        let t959 = 0.9433962264150944 * t772;
-        let t962 = t95 * t959;
-        let t969 = t959 * (t889 + t394) + t962 * (t890 + minus_rate_dot_rod_leg2)
-            + 0.37735849056603776 * (c_cross_leg4 * (t874 - t909));
-        let t974 = s_cross_leg4 * t954 - c_cross_leg4 * t951;
-        let t975 = minus_s_rod_leg2 * t974;
-        let t994 = t959 * (t890 - minus_rate_dot_rod_leg2) + t962 * (t917 + t394)
-            - t805 * t885;
-        let t996 = minus_s_rod_leg2 * t956;
-        let t999 = c_rod_leg2 * t974;
-        let t1016 = t882 * t959 + t883 * t962 + t805 * t823;
-        let t1026 = 0.2 * t954;
+            - (s_cross_leg4 * t879 - t881 - t881) - t823 * t834 - t826 * t418;
+        let t889 = 1.8867924528301887 * t888;
+        let t890 = t102 * t889;
+        let t892 = t875 + t890 + t875;
+        let t893 = c_rod_leg2 * t892;
+        let t894 = t102 * t893;
+        let t896 = t95 * t830;
+        let t897 = t102 * t896;
+        let t898 = t457 * t897;
+        let t904 = minus_gcross_vx_leg4 * t229 - minus_gcross_vy_leg4 * t234
+            - gcross_vz_leg4 * t240;
+        let t906 = t463 * t897;
+        let t912 = gcross_vz_leg4 * t254
+            - (minus_gcross_vx_leg4 * t251 - minus_gcross_vy_leg4 * t247);
+        let t914 = t478 * t897;
+        let t916 = t888 - t881;
+        let t920 = c_rod_leg2 * (1.8867924528301887 * t916) - minus_s_rod_leg2 * t875;
+        let t922 = t893 + t102 * t920;
+        let t924 = t94 * t830;
+        let t925 = t924 - t896;
+        let t958 = t854 + t879;
+        let t961 = t850 + 0.2 * rate_dot_arm_leg4;
+        let t963 = s_cross_leg4 * t958 + c_cross_leg4 * t961;
+        let t964 = c_rod_leg2 * t963;
+        let t966 = 0.9433962264150944 * t779;
+        let t969 = t102 * t966;
+        let t976 = t966 * (t896 + t401) + t969 * (t897 + minus_rate_dot_rod_leg2)
+            + 0.37735849056603776 * (c_cross_leg4 * (t881 - t916));
+        let t981 = s_cross_leg4 * t961 - c_cross_leg4 * t958;
+        let t982 = minus_s_rod_leg2 * t981;
+        let t1001 = t966 * (t897 - minus_rate_dot_rod_leg2) + t969 * (t924 + t401)
+            - t812 * t892;
+        let t1003 = minus_s_rod_leg2 * t963;
+        let t1006 = c_rod_leg2 * t981;
+        let t1023 = t889 * t966 + t890 * t969 + t812 * t830;
+        let t1033 = 0.2 * t961;
         Ok([
             [
-                rate_dot_arm_leg1, -t72, -t73, rate_dot_arm_leg1, rate_arm_leg1,
-                ::overact::math::sign(rate_arm_leg1), 1.0, t178 - t197 * t217,
-                t197 * t260 - t174 * t265, t197 * t280 + t174 * t213, t291,
-                t197 * t296 + t174 * t212, -t306,
-                t315
-                    - 0.07547169811320754 * (5.0 * t316 + 7.0225 * t291 - 7.0225 * t306),
-                t363,
-                t42 * t60 - (t212 * t342 + t213 * t345) + t197 * t360,
-                0.2 * t316,
+                rate_dot_arm_leg1, -t79, -t80, rate_dot_arm_leg1, rate_arm_leg1,
+                ::overact::math::sign(rate_arm_leg1), 1.0, t184 - t202 * t223,
+                t202 * t266 - t180 * t271, t202 * t287 + t180 * t219, t298,
+                t202 * t303 + t180 * t218, -t313,
+                t322
+                    - 0.07547169811320754 * (5.0 * t323 + 7.0225 * t298 - 7.0225 * t313),
+                t370,
+                t45 * t67 - (t218 * t349 + t219 * t352) + t202 * t367,
+                0.2 * t323,
                 0.0,
                 0.0,
                 0.0,
@@ -3865,15 +3885,15 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                -(t427 * t448 + t454),
-                t427 * t481 - t450 * t486,
-                t427 * t501 - t450 * t444,
-                t512,
-                t450 * t443 - t427 * t518,
-                t527,
-                t315 - 0.53 * (t512 + t527),
-                t427 * t549 + t450 * t554,
-                t427 * t553,
+                -(t434 * t455 + t461),
+                t434 * t488 - t457 * t493,
+                t434 * t508 - t457 * t451,
+                t519,
+                t457 * t450 - t434 * t525,
+                t534,
+                t322 - 0.53 * (t519 + t534),
+                t434 * t556 + t457 * t561,
+                t434 * t560,
                 0.0,
                 0.0,
                 0.0,
@@ -3882,47 +3902,47 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                t623 * t644 + t648,
-                t174 * t670 - t623 * t667,
-                t623 * t280 - t174 * t640,
-                t623 * t665 - t648,
-                t174 * t639 - t623 * t296,
-                -t306,
-                t623 * t707 + t174 * t712,
-                t623 * t733 - t174 * t735,
-                t623 * t711,
+                t630 * t651 + t655,
+                t180 * t677 - t630 * t674,
+                t630 * t287 - t180 * t647,
+                t630 * t672 - t655,
+                t180 * t646 - t630 * t303,
+                -t313,
+                t630 * t714 + t180 * t719,
+                t630 * t740 - t180 * t742,
+                t630 * t718,
                 0.0,
-                t830,
-                t801 * t843,
-                t801 * t847,
-                t830,
-                t801 * rate_arm_leg4,
-                ::overact::math::signed(t801, rate_arm_leg4),
-                t801,
-                t866 * t887 - t891,
-                t866 * t915 + t450 * t918,
-                t866 * t501 + t450 * t883,
-                t866 * t913 + t891,
-                t866 * t518 + t450 * t882,
-                t527,
-                t866 * t957 - t801 * t969 - t450 * t975,
-                t801 * t994 - t866 * t996 - t450 * t999,
-                t801 * t1016 + t866 * t974,
-                t801 * t1026,
-                t314,
+                t837,
+                t808 * t850,
+                t808 * t854,
+                t837,
+                t808 * rate_arm_leg4,
+                ::overact::math::signed(t808, rate_arm_leg4),
+                t808,
+                t873 * t894 - t898,
+                t873 * t922 + t457 * t925,
+                t873 * t508 + t457 * t890,
+                t873 * t920 + t898,
+                t873 * t525 + t457 * t889,
+                t534,
+                t873 * t964 - t808 * t976 - t457 * t982,
+                t808 * t1001 - t873 * t1003 - t457 * t1006,
+                t808 * t1023 + t873 * t981,
+                t808 * t1033,
+                t321,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t236 * t217 + t239), t236 * t260 + t238 * t265,
-                t284 - t238 * t213, t293, t300 - t238 * t212, t307, t329 - 0.53 * (t293 + t307),
-                -(t236 * t355 + t238 * t361), t236 * t360, 0.0, rate_dot_arm_leg2, -t415, -t416,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t242 * t223 + t245), t242 * t266 + t244 * t271,
+                t291 - t244 * t219, t300, t307 - t244 * t218, t314, t336 - 0.53 * (t300 + t314),
+                -(t242 * t362 + t244 * t368), t242 * t367, 0.0, rate_dot_arm_leg2, -t422, -t423,
                 rate_dot_arm_leg2, rate_arm_leg2, ::overact::math::sign(rate_arm_leg2), 1.0,
-                t457 - t462 * t448, t462 * t481 + t456 * t486, t462 * t501 + t456 * t444, t514,
-                -(t462 * t518 + t456 * t443), -t528,
-                t329
-                    - 0.07547169811320754 * (5.0 * t534 + 7.0225 * t514 - 7.0225 * t528),
-                t569,
-                t383 * t405 - (t443 * t557 + t444 * t560) + t462 * t553,
-                0.2 * t534,
+                t464 - t469 * t455, t469 * t488 + t463 * t493, t469 * t508 + t463 * t451, t521,
+                -(t469 * t525 + t463 * t450), -t535,
+                t336
+                    - 0.07547169811320754 * (5.0 * t541 + 7.0225 * t521 - 7.0225 * t535),
+                t576,
+                t390 * t412 - (t450 * t564 + t451 * t567) + t469 * t560,
+                0.2 * t541,
                 0.0,
                 0.0,
                 0.0,
@@ -3930,53 +3950,53 @@ impl Delta4 {
                 0.0,
                 0.0,
                 0.0,
-                t236 * t644 - t651,
-                -(t236 * t667 + t238 * t670),
-                t284 + t238 * t640,
-                t236 * t665 + t651,
-                -(t300 + t238 * t639),
-                t307,
-                t236 * t707 - t238 * t712,
-                t236 * t733 + t238 * t735,
-                t236 * t711,
+                t242 * t651 - t658,
+                -(t242 * t674 + t244 * t677),
+                t291 + t244 * t647,
+                t242 * t672 + t658,
+                -(t307 + t244 * t646),
+                t314,
+                t242 * t714 - t244 * t719,
+                t242 * t740 + t244 * t742,
+                t242 * t718,
                 0.0,
-                t836,
-                t835 * t843,
-                t835 * t847,
-                t836,
-                t835 * rate_arm_leg4,
-                ::overact::math::signed(t835, rate_arm_leg4),
-                t835,
-                t897 * t887 + t899,
-                t897 * t915 - t456 * t918,
-                t897 * t501 - t456 * t883,
-                t897 * t913 - t899,
-                t897 * t518 - t456 * t882,
-                -t528,
-                t897 * t957 - t835 * t969 + t456 * t975,
-                t835 * t994 - t897 * t996 + t456 * t999,
-                t835 * t1016 + t897 * t974,
-                t835 * t1026,
-                t328,
+                t843,
+                t842 * t850,
+                t842 * t854,
+                t843,
+                t842 * rate_arm_leg4,
+                ::overact::math::signed(t842, rate_arm_leg4),
+                t842,
+                t904 * t894 + t906,
+                t904 * t922 - t463 * t925,
+                t904 * t508 - t463 * t890,
+                t904 * t920 - t906,
+                t904 * t525 - t463 * t889,
+                -t535,
+                t904 * t964 - t842 * t976 + t463 * t982,
+                t842 * t1001 - t904 * t1003 + t463 * t1006,
+                t842 * t1023 + t904 * t981,
+                t842 * t1033,
+                t335,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t243 - t250 * t217, t250 * t260 - t242 * t265,
-                t250 * t280 + t242 * t213, t295, t250 * t296 + t242 * t212, -t308,
-                t338 - 0.53 * (t295 - t308), t242 * t361 - t250 * t355, t250 * t360, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t469 * t448 + t472), t469 * t481 - t471 * t486,
-                t469 * t501 - t471 * t444, t516, t471 * t443 - t469 * t518, t529,
-                t338 - 0.53 * (t516 + t529), t469 * t549 + t471 * t554, t469 * t553, 0.0,
-                rate_dot_arm_leg3, t611, t612, rate_dot_arm_leg3, rate_arm_leg3,
-                ::overact::math::sign(rate_arm_leg3), 1.0, t657 * t644 + t659,
-                t242 * t670 - t657 * t667, t657 * t280 - t242 * t640, t657 * t665 - t659,
-                t242 * t639 - t657 * t296, -t308, t730 + t242 * t712, t751,
-                t639 * t719 + t640 * t722 + t586 * t604 + t657 * t711, 0.2 * t704, t842,
-                t841 * t843, t841 * t847, t842, t841 * rate_arm_leg4,
-                ::overact::math::signed(t841, rate_arm_leg4), t841, t905 * t887 - t907,
-                t905 * t915 + t471 * t918, t905 * t501 + t471 * t883, t905 * t913 + t907,
-                t905 * t518 + t471 * t882, t529, t905 * t957 - t841 * t969 - t471 * t975,
-                t841 * t994 - t905 * t996 - t471 * t999, t841 * t1016 + t905 * t974, t841 * t1026,
-                t337,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t249 - t256 * t223, t256 * t266 - t248 * t271,
+                t256 * t287 + t248 * t219, t302, t256 * t303 + t248 * t218, -t315,
+                t345 - 0.53 * (t302 - t315), t248 * t368 - t256 * t362, t256 * t367, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t476 * t455 + t479), t476 * t488 - t478 * t493,
+                t476 * t508 - t478 * t451, t523, t478 * t450 - t476 * t525, t536,
+                t345 - 0.53 * (t523 + t536), t476 * t556 + t478 * t561, t476 * t560, 0.0,
+                rate_dot_arm_leg3, t618, t619, rate_dot_arm_leg3, rate_arm_leg3,
+                ::overact::math::sign(rate_arm_leg3), 1.0, t664 * t651 + t666,
+                t248 * t677 - t664 * t674, t664 * t287 - t248 * t647, t664 * t672 - t666,
+                t248 * t646 - t664 * t303, -t315, t737 + t248 * t719, t758,
+                t646 * t726 + t647 * t729 + t593 * t611 + t664 * t718, 0.2 * t711, t849,
+                t848 * t850, t848 * t854, t849, t848 * rate_arm_leg4,
+                ::overact::math::signed(t848, rate_arm_leg4), t848, t912 * t894 - t914,
+                t912 * t922 + t478 * t925, t912 * t508 + t478 * t890, t912 * t920 + t914,
+                t912 * t525 + t478 * t889, t536, t912 * t964 - t848 * t976 - t478 * t982,
+                t848 * t1001 - t912 * t1003 - t478 * t1006, t848 * t1023 + t912 * t981,
+                t848 * t1033, t344,
             ],
         ])
     }
@@ -5151,7 +5171,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 715 operations (215 additions, 465 multiplications, 35 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 577 intermediates.
+    /// 745 operations (225 additions, 490 multiplications, 30 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 605 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5165,8 +5185,7 @@ impl Delta4 {
         let t5 = pose[2] * pose[2];
         let t6 = t2 * t2 + t5;
         let t7 = pose[1] * pose[1];
-        let t8 = t7 + -0.2809;
-        let t9 = t6 + t8;
+        let t9 = t6 + t7 - 0.2809;
         let t10 = t9 + 0.04;
         let t12 = 0.4 * pose[2];
         let t13 = 0.16 * t6;
@@ -5174,419 +5193,419 @@ impl Delta4 {
         ::overact::guard::reach(t15, "leg1")?;
         let t16 = ::overact::math::sqrt(t15);
         let c_arm_leg1 = (t3 * t10 - t12 * t16) / t13;
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t8));
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * (t9 - t6)));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
-        let t25 = grod_vy_leg1 * t8;
-        let t26 = 0.4 * t25;
-        let minus_c_cross_leg1 = (t9 + -0.04) / t26;
+        let t25 = 0.53 * c_rod_leg1;
+        let s_cross_leg1 = 2.5 * t16 / t25;
+        ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let minus_s_arm_leg1 = (t12 * t10 + t3 * t16) / t13;
-        let minus_s_cross_leg1 = t16 / t26;
-        ::overact::guard::leg(minus_s_cross_leg1, 0.9471622941895194, "leg1")?;
-        let minus_c_armcross_leg1 = c_arm_leg1 * minus_c_cross_leg1
-            + minus_s_arm_leg1 * minus_s_cross_leg1;
-        let t36 = 5.0 / minus_s_cross_leg1;
-        let garm_vx_leg1 = minus_c_armcross_leg1 * t36;
-        let s_armcross_leg1 = minus_s_arm_leg1 * minus_c_cross_leg1
-            - c_arm_leg1 * minus_s_cross_leg1;
-        let t47 = pose[1] * grod_vy_leg1;
-        let t48 = t47 * twist[1];
-        let t49 = t48 - (minus_c_armcross_leg1 * twist[0] + s_armcross_leg1 * twist[2]);
-        let minus_rate_arm_leg1 = t36 * t49;
-        let t51 = 0.2 * minus_c_cross_leg1;
-        let t52 = t51 * minus_rate_arm_leg1;
-        let t57 = t52 + s_armcross_leg1 * twist[0] - minus_c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t57;
-        let t59 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t33 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t9 + -0.04) / t33;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
+        let t37 = 5.0 / s_cross_leg1;
+        let t38 = 0.2 * c_cross_leg1;
+        let t39 = t37 * t38;
+        let t40 = s_armcross_leg1 * t39;
+        let c_armcross_leg1 = t40 + minus_s_arm_leg1 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t37;
+        let t50 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 * t50;
+        let t52 = pose[1] * grod_vy_leg1;
+        let t53 = t52 * twist[1];
+        let t54 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t53;
+        let rate_arm_leg1 = t37 * t54;
+        let t56 = rate_arm_leg1 * rate_arm_leg1;
+        let t62 = t38 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
+            + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t62;
+        let t64 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t61 = rate_rod_leg1 * rate_rod_leg1;
-        let t67 = acceleration[1] + t48 * rate_rod_leg1;
-        let t68 = t47 * t67;
-        let minus_rate_dot_arm_leg1 = t36
-            * (t68
-                - (minus_c_armcross_leg1 * acceleration[0]
-                    + s_armcross_leg1 * acceleration[2] + minus_rate_arm_leg1 * t52
-                    + t25 * (t59 + t61)));
-        let minus_garm_vy_leg1 = t36 * t47;
-        let minus_minus_garm_vz_leg1 = s_armcross_leg1 * t36;
-        let t77 = pose[1] + 0.05 - 0.2;
-        let t79 = t77 * t77 + t5;
-        let t80 = 0.16 * t79;
-        let t81 = pose[0] * pose[0];
-        let t82 = 0.2809 - t81;
-        let t83 = t79 - t82;
-        let t84 = t83 + 0.04;
-        let t86 = t80 - t84 * t84;
-        ::overact::guard::reach(t86, "leg2")?;
-        let t87 = ::overact::math::sqrt(t86);
-        let t89 = pose[1] - 0.05 + 0.2;
-        let t91 = t89 * t89 + t5;
-        let t92 = 0.16 * t91;
-        let t93 = t91 - t82;
-        let t94 = t93 + 0.04;
-        let t96 = t92 - t94 * t94;
+        let t66 = rate_rod_leg1 * rate_rod_leg1;
+        let t72 = acceleration[1] + pose[1] * t66;
+        let t73 = t52 * t72;
+        let t74 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + t38 * t56 + t25 * (t64 + t66) + t73;
+        let rate_dot_arm_leg1 = t37 * t74;
+        let garm_vy_leg1 = t37 * t52;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t37;
+        let t82 = pose[1] + 0.05 - 0.2;
+        let t83 = t82 * t82;
+        let t84 = t83 + t5;
+        let t85 = 0.16 * t84;
+        let t86 = pose[0] * pose[0];
+        let t90 = t86 + t83 + t5 - 0.2809 + 0.04;
+        let t92 = t85 - t90 * t90;
+        ::overact::guard::reach(t92, "leg2")?;
+        let t93 = ::overact::math::sqrt(t92);
+        let t95 = 3.5599857600569598 * t86;
+        let t96 = 1.0 - t95;
+        ::overact::guard::reach(t96, "leg2")?;
         ::overact::guard::reach(t96, "leg4")?;
-        let t97 = ::overact::math::sqrt(t96);
-        let t98 = 0.9433962264150944 * t97;
-        let t99 = 3.5599857600569598 * t82;
-        ::overact::guard::reach(t99, "leg2")?;
-        ::overact::guard::reach(t99, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t99);
+        let c_rod_leg2 = ::overact::math::sqrt(t96);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t101 = t98 / c_rod_leg2;
-        let s_cross_leg4 = 5.0 * t101;
-        ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t103 = t97 / s_cross_leg4;
-        let s_cross_leg2 = t87 / t103;
+        let t98 = 0.53 * c_rod_leg2;
+        let s_cross_leg2 = 2.5 * t93 / t98;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t105 = 5.0 / s_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
-        let t107 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t105 * t107;
-        let t109 = 0.4 * t77;
-        let c_arm_leg2 = (t109 * t84 - t12 * t87) / t80;
-        let c_cross_leg2 = (-0.04 + t83) / t103;
-        let minus_s_arm_leg2 = (t12 * t84 + t109 * t87) / t80;
+        let t100 = 1.0 / s_cross_leg2;
+        let t101 = 5.0 * t100;
+        let t102 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t102;
+        let t104 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t101 * t104;
+        let t106 = 0.4 * t82;
+        let c_arm_leg2 = (t106 * t90 - t12 * t93) / t85;
+        let t112 = 0.2809 * t96;
+        let t114 = 0.212 * c_rod_leg2;
+        let c_cross_leg2 = (-0.04 + t84 - t112) / t114;
+        let minus_s_arm_leg2 = (t12 * t90 + t106 * t93) / t85;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t132 = t107 * twist[0];
-        let t133 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] + t132;
-        let rate_arm_leg2 = t105 * t133;
-        let t135 = t133 * rate_arm_leg2;
-        let t136 = t135 / s_cross_leg2;
-        let t138 = minus_grod_vx_leg2 * t82;
+        let t129 = c_cross_leg2 * t100;
+        let t132 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2];
+        let t133 = t104 * twist[0];
+        let t134 = t132 + t133;
+        let rate_arm_leg2 = t101 * t134;
+        let t136 = t134 * rate_arm_leg2;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t140 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t144 = 0.2 * c_cross_leg2;
-        let t146 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t144 * rate_arm_leg2;
-        let t147 = 1.8867924528301887 * t146;
-        let t148 = t147 * t147;
-        let t149 = t107 * t148;
-        let t150 = t107 * t149;
-        let t151 = t150 + t148;
-        let t157 = acceleration[0] + t132 * minus_rate_rod_leg2;
-        let t158 = t107 * t157;
-        let rate_dot_arm_leg2 = t105
-            * (c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-                + c_cross_leg2 * t136 + t138 * (t140 + t151) + t158);
-        let garm_vy_leg2 = c_armcross_leg2 * t105;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t105;
-        let t167 = pose[0] - 0.05 + 0.2;
-        let t168 = 0.4 * t167;
-        let t170 = t167 * t167 + t5;
-        let t171 = t170 + t8;
-        let t172 = t171 + 0.04;
-        let t174 = 0.16 * t170;
-        let t176 = t174 - t172 * t172;
-        ::overact::guard::reach(t176, "leg3")?;
-        let t177 = ::overact::math::sqrt(t176);
-        let minus_c_arm_leg3 = (t168 * t172 + t12 * t177) / t174;
-        let minus_c_cross_leg3 = (-0.04 + t171) / t26;
-        let s_arm_leg3 = (t168 * t177 - t12 * t172) / t174;
-        let minus_s_cross_leg3 = t177 / t26;
-        ::overact::guard::leg(minus_s_cross_leg3, 0.9471622941895194, "leg3")?;
-        let minus_minus_c_armcross_leg3 = minus_c_arm_leg3 * minus_c_cross_leg3
-            + s_arm_leg3 * minus_s_cross_leg3;
-        let t191 = 5.0 / minus_s_cross_leg3;
-        let garm_vx_leg3 = minus_minus_c_armcross_leg3 * t191;
-        let s_armcross_leg3 = minus_c_arm_leg3 * minus_s_cross_leg3
-            - s_arm_leg3 * minus_c_cross_leg3;
-        let t202 = t48
-            - (minus_minus_c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2]);
-        let minus_rate_arm_leg3 = t191 * t202;
-        let t204 = t202 * minus_rate_arm_leg3;
-        let t205 = t204 / minus_s_cross_leg3;
-        let t210 = 0.2 * minus_c_cross_leg3;
-        let t212 = s_armcross_leg3 * twist[0] - minus_minus_c_armcross_leg3 * twist[2]
-            - t210 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = grod_vy_leg1 * t212;
-        let t214 = rate_cross_leg3 * rate_cross_leg3;
-        let minus_rate_dot_arm_leg3 = t191
-            * (t68
-                - (minus_minus_c_armcross_leg3 * acceleration[0]
-                    + s_armcross_leg3 * acceleration[2] + minus_c_cross_leg3 * t205
-                    + t25 * (t61 + t214)));
-        let minus_garm_vy_leg3 = t47 * t191;
-        let minus_minus_garm_vz_leg3 = s_armcross_leg3 * t191;
-        let t226 = 5.0 / s_cross_leg4;
-        let garm_vx_leg4 = t107 * t226;
-        let t228 = 0.4 * t89;
-        let minus_c_arm_leg4 = (t228 * t94 + t12 * t97) / t92;
-        let c_cross_leg4 = (-0.04 + t93) / t103;
-        let s_arm_leg4 = (t228 * t97 - t12 * t94) / t92;
+        let t139 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t145 = 0.2 * c_cross_leg2;
+        let t146 = t145 * garm_vx_leg2;
+        let t148 = t129 * t132 + s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
+            + t146 * twist[0];
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t148;
+        let t150 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t151 = t139 + t150;
+        let t154 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + t129 * t136 + t98 * t151;
+        let t156 = pose[0] * minus_rate_cross_leg2;
+        let t157 = minus_rate_cross_leg2 * t156;
+        let t159 = acceleration[0] + pose[0] * t151 - t157;
+        let t160 = t104 * t159;
+        let rate_dot_arm_leg2 = t101 * (t154 + t160);
+        let garm_vy_leg2 = c_armcross_leg2 * t101;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t101;
+        let t169 = pose[0] - 0.05 + 0.2;
+        let t170 = 0.4 * t169;
+        let t172 = t169 * t169 + t5;
+        let t174 = t7 + t172 - 0.2809;
+        let t175 = t174 + 0.04;
+        let t177 = 0.16 * t172;
+        let t179 = t177 - t175 * t175;
+        ::overact::guard::reach(t179, "leg3")?;
+        let t180 = ::overact::math::sqrt(t179);
+        let minus_c_arm_leg3 = (t170 * t175 + t12 * t180) / t177;
+        let c_cross_leg3 = (-0.04 + t174) / t33;
+        let s_arm_leg3 = (t170 * t180 - t12 * t175) / t177;
+        let s_cross_leg3 = t180 / t33;
+        ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
+        let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
+            + s_arm_leg3 * s_cross_leg3;
+        let t194 = 5.0 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t194;
+        let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
+            - minus_c_arm_leg3 * s_cross_leg3;
+        let t202 = 0.2 * c_cross_leg3;
+        let t206 = minus_c_armcross_leg3 * twist[0] - s_armcross_leg3 * twist[2] + t53;
+        let rate_arm_leg3 = t194 * t206;
+        let t208 = rate_arm_leg3 * rate_arm_leg3;
+        let t214 = s_armcross_leg3 * twist[0] + minus_c_armcross_leg3 * twist[2]
+            - t202 * rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t214;
+        let t216 = rate_cross_leg3 * rate_cross_leg3;
+        let rate_dot_arm_leg3 = t194
+            * (minus_c_armcross_leg3 * acceleration[0]
+                - s_armcross_leg3 * acceleration[2] + t202 * t208 + t25 * (t66 + t216)
+                + t73);
+        let garm_vy_leg3 = t52 * t194;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t194;
+        let t229 = pose[1] - 0.05 + 0.2;
+        let t231 = t229 * t229 + t5;
+        let t232 = 0.16 * t231;
+        let t233 = t231 - t112;
+        let t234 = t233 + 0.04;
+        let t236 = t232 - t234 * t234;
+        ::overact::guard::reach(t236, "leg4")?;
+        let t237 = ::overact::math::sqrt(t236);
+        let s_cross_leg4 = t237 / t114;
+        ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
+        let t239 = 5.0 / s_cross_leg4;
+        let garm_vx_leg4 = t104 * t239;
+        let t241 = 0.4 * t229;
+        let minus_c_arm_leg4 = (t241 * t234 + t12 * t237) / t232;
+        let c_cross_leg4 = (-0.04 + t233) / t114;
+        let s_arm_leg4 = (t241 * t237 - t12 * t234) / t232;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t251 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t132;
-        let rate_arm_leg4 = t226 * t251;
-        let t253 = t251 * rate_arm_leg4;
-        let t254 = t253 / s_cross_leg4;
-        let t259 = 0.2 * c_cross_leg4;
-        let t261 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
-            - t259 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t261;
-        let t263 = rate_cross_leg4 * rate_cross_leg4;
-        let t264 = t140 + t263;
-        let rate_dot_arm_leg4 = t226
+        let t264 = minus_c_armcross_leg4 * twist[1] - s_armcross_leg4 * twist[2] + t133;
+        let rate_arm_leg4 = t239 * t264;
+        let t266 = t264 * rate_arm_leg4;
+        let t267 = t266 / s_cross_leg4;
+        let t272 = 0.2 * c_cross_leg4;
+        let t274 = s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
+            - t272 * rate_arm_leg4;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t274;
+        let t276 = rate_cross_leg4 * rate_cross_leg4;
+        let t277 = t139 + t276;
+        let rate_dot_arm_leg4 = t239
             * (minus_c_armcross_leg4 * acceleration[1]
-                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t254 + t138 * t264
-                + t158);
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t226;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t226;
-        let t275 = 9.81 * c_arm_leg1;
-        let t279 = 9.81 * c_arm_leg2;
-        let t283 = 9.81 * minus_c_arm_leg3;
-        let t287 = 9.81 * minus_c_arm_leg4;
-        let t291 = 9.81 * minus_s_arm_leg1;
-        let t295 = 9.81 * minus_s_arm_leg2;
-        let t299 = 9.81 * s_arm_leg3;
-        let t303 = 9.81 * s_arm_leg4;
-        let t319 = -minus_rate_arm_leg1;
-        let t326 = -minus_rate_arm_leg3;
-        let t333 = grod_vy_leg1 / minus_s_cross_leg1;
-        let minus_minus_gcross_vx_leg1 = c_arm_leg1 * t333;
-        let t336 = rate_rod_leg1 * (1.8867924528301887 * t57);
+                - s_armcross_leg4 * acceleration[2] + c_cross_leg4 * t267 + t98 * t277
+                + t160);
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t239;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t239;
+        let t288 = 9.81 * c_arm_leg1;
+        let t292 = 9.81 * c_arm_leg2;
+        let t296 = 9.81 * minus_c_arm_leg3;
+        let t300 = 9.81 * minus_c_arm_leg4;
+        let t304 = 9.81 * minus_s_arm_leg1;
+        let t308 = 9.81 * minus_s_arm_leg2;
+        let t312 = 9.81 * s_arm_leg3;
+        let t316 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * (grod_vy_leg1 / s_cross_leg1);
+        let t347 = rate_rod_leg1 * (1.8867924528301887 * t62);
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t342 = t49 * minus_rate_arm_leg1;
-        let t343 = t48 * minus_rate_cross_leg1;
+        let t354 = t53 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t51 * minus_rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-                - minus_c_armcross_leg1 * acceleration[2] + t343 - t342 + t343);
-        let t349 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t351 = t336 + t349 + t336;
-        let t352 = c_rod_leg1 * t351;
-        let t353 = t47 * t352;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t51 * minus_garm_vy_leg1);
-        let t359 = 3.5599857600569598 * (pose[1] * t59);
-        let minus_minus_gcross_vz_leg1 = minus_s_arm_leg1 * t333;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t144 * garm_vx_leg2);
+            * (t39 * t74 + s_armcross_leg1 * acceleration[0]
+                + c_armcross_leg1 * acceleration[2] + t54 * rate_arm_leg1 + t354 + t354);
+        let t360 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t362 = t347 + t360 + t347;
+        let t363 = c_rod_leg1 * t362;
+        let t364 = t52 * t363;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t38 * garm_vy_leg1);
+        let t369 = pose[1] * t64;
+        let t370 = 3.5599857600569598 * t369;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (c_armcross_leg1 - t40);
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t146;
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t366 = minus_rate_rod_leg2 * t147;
-        let t371 = minus_rate_rod_leg2 * (t107 * t146);
-        let t375 = 0.2 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + t135 + t371 + t371 + c_cross_leg2 * t375);
-        let t379 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t381 = t366 + t379 + t366;
-        let t382 = minus_s_rod_leg2 * t381;
-        let t384 = minus_grod_vx_leg2 * t149;
-        let t386 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t386;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t386;
-        let t391 = grod_vy_leg1 / minus_s_cross_leg3;
-        let gcross_vx_leg3 = minus_c_arm_leg3 * t391;
-        let t394 = rate_rod_leg1 * (1.8867924528301887 * t212);
-        let t398 = t48 * rate_cross_leg3;
+        let t381 = minus_rate_rod_leg2 * t156;
+        let t387 = t129 * t154 + s_armcross_leg2 * acceleration[1]
+            + c_armcross_leg2 * acceleration[2] + t136 + t381 + t381 + t146 * t159;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t387;
+        let t389 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t391 = minus_rate_rod_leg2 * (1.8867924528301887 * t148);
+        let t392 = t389 + t391;
+        let t394 = minus_s_rod_leg2 * t391;
+        let t395 = minus_s_rod_leg2 * t392 + t394;
+        let t397 = 3.5599857600569598 * t157;
+        let t399 = t100 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t399;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t399;
+        let t404 = grod_vy_leg1 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t404;
+        let t407 = rate_rod_leg1 * (1.8867924528301887 * t214);
+        let t412 = t53 * rate_cross_leg3;
+        let t416 = 0.2 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = grod_vy_leg1
             * (s_armcross_leg3 * acceleration[0]
-                - minus_minus_c_armcross_leg3 * acceleration[2] + t204 + t398 + t398
-                - t210 * minus_rate_dot_arm_leg3);
-        let t405 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t407 = t394 + t405 + t394;
-        let t408 = s_rod_leg1 * t407;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t210 * minus_garm_vy_leg3);
-        let t414 = 3.5599857600569598 * (pose[1] * t214);
-        let minus_gcross_vz_leg3 = s_arm_leg3 * t391;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t259 * garm_vx_leg4);
-        let t421 = minus_rate_rod_leg2 * (1.8867924528301887 * t261);
-        let t425 = t132 * rate_cross_leg4;
+                + minus_c_armcross_leg3 * acceleration[2]
+                - (t206 * rate_arm_leg3 - t412 - t412) - c_cross_leg3 * t416);
+        let t420 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t422 = t407 + t420 + t407;
+        let t423 = s_rod_leg1 * t422;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t202 * garm_vy_leg3);
+        let t429 = 3.5599857600569598 * (pose[1] * t216);
+        let gcross_vz_leg3 = s_arm_leg3 * t404;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t272 * garm_vx_leg4);
+        let t435 = 1.8867924528301887 * t274;
+        let t436 = minus_rate_rod_leg2 * t435;
+        let t440 = t133 * rate_cross_leg4;
+        let t444 = 0.2 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * acceleration[1]
-                + minus_c_armcross_leg4 * acceleration[2] - (t253 - t425 - t425)
-                - t259 * rate_dot_arm_leg4);
-        let t432 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t434 = t421 + t432 + t421;
-        let t435 = c_rod_leg2 * t434;
-        let t436 = t107 * t435;
-        let t438 = t99 * t263;
-        let t439 = t107 * t438;
-        let t440 = minus_grod_vx_leg2 * t439;
-        let t442 = minus_grod_vx_leg2 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t442;
-        let gcross_vz_leg4 = s_arm_leg4 * t442;
-        let t447 = t353 - minus_rate_dot_cross_leg1;
-        let t449 = t47 * t447 - t352;
-        let t451 = t7 + t8;
-        let t459 = t382 - minus_rate_dot_cross_leg2;
-        let t461 = c_rod_leg2 * t381 - t107 * t459;
-        let t468 = rate_dot_cross_leg3 - t408;
-        let t471 = t47 * t468 + c_rod_leg1 * t407;
-        let t483 = rate_dot_cross_leg4 - t436;
-        let t485 = t435 + t107 * t483;
-        let t490 = t25 * t359;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t67;
-        let t494 = t47 * t490;
-        let t497 = s_rod_leg1 * (rate_dot_rod_leg1 - t490) + c_rod_leg1 * (t61 + t494);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t157;
-        let t508 = minus_s_rod_leg2 * (t149 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t140 - t150);
-        let t540 = 1.8867924528301887 * acceleration[1];
-        let t546 = 1.8867924528301887 * acceleration[0];
-        let t564 = 0.9433962264150944 * t16;
-        let t572 = t47 * t564 * (t61 - t494) - t564 * (t490 + rate_dot_rod_leg1)
-            - t51 * t351;
-        let t575 = 0.2 * minus_rate_dot_arm_leg1 + t275;
-        let t578 = t291 - t342 / minus_s_cross_leg1;
-        let t581 = s_rod_leg1 * (minus_c_cross_leg1 * t575 + minus_s_cross_leg1 * t578);
-        let t589 = minus_s_cross_leg1 * t575 - minus_c_cross_leg1 * t578;
-        let t595 = 0.9433962264150944 * t87;
-        let t603 = t595 * (minus_rate_dot_rod_leg2 - t149) - t107 * t595 * (t150 + t140)
-            - t144 * t381;
-        let t605 = t375 - t279;
-        let t607 = t295 - t136;
-        let t610 = minus_s_rod_leg2 * (c_cross_leg2 * t605 - s_cross_leg2 * t607);
-        let t615 = c_cross_leg2 * t607 + s_cross_leg2 * t605;
-        let t624 = 0.9433962264150944 * t177;
-        let t625 = t25 * t414;
-        let t634 = t624 * (rate_dot_rod_leg1 + t625) - t47 * t624 * (t61 - t47 * t625)
-            - t210 * t407;
-        let t636 = t299 + t205;
-        let t639 = t283 - 0.2 * minus_rate_dot_arm_leg3;
-        let t642 = s_rod_leg1 * (minus_s_cross_leg3 * t636 + minus_c_cross_leg3 * t639);
-        let t650 = minus_c_cross_leg3 * t636 - minus_s_cross_leg3 * t639;
-        let t663 = t98 * (t439 - minus_rate_dot_rod_leg2)
-            + minus_s_rod_leg2 * t101 * (t264 - t438) - t259 * t434;
-        let t665 = t303 + t254;
-        let t668 = t287 + 0.2 * rate_dot_arm_leg4;
-        let t671 = minus_s_rod_leg2 * (s_cross_leg4 * t665 + c_cross_leg4 * t668);
-        let t676 = s_cross_leg4 * t668 - c_cross_leg4 * t665;
-        let t688 = t51 * t59 + minus_rate_dot_cross_leg1 * (t564 / c_rod_leg1);
-        let t701 = t144 * t151 - minus_rate_dot_cross_leg2 * (0.2 * s_cross_leg2);
-        let t714 = rate_dot_cross_leg3 * (0.2 * minus_s_cross_leg3) + t210 * t214;
-        let t726 = rate_dot_cross_leg4 * t101 + t259 * t263;
+                + minus_c_armcross_leg4 * acceleration[2] - (t266 - t440 - t440)
+                - c_cross_leg4 * t444);
+        let t448 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t450 = t436 + t448 + t436;
+        let t451 = minus_s_rod_leg2 * t450;
+        let t453 = t435 * t435;
+        let t454 = t104 * t453;
+        let t455 = minus_grod_vx_leg2 * t454;
+        let t457 = minus_grod_vx_leg2 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t457;
+        let gcross_vz_leg4 = s_arm_leg4 * t457;
+        let t462 = t364 - minus_rate_dot_cross_leg1;
+        let t464 = t52 * t462 - t363;
+        let t466 = pose[1] * t369;
+        let t474 = t391 + t392;
+        let t479 = t394 + c_rod_leg2 * (1.8867924528301887 * (t381 - t387));
+        let t481 = c_rod_leg2 * t474 - t104 * t479;
+        let t483 = t86 - t112;
+        let t490 = rate_dot_cross_leg3 - t423;
+        let t493 = t52 * t490 + c_rod_leg1 * t422;
+        let t496 = t7 * t216;
+        let t507 = rate_dot_cross_leg4 - t451;
+        let t509 = c_rod_leg2 * t450 + t104 * t507;
+        let t514 = t25 * t370;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t72;
+        let t518 = 3.5599857600569598 * t466;
+        let t521 = s_rod_leg1 * (t514 + rate_dot_rod_leg1) + c_rod_leg1 * (t66 - t518);
+        let t527 = t98 * t397;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t159;
+        let t531 = t95 * t150;
+        let t534 = minus_s_rod_leg2 * (t527 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t139 - t531);
+        let t566 = 1.8867924528301887 * acceleration[1];
+        let t572 = 1.8867924528301887 * acceleration[0];
+        let t590 = 0.9433962264150944 * t16;
+        let t598 = t590 * (t514 - rate_dot_rod_leg1) + t52 * t590 * (t518 + t66)
+            + t38 * t362;
+        let t601 = t74 - s_cross_leg1 * t288;
+        let t604 = t304 - 0.2 * t56;
+        let t607 = s_rod_leg1 * (t39 * t601 - s_cross_leg1 * t604);
+        let t614 = c_cross_leg1 * t604 + t601;
+        let t620 = 0.9433962264150944 * t93;
+        let t623 = t620 / c_rod_leg2;
+        let t629 = t620 * (minus_rate_dot_rod_leg2 - t527)
+            - minus_s_rod_leg2 * t623 * (t531 + t139) - t145 * t474;
+        let t632 = 0.2 * rate_dot_arm_leg2 - t292;
+        let t635 = t308 - t136 / s_cross_leg2;
+        let t638 = minus_s_rod_leg2 * (c_cross_leg2 * t632 - s_cross_leg2 * t635);
+        let t643 = c_cross_leg2 * t635 + s_cross_leg2 * t632;
+        let t652 = 0.9433962264150944 * t180;
+        let t662 = t652 * (rate_dot_rod_leg1 - t25 * t429)
+            - t52 * t652 * (3.5599857600569598 * t496 + t66) + t202 * t422;
+        let t665 = t312 + 0.2 * t208;
+        let t667 = t296 + t416;
+        let t670 = s_rod_leg1 * (s_cross_leg3 * t665 + c_cross_leg3 * t667);
+        let t678 = s_cross_leg3 * t667 - c_cross_leg3 * t665;
+        let t684 = 0.9433962264150944 * t237;
+        let t692 = t684 * (t454 - minus_rate_dot_rod_leg2) + t104 * t684 * (t277 - t453)
+            - t272 * t450;
+        let t694 = t316 + t267;
+        let t696 = t300 + t444;
+        let t699 = minus_s_rod_leg2 * (s_cross_leg4 * t694 + c_cross_leg4 * t696);
+        let t704 = s_cross_leg4 * t696 - c_cross_leg4 * t694;
+        let t716 = t38 * t64 - minus_rate_dot_cross_leg1 * (0.2 * s_cross_leg1);
+        let t728 = t145 * t150 - minus_rate_dot_cross_leg2 * t623;
+        let t741 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t202 * t216;
+        let t754 = rate_dot_cross_leg4 * (t684 / c_rod_leg2) + t272 * t276;
         Ok([
             [
-                acceleration[0], -(garm_vx_leg1 * minus_rate_dot_arm_leg1),
-                garm_vx_leg2 * rate_dot_arm_leg2, -(garm_vx_leg3 * minus_rate_dot_arm_leg3),
-                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t275), -(garm_vx_leg2 * t279),
-                garm_vx_leg3 * t283, garm_vx_leg4 * t287, -(garm_vx_leg1 * t291),
-                -(garm_vx_leg2 * t295), garm_vx_leg3 * t299, garm_vx_leg4 * t303,
-                -(garm_vx_leg1 * minus_rate_arm_leg1), garm_vx_leg2 * rate_arm_leg2,
-                -(garm_vx_leg3 * minus_rate_arm_leg3), garm_vx_leg4 * rate_arm_leg4,
-                ::overact::math::signed(garm_vx_leg1, t319),
+                acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
+                garm_vx_leg3 * rate_dot_arm_leg3, garm_vx_leg4 * rate_dot_arm_leg4,
+                -(garm_vx_leg1 * t288), -(garm_vx_leg2 * t292), garm_vx_leg3 * t296,
+                garm_vx_leg4 * t300, -(garm_vx_leg1 * t304), -(garm_vx_leg2 * t308),
+                garm_vx_leg3 * t312, garm_vx_leg4 * t316, garm_vx_leg1 * rate_arm_leg1,
+                garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
+                garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
-                ::overact::math::signed(garm_vx_leg3, t326),
+                ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, -(minus_minus_gcross_vx_leg1 * t353),
-                minus_gcross_vx_leg2 * t382 - t384, gcross_vx_leg3 * t408,
-                -(minus_gcross_vx_leg4 * t436 + t440), minus_minus_gcross_vx_leg1 * t449,
-                -(minus_gcross_vx_leg2 * t461 + minus_grod_vx_leg2 * (t150 - t148)),
-                -(gcross_vx_leg3 * t471),
-                6.716954264258415 * (t263 * (t81 - t82) / c_rod_leg2)
-                    - minus_gcross_vx_leg4 * t485,
-                minus_minus_gcross_vx_leg1 * t497,
-                -(minus_gcross_vx_leg2 * t508 + minus_grod_vx_leg2 * t379),
-                gcross_vx_leg3 * t497,
-                minus_grod_vx_leg2 * t432 - minus_gcross_vx_leg4 * t508,
-                minus_minus_gcross_vx_leg1 * t447,
-                t384 - minus_gcross_vx_leg2 * t459,
-                gcross_vx_leg3 * t468,
-                t440 - minus_gcross_vx_leg4 * t483,
-                minus_minus_gcross_vx_leg1 * t540,
-                minus_gcross_vx_leg2 * t546
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t364,
+                minus_gcross_vx_leg2 * t395 - t397, -(minus_gcross_vx_leg3 * t423),
+                -(minus_gcross_vx_leg4 * t451 + t455), -(minus_gcross_vx_leg1 * t464),
+                -(minus_gcross_vx_leg2 * t481
+                    + 6.716954264258415 * (t102 * (t150 * t483))),
+                minus_gcross_vx_leg3 * t493,
+                6.716954264258415 * (t102 * (t276 * t483)) - minus_gcross_vx_leg4 * t509,
+                -(minus_gcross_vx_leg1 * t521),
+                -(minus_gcross_vx_leg2 * t534 + minus_grod_vx_leg2 * t389),
+                -(minus_gcross_vx_leg3 * t521),
+                minus_grod_vx_leg2 * t448 - minus_gcross_vx_leg4 * t534,
+                -(minus_gcross_vx_leg1 * t462),
+                t397 - minus_gcross_vx_leg2 * t479,
+                -(minus_gcross_vx_leg3 * t490),
+                t455 - minus_gcross_vx_leg4 * t507,
+                -(minus_gcross_vx_leg1 * t566),
+                minus_gcross_vx_leg2 * t572
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                -(gcross_vx_leg3 * t540),
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t546,
+                minus_gcross_vx_leg3 * t566,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t572,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t572 - minus_minus_gcross_vx_leg1 * t581,
-                garm_vx_leg2 * t603 - minus_gcross_vx_leg2 * t610
-                    + 1.8867924528301887 * t615,
-                garm_vx_leg3 * t634 - gcross_vx_leg3 * t642,
-                garm_vx_leg4 * t663 + minus_gcross_vx_leg4 * t671
-                    - 1.8867924528301887 * t676,
-                minus_minus_gcross_vx_leg1 * t589 - garm_vx_leg1 * t688,
-                garm_vx_leg2 * t701 - minus_gcross_vx_leg2 * t615,
-                gcross_vx_leg3 * t650 - garm_vx_leg3 * t714,
-                garm_vx_leg4 * t726 - minus_gcross_vx_leg4 * t676,
+                garm_vx_leg1 * t598 + minus_gcross_vx_leg1 * t607,
+                garm_vx_leg2 * t629 - minus_gcross_vx_leg2 * t638
+                    + 1.8867924528301887 * t643,
+                garm_vx_leg3 * t662 - minus_gcross_vx_leg3 * t670,
+                garm_vx_leg4 * t692 + minus_gcross_vx_leg4 * t699
+                    - 1.8867924528301887 * t704,
+                garm_vx_leg1 * t716 - minus_gcross_vx_leg1 * t614,
+                garm_vx_leg2 * t728 - minus_gcross_vx_leg2 * t643,
+                garm_vx_leg3 * t741 - minus_gcross_vx_leg3 * t678,
+                garm_vx_leg4 * t754 - minus_gcross_vx_leg4 * t704,
             ],
             [
-                acceleration[1], minus_garm_vy_leg1 * minus_rate_dot_arm_leg1,
-                garm_vy_leg2 * rate_dot_arm_leg2, minus_garm_vy_leg3 * minus_rate_dot_arm_leg3,
-                garm_vy_leg4 * rate_dot_arm_leg4, minus_garm_vy_leg1 * t275, -(garm_vy_leg2 * t279),
-                -(minus_garm_vy_leg3 * t283), garm_vy_leg4 * t287, minus_garm_vy_leg1 * t291,
-                -(garm_vy_leg2 * t295), -(minus_garm_vy_leg3 * t299), garm_vy_leg4 * t303,
-                minus_garm_vy_leg1 * minus_rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
-                minus_garm_vy_leg3 * minus_rate_arm_leg3, garm_vy_leg4 * rate_arm_leg4,
-                -::overact::math::signed(minus_garm_vy_leg1, t319),
+                acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
+                garm_vy_leg3 * rate_dot_arm_leg3, garm_vy_leg4 * rate_dot_arm_leg4,
+                -(garm_vy_leg1 * t288), -(garm_vy_leg2 * t292), garm_vy_leg3 * t296,
+                garm_vy_leg4 * t300, -(garm_vy_leg1 * t304), -(garm_vy_leg2 * t308),
+                garm_vy_leg3 * t312, garm_vy_leg4 * t316, garm_vy_leg1 * rate_arm_leg1,
+                garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
+                garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
-                -::overact::math::signed(minus_garm_vy_leg3, t326),
-                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), -minus_garm_vy_leg1,
-                garm_vy_leg2, -minus_garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t353 - t359,
-                minus_gcross_vy_leg2 * t382, -(minus_gcross_vy_leg3 * t408 + t414),
-                -(minus_gcross_vy_leg4 * t436),
-                6.716954264258415 * (t59 * t451 / c_rod_leg1)
-                    - minus_gcross_vy_leg1 * t449,
-                -(minus_gcross_vy_leg2 * t461),
-                -(6.716954264258415 * (t214 * t451 / c_rod_leg1)
-                    - minus_gcross_vy_leg3 * t471),
-                -(minus_gcross_vy_leg4 * t485),
-                -(minus_gcross_vy_leg1 * t497 + grod_vy_leg1 * t349),
-                -(minus_gcross_vy_leg2 * t508),
-                grod_vy_leg1 * t405 - minus_gcross_vy_leg3 * t497,
-                -(minus_gcross_vy_leg4 * t508),
-                t359 - minus_gcross_vy_leg1 * t447,
-                -(minus_gcross_vy_leg2 * t459),
-                t414 - minus_gcross_vy_leg3 * t468,
-                -(minus_gcross_vy_leg4 * t483),
-                -(minus_gcross_vy_leg1 * t540
+                ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
+                ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t364 - t370,
+                minus_gcross_vy_leg2 * t395, -(minus_gcross_vy_leg3 * t423 + t429),
+                -(minus_gcross_vy_leg4 * t451),
+                6.716954264258415 * (t50 * (t466 - t62 * t62))
+                    - minus_gcross_vy_leg1 * t464,
+                -(minus_gcross_vy_leg2 * t481),
+                -(6.716954264258415 * (t50 * (t496 - t214 * t214))
+                    - minus_gcross_vy_leg3 * t493),
+                -(minus_gcross_vy_leg4 * t509),
+                -(minus_gcross_vy_leg1 * t521 + grod_vy_leg1 * t360),
+                -(minus_gcross_vy_leg2 * t534),
+                grod_vy_leg1 * t420 - minus_gcross_vy_leg3 * t521,
+                -(minus_gcross_vy_leg4 * t534),
+                t370 - minus_gcross_vy_leg1 * t462,
+                -(minus_gcross_vy_leg2 * t479),
+                t429 - minus_gcross_vy_leg3 * t490,
+                -(minus_gcross_vy_leg4 * t507),
+                -(minus_gcross_vy_leg1 * t566
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t546,
-                minus_gcross_vy_leg3 * t540 - 1.8867924528301887 * rate_dot_cross_leg3,
-                -(minus_gcross_vy_leg4 * t546),
+                minus_gcross_vy_leg2 * t572,
+                minus_gcross_vy_leg3 * t566 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t572),
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                minus_gcross_vy_leg1 * t581 - minus_garm_vy_leg1 * t572
-                    - 1.8867924528301887 * t589,
-                garm_vy_leg2 * t603 - minus_gcross_vy_leg2 * t610,
-                minus_gcross_vy_leg3 * t642 - minus_garm_vy_leg3 * t634
-                    + 1.8867924528301887 * t650,
-                garm_vy_leg4 * t663 + minus_gcross_vy_leg4 * t671,
-                minus_garm_vy_leg1 * t688 - minus_gcross_vy_leg1 * t589,
-                garm_vy_leg2 * t701 - minus_gcross_vy_leg2 * t615,
-                minus_garm_vy_leg3 * t714 - minus_gcross_vy_leg3 * t650,
-                garm_vy_leg4 * t726 - minus_gcross_vy_leg4 * t676,
+                garm_vy_leg1 * t598 + minus_gcross_vy_leg1 * t607
+                    - 1.8867924528301887 * t614,
+                garm_vy_leg2 * t629 - minus_gcross_vy_leg2 * t638,
+                garm_vy_leg3 * t662 - minus_gcross_vy_leg3 * t670
+                    + 1.8867924528301887 * t678,
+                garm_vy_leg4 * t692 + minus_gcross_vy_leg4 * t699,
+                garm_vy_leg1 * t716 - minus_gcross_vy_leg1 * t614,
+                garm_vy_leg2 * t728 - minus_gcross_vy_leg2 * t643,
+                garm_vy_leg3 * t741 - minus_gcross_vy_leg3 * t678,
+                garm_vy_leg4 * t754 - minus_gcross_vy_leg4 * t704,
             ],
             [
-                acceleration[2] + 9.81, -(minus_minus_garm_vz_leg1 * minus_rate_dot_arm_leg1),
+                acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
-                -(minus_minus_garm_vz_leg3 * minus_rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), -(minus_minus_garm_vz_leg1 * t275),
-                minus_garm_vz_leg2 * t279, minus_minus_garm_vz_leg3 * t283,
-                -(minus_garm_vz_leg4 * t287), -(minus_minus_garm_vz_leg1 * t291),
-                minus_garm_vz_leg2 * t295, minus_minus_garm_vz_leg3 * t299,
-                -(minus_garm_vz_leg4 * t303), -(minus_minus_garm_vz_leg1 * minus_rate_arm_leg1),
-                -(minus_garm_vz_leg2 * rate_arm_leg2),
-                -(minus_minus_garm_vz_leg3 * minus_rate_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_arm_leg4),
-                ::overact::math::signed(minus_minus_garm_vz_leg1, t319),
+                -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t288,
+                minus_garm_vz_leg2 * t292, -(minus_garm_vz_leg3 * t296),
+                -(minus_garm_vz_leg4 * t300), minus_garm_vz_leg1 * t304, minus_garm_vz_leg2 * t308,
+                -(minus_garm_vz_leg3 * t312), -(minus_garm_vz_leg4 * t316),
+                -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
+                -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2),
-                ::overact::math::signed(minus_minus_garm_vz_leg3, t326),
-                -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4),
-                minus_minus_garm_vz_leg1, -minus_garm_vz_leg2, minus_minus_garm_vz_leg3,
-                -minus_garm_vz_leg4, -(minus_minus_gcross_vz_leg1 * t353),
-                minus_gcross_vz_leg2 * t382, -(minus_gcross_vz_leg3 * t408), gcross_vz_leg4 * t436,
-                minus_minus_gcross_vz_leg1 * t449, -(minus_gcross_vz_leg2 * t461),
-                minus_gcross_vz_leg3 * t471, gcross_vz_leg4 * t485,
-                minus_minus_gcross_vz_leg1 * t497, -(minus_gcross_vz_leg2 * t508),
-                -(minus_gcross_vz_leg3 * t497), gcross_vz_leg4 * t508,
-                minus_minus_gcross_vz_leg1 * t447, -(minus_gcross_vz_leg2 * t459),
-                -(minus_gcross_vz_leg3 * t468), gcross_vz_leg4 * t483,
-                minus_minus_gcross_vz_leg1 * t540, minus_gcross_vz_leg2 * t546,
-                minus_gcross_vz_leg3 * t540, gcross_vz_leg4 * t546, 0.0, 0.0,
-                minus_minus_garm_vz_leg1 * t572 - minus_minus_gcross_vz_leg1 * t581,
-                -(minus_gcross_vz_leg2 * t610 + minus_garm_vz_leg2 * t603),
-                minus_gcross_vz_leg3 * t642 + minus_minus_garm_vz_leg3 * t634,
-                -(minus_garm_vz_leg4 * t663 + gcross_vz_leg4 * t671),
-                -(minus_minus_garm_vz_leg1 * t688 - minus_minus_gcross_vz_leg1 * t589),
-                -(minus_gcross_vz_leg2 * t615 + minus_garm_vz_leg2 * t701),
-                -(minus_gcross_vz_leg3 * t650 + minus_minus_garm_vz_leg3 * t714),
-                gcross_vz_leg4 * t676 - minus_garm_vz_leg4 * t726,
+                -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
+                -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
+                -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
+                minus_gcross_vz_leg1 * t364, minus_gcross_vz_leg2 * t395, gcross_vz_leg3 * t423,
+                gcross_vz_leg4 * t451, -(minus_gcross_vz_leg1 * t464),
+                -(minus_gcross_vz_leg2 * t481), -(gcross_vz_leg3 * t493), gcross_vz_leg4 * t509,
+                -(minus_gcross_vz_leg1 * t521), -(minus_gcross_vz_leg2 * t534),
+                gcross_vz_leg3 * t521, gcross_vz_leg4 * t534, -(minus_gcross_vz_leg1 * t462),
+                -(minus_gcross_vz_leg2 * t479), gcross_vz_leg3 * t490, gcross_vz_leg4 * t507,
+                -(minus_gcross_vz_leg1 * t566), minus_gcross_vz_leg2 * t572,
+                -(gcross_vz_leg3 * t566), gcross_vz_leg4 * t572, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t607 - minus_garm_vz_leg1 * t598,
+                -(minus_gcross_vz_leg2 * t638 + minus_garm_vz_leg2 * t629),
+                gcross_vz_leg3 * t670 - minus_garm_vz_leg3 * t662,
+                -(minus_garm_vz_leg4 * t692 + gcross_vz_leg4 * t699),
+                -(minus_garm_vz_leg1 * t716 + minus_gcross_vz_leg1 * t614),
+                -(minus_gcross_vz_leg2 * t643 + minus_garm_vz_leg2 * t728),
+                gcross_vz_leg3 * t678 - minus_garm_vz_leg3 * t741,
+                gcross_vz_leg4 * t704 - minus_garm_vz_leg4 * t754,
             ],
         ])
     }
@@ -5601,7 +5620,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 666 operations (190 additions, 456 multiplications, 20 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 543 intermediates.
+    /// 692 operations (194 additions, 487 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 12 signs, 569 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5629,280 +5648,301 @@ impl Delta4 {
         ::overact::guard::leg(c_rod_leg4, 1.0, "leg4")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1 - s_arm_leg1 * s_cross_leg1;
         let s_armcross_leg1 = s_arm_leg1 * c_cross_leg1 + c_arm_leg1 * s_cross_leg1;
-        let t11 = 5.0 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t11;
-        let t21 = s_rod_leg1 / c_rod_leg1;
-        let t22 = t21 * twist[1];
-        let t23 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t22;
-        let rate_arm_leg1 = t11 * t23;
-        let t25 = t23 * rate_arm_leg1;
-        let t26 = t25 / s_cross_leg1;
-        let t28 = 0.53 * c_rod_leg1;
-        let grod_vy_leg1 = 1.8867924528301887 / c_rod_leg1;
-        let t30 = 0.2 * c_cross_leg1;
-        let t35 = t30 * rate_arm_leg1 + s_armcross_leg1 * twist[0]
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t35;
-        let t37 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t11 = 1.0 / s_cross_leg1;
+        let t12 = 5.0 * t11;
+        let garm_vx_leg1 = c_armcross_leg1 * t12;
+        let t22 = 1.0 / c_rod_leg1;
+        let t23 = s_rod_leg1 * t22;
+        let t24 = t23 * twist[1];
+        let t25 = c_armcross_leg1 * twist[0] - s_armcross_leg1 * twist[2] + t24;
+        let rate_arm_leg1 = t12 * t25;
+        let t27 = t25 * rate_arm_leg1;
+        let t28 = t11 * t27;
+        let t30 = 0.53 * c_rod_leg1;
+        let grod_vy_leg1 = 1.8867924528301887 * t22;
+        let t32 = c_cross_leg1 * t11;
+        let t37 = t25 * t32 + s_armcross_leg1 * twist[0] + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t37;
+        let t39 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
         let rate_rod_leg1 = grod_vy_leg1 * twist[1];
-        let t39 = rate_rod_leg1 * rate_rod_leg1;
-        let t45 = acceleration[1] + t22 * rate_rod_leg1;
-        let t47 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
-            + c_cross_leg1 * t26 + t28 * (t37 + t39) + t21 * t45;
-        let rate_dot_arm_leg1 = t11 * t47;
-        let garm_vy_leg1 = t11 * t21;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let t56 = 5.0 / s_cross_leg2;
-        let t59 = s_rod_leg2 / c_rod_leg2;
-        let minus_garm_vx_leg2 = t56 * t59;
+        let t41 = rate_rod_leg1 * rate_rod_leg1;
+        let t45 = c_armcross_leg1 * acceleration[0] - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t28 + t30 * (t39 + t41);
+        let t47 = acceleration[1] + t24 * rate_rod_leg1;
+        let rate_dot_arm_leg1 = t12 * (t45 + t23 * t47);
+        let garm_vy_leg1 = t12 * t23;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t12;
+        let t58 = 1.0 / s_cross_leg2;
+        let t59 = 5.0 * t58;
+        let t62 = 1.0 / c_rod_leg2;
+        let t63 = s_rod_leg2 * t62;
+        let minus_garm_vx_leg2 = t59 * t63;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t72 = 0.2 * c_cross_leg2;
-        let t76 = t59 * twist[0];
-        let rate_arm_leg2 = t56
-            * (c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t76);
-        let t79 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
+        let t79 = t63 * twist[0];
+        let t80 = c_armcross_leg2 * twist[1] - s_armcross_leg2 * twist[2] - t79;
+        let rate_arm_leg2 = t59 * t80;
+        let t82 = 0.2 * c_cross_leg2;
+        let t83 = t82 * rate_arm_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 * t62;
         let minus_rate_rod_leg2 = minus_grod_vx_leg2 * twist[0];
-        let t84 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t89 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2]
-            + t72 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t89;
-        let t91 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t97 = acceleration[0] - t76 * minus_rate_rod_leg2;
-        let t99 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
-            + t72 * t79 + 0.53 * c_rod_leg2 * (t84 + t91) - t59 * t97;
-        let rate_dot_arm_leg2 = t56 * t99;
-        let garm_vy_leg2 = c_armcross_leg2 * t56;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
+        let t88 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t92 = s_armcross_leg2 * twist[1] + c_armcross_leg2 * twist[2] + t83;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t92;
+        let t94 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t100 = acceleration[0] - t79 * minus_rate_rod_leg2;
+        let t102 = c_armcross_leg2 * acceleration[1] - s_armcross_leg2 * acceleration[2]
+            + rate_arm_leg2 * t83 + 0.53 * c_rod_leg2 * (t88 + t94) - t63 * t100;
+        let rate_dot_arm_leg2 = t59 * t102;
+        let garm_vy_leg2 = c_armcross_leg2 * t59;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t59;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t116 = 5.0 / s_cross_leg3;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t116;
-        let t123 = s_rod_leg3 / c_rod_leg3;
-        let t124 = t123 * twist[1];
-        let t125 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2] + t124;
-        let minus_rate_arm_leg3 = t116 * t125;
-        let t127 = 0.2 * c_cross_leg3;
-        let t128 = t127 * minus_rate_arm_leg3;
-        let t130 = 0.53 * c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.8867924528301887 / c_rod_leg3;
+        let t119 = 1.0 / s_cross_leg3;
+        let t120 = 5.0 * t119;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t120;
+        let t122 = c_cross_leg3 * t119;
+        let t125 = c_armcross_leg3 * twist[0] + s_armcross_leg3 * twist[2];
+        let t128 = 1.0 / c_rod_leg3;
+        let t129 = s_rod_leg3 * t128;
+        let t130 = t129 * twist[1];
+        let t131 = t125 + t130;
+        let minus_rate_arm_leg3 = t120 * t131;
+        let t133 = t131 * minus_rate_arm_leg3;
+        let t135 = 0.53 * c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.8867924528301887 * t128;
         let minus_rate_rod_leg3 = minus_grod_vy_leg3 * twist[1];
-        let t133 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t137 = s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2] + t128;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t137;
-        let t139 = rate_cross_leg3 * rate_cross_leg3;
-        let t148 = acceleration[1] - t124 * minus_rate_rod_leg3;
-        let t150 = minus_rate_arm_leg3 * t128 + t130 * (t133 + t139)
-            - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2])
-            - t123 * t148;
-        let rate_dot_arm_leg3 = t116 * t150;
-        let minus_garm_vy_leg3 = t116 * t123;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t116;
-        let t159 = 1.0 / s_cross_leg4;
-        let t160 = 5.0 * t159;
-        let t163 = s_rod_leg4 / c_rod_leg4;
-        let garm_vx_leg4 = t160 * t163;
-        let t165 = t163 * twist[0];
+        let t138 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t144 = 0.2 * c_cross_leg3;
+        let minus_garm_vy_leg3 = t120 * t129;
+        let t146 = t144 * minus_garm_vy_leg3;
+        let t148 = t122 * t125 + s_armcross_leg3 * twist[0] - c_armcross_leg3 * twist[2]
+            + t146 * twist[1];
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t148;
+        let t150 = rate_cross_leg3 * rate_cross_leg3;
+        let t157 = t122 * t133 + t135 * (t138 + t150)
+            - (c_armcross_leg3 * acceleration[0] + s_armcross_leg3 * acceleration[2]);
+        let t159 = acceleration[1] - t130 * minus_rate_rod_leg3;
+        let rate_dot_arm_leg3 = t120 * (t157 - t129 * t159);
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t120;
+        let t169 = 1.0 / s_cross_leg4;
+        let t170 = 5.0 * t169;
+        let t173 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t170 * t173;
+        let t175 = t173 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t177 = t165 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
-        let rate_arm_leg4 = t160 * t177;
-        let t179 = 0.2 * c_cross_leg4;
-        let t180 = t179 * rate_arm_leg4;
+        let t187 = t175 - (c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t170 * t187;
+        let t189 = t187 * rate_arm_leg4;
+        let t190 = t189 / s_cross_leg4;
         let grod_vx_leg4 = 1.8867924528301887 / c_rod_leg4;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t185 = rate_rod_leg4 * rate_rod_leg4;
-        let t189 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2] - t180;
-        let t190 = 1.8867924528301887 * t189;
-        let t191 = t190 * t190;
-        let t192 = t163 * t191;
-        let t193 = t163 * t192;
-        let t194 = t193 + t191;
-        let t203 = acceleration[0] + t165 * rate_rod_leg4;
-        let t205 = rate_arm_leg4 * t180 + 0.53 * c_rod_leg4 * (t185 + t194)
+        let t195 = rate_rod_leg4 * rate_rod_leg4;
+        let t199 = 0.2 * c_cross_leg4;
+        let t201 = s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
+            - t199 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t201;
+        let t203 = rate_cross_leg4 * rate_cross_leg4;
+        let t212 = acceleration[0] + t175 * rate_rod_leg4;
+        let t214 = c_cross_leg4 * t190 + 0.53 * c_rod_leg4 * (t195 + t203)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2])
-            + t163 * t203;
-        let rate_dot_arm_leg4 = t160 * t205;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t160;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t160;
-        let t212 = 9.81 * c_arm_leg1;
-        let t216 = 9.81 * c_arm_leg2;
-        let t220 = 9.81 * c_arm_leg3;
-        let t224 = 9.81 * c_arm_leg4;
-        let t228 = 9.81 * s_arm_leg1;
-        let t232 = 9.81 * s_arm_leg2;
-        let t236 = 9.81 * s_arm_leg3;
-        let t240 = 9.81 * s_arm_leg4;
-        let t268 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t268;
-        let t274 = t21 * t35;
-        let t275 = rate_rod_leg1 * t274;
-        let t279 = t30 * rate_dot_arm_leg1 + s_armcross_leg1 * acceleration[0]
-            + c_armcross_leg1 * acceleration[2] + t25 + t275 + t275;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t279;
-        let t282 = rate_rod_leg1 * (1.8867924528301887 * t35);
-        let t287 = s_rod_leg1 * t282 + c_rod_leg1 * (1.8867924528301887 * (t275 - t279));
-        let t288 = minus_rate_dot_cross_leg1 + t287;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t30 * garm_vy_leg1);
-        let t294 = 3.5599857600569598 * (minus_rate_cross_leg1 * t274);
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t268;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t72 * minus_garm_vx_leg2);
-        let t303 = 0.2 * s_cross_leg2;
-        let t305 = t76 * minus_rate_cross_leg2;
-        let t309 = 0.2 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
-                + t303 * t79 - t305 - t305 + c_cross_leg2 * t309);
-        let t313 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t315 = minus_rate_rod_leg2 * (1.8867924528301887 * t89);
-        let t317 = t315 - t313 + t315;
-        let t318 = c_rod_leg2 * t317;
-        let t319 = t59 * t318;
-        let t321 = t89 * t89;
-        let t322 = t59 * t321;
-        let t323 = 3.5599857600569598 * t322;
-        let t324 = minus_grod_vx_leg2 * t323;
-        let t326 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t326;
-        let gcross_vz_leg2 = s_arm_leg2 * t326;
-        let t331 = minus_grod_vy_leg3 / s_cross_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t331;
-        let t336 = t125 * minus_rate_arm_leg3;
-        let t337 = t124 * rate_cross_leg3;
-        let t342 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
-            - (t336 + t337 + t337) - t127 * rate_dot_arm_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t342;
-        let t345 = minus_rate_rod_leg3 * (1.8867924528301887 * t137);
-        let t350 = s_rod_leg3 * t345 + c_rod_leg3 * (1.8867924528301887 * (t342 + t337));
-        let t351 = rate_dot_cross_leg3 - t350;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t127 * minus_garm_vy_leg3);
-        let t356 = t123 * t137;
-        let t358 = 3.5599857600569598 * (rate_cross_leg3 * t356);
-        let gcross_vz_leg3 = s_arm_leg3 * t331;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t179 * garm_vx_leg4);
-        let t364 = rate_rod_leg4 * t190;
-        let t368 = t177 * rate_arm_leg4;
-        let t370 = rate_rod_leg4 * (t163 * t189);
-        let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-                - (t368 - t370 - t370) - t179 * rate_dot_arm_leg4);
-        let t377 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t379 = t364 + t377 + t364;
-        let t380 = c_rod_leg4 * t379;
-        let t381 = t163 * t380;
-        let t383 = grod_vx_leg4 * t192;
-        let t385 = t159 * grod_vx_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t385;
-        let gcross_vz_leg4 = s_arm_leg4 * t385;
-        let t391 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t393 = t282 + t391 + t282;
-        let t395 = t21 * t287 - c_rod_leg1 * t393;
-        let t397 = t274 * t274;
-        let t405 = minus_rate_dot_cross_leg2 + t319;
-        let t407 = t318 - t59 * t405;
-        let t409 = t59 * t322;
-        let t417 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t419 = t417 - t345 - t345;
-        let t421 = t123 * t350 + c_rod_leg3 * t419;
-        let t424 = t356 * t356;
-        let t433 = rate_dot_cross_leg4 - t381;
-        let t435 = t380 + t163 * t433;
-        let t440 = t28 * t294;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t45;
-        let t444 = 3.5599857600569598 * t397;
-        let t447 = s_rod_leg1 * (t440 + rate_dot_rod_leg1) + c_rod_leg1 * (t39 - t444);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t97;
-        let t456 = 3.5599857600569598 * t409;
-        let t459 = s_rod_leg2 * (t323 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t84 - t456);
-        let t465 = t130 * t358;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t148;
-        let t469 = 3.5599857600569598 * t424;
-        let t472 = s_rod_leg3 * (t465 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t133 - t469);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t203;
-        let t484 = s_rod_leg4 * (t192 + rate_dot_rod_leg4) + c_rod_leg4 * (t185 - t193);
-        let t505 = 1.8867924528301887 * acceleration[1];
-        let t511 = 1.8867924528301887 * acceleration[0];
-        let t529 = 0.2 * s_cross_leg1;
-        let t538 = t529 * (c_rod_leg1 * (t440 - rate_dot_rod_leg1))
-            + t529 * s_rod_leg1 * (t444 + t39) + t30 * t393;
-        let t540 = t228 + t26;
-        let t543 = 0.2 * rate_dot_arm_leg1 - t212;
-        let t546 = s_rod_leg1 * (s_cross_leg1 * t540 + c_cross_leg1 * t543);
-        let t554 = s_cross_leg1 * t543 - c_cross_leg1 * t540;
-        let t560 = t309 - t216;
-        let t563 = t232 + 0.2 * t79;
-        let t565 = s_cross_leg2 * t560 - c_cross_leg2 * t563;
-        let t575 = t303 * (c_rod_leg2 * (t323 + minus_rate_dot_rod_leg2))
-            + t303 * s_rod_leg2 * (t456 + t84) - t72 * t317;
-        let t580 = s_rod_leg2 * (s_cross_leg2 * t563 + c_cross_leg2 * t560);
-        let t590 = 0.2 * s_cross_leg3;
-        let t599 = t590 * (c_rod_leg3 * (t465 + minus_rate_dot_rod_leg3))
-            + t590 * s_rod_leg3 * (t469 + t133) - t127 * t419;
-        let t602 = t236 + t336 / s_cross_leg3;
-        let t605 = 0.2 * rate_dot_arm_leg3 - t220;
-        let t608 = s_rod_leg3 * (s_cross_leg3 * t602 + c_cross_leg3 * t605);
-        let t613 = s_cross_leg3 * t605 - c_cross_leg3 * t602;
-        let t622 = 0.2 * s_cross_leg4;
-        let t631 = t622 * (c_rod_leg4 * (t192 - rate_dot_rod_leg4))
-            + t622 * s_rod_leg4 * (t193 + t185) - t179 * t379;
-        let t634 = t240 + t159 * t368;
-        let t637 = 0.2 * rate_dot_arm_leg4 - t224;
-        let t640 = s_rod_leg4 * (s_cross_leg4 * t634 + c_cross_leg4 * t637);
-        let t645 = s_cross_leg4 * t637 - c_cross_leg4 * t634;
-        let t656 = t30 * t37 - t529 * minus_rate_dot_cross_leg1;
-        let t669 = t72 * t91 - t303 * minus_rate_dot_cross_leg2;
-        let t681 = t590 * rate_dot_cross_leg3 + t127 * t139;
-        let t692 = t622 * rate_dot_cross_leg4 + t179 * t194;
+            + t173 * t212;
+        let rate_dot_arm_leg4 = t170 * t214;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t170;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t170;
+        let t221 = 9.81 * c_arm_leg1;
+        let t225 = 9.81 * c_arm_leg2;
+        let t229 = 9.81 * c_arm_leg3;
+        let t233 = 9.81 * c_arm_leg4;
+        let t237 = 9.81 * s_arm_leg1;
+        let t241 = 9.81 * s_arm_leg2;
+        let t245 = 9.81 * s_arm_leg3;
+        let t249 = 9.81 * s_arm_leg4;
+        let t277 = t11 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t277;
+        let t280 = rate_rod_leg1 * (1.8867924528301887 * t37);
+        let t282 = 0.2 * c_cross_leg1;
+        let t283 = t282 * garm_vy_leg1;
+        let t289 = 0.53 * s_rod_leg1;
+        let t291 = t289 * (minus_rate_cross_leg1 * rate_rod_leg1);
+        let t295 = t32 * t45 + t283 * t47 + s_armcross_leg1 * acceleration[0]
+            + c_armcross_leg1 * acceleration[2] + t27 + t291 + t291;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t295;
+        let t297 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t299 = t280 + t297 + t280;
+        let t300 = s_rod_leg1 * t299;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t283;
+        let t304 = t39 * t289;
+        let t305 = 3.5599857600569598 * t304;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t277;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t82 * minus_garm_vx_leg2);
+        let t314 = t80 * rate_arm_leg2;
+        let t315 = t63 * t92;
+        let t316 = minus_rate_rod_leg2 * t315;
+        let t320 = 0.2 * rate_dot_arm_leg2;
+        let t322 = s_armcross_leg2 * acceleration[1] + c_armcross_leg2 * acceleration[2]
+            + t314 - t316 - t316 + c_cross_leg2 * t320;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t322;
+        let t324 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t325 = 1.8867924528301887 * t92;
+        let t326 = minus_rate_rod_leg2 * t325;
+        let t327 = t326 - t324;
+        let t329 = s_rod_leg2 * t326;
+        let t330 = s_rod_leg2 * t327 + t329;
+        let t333 = t325 * (s_rod_leg2 * minus_rate_cross_leg2);
+        let t334 = minus_grod_vx_leg2 * t333;
+        let t336 = t58 * minus_grod_vx_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t336;
+        let gcross_vz_leg2 = s_arm_leg2 * t336;
+        let t341 = t119 * minus_grod_vy_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t341;
+        let t346 = t130 * rate_cross_leg3;
+        let t353 = s_armcross_leg3 * acceleration[0] - c_armcross_leg3 * acceleration[2]
+            - (t133 + t346 + t346) - t122 * t157 + t146 * t159;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t353;
+        let t355 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t357 = minus_rate_rod_leg3 * (1.8867924528301887 * t148);
+        let t359 = t355 - t357 - t357;
+        let t360 = s_rod_leg3 * t359;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * t146;
+        let t364 = t129 * t148;
+        let t366 = 3.5599857600569598 * (rate_cross_leg3 * t364);
+        let gcross_vz_leg3 = s_arm_leg3 * t341;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t199 * garm_vx_leg4);
+        let t373 = rate_rod_leg4 * (1.8867924528301887 * t201);
+        let t377 = t175 * rate_cross_leg4;
+        let t381 = 0.2 * rate_dot_arm_leg4;
+        let t383 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+            - (t189 - t377 - t377) - c_cross_leg4 * t381;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t383;
+        let t385 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t387 = t373 + t385 + t373;
+        let t388 = s_rod_leg4 * t387;
+        let t390 = t201 * t201;
+        let t391 = t173 * t390;
+        let t392 = 3.5599857600569598 * t391;
+        let t393 = grod_vx_leg4 * t392;
+        let t395 = t169 * grod_vx_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t395;
+        let gcross_vz_leg4 = s_arm_leg4 * t395;
+        let t400 = s_rod_leg1 * t280;
+        let t403 = t400 + t300 - (minus_rate_dot_cross_leg1 + t400);
+        let t406 = t23 * t403 - c_rod_leg1 * t299;
+        let t408 = t289 * t304;
+        let t419 = t329 + c_rod_leg2 * (1.8867924528301887 * (t322 + t316));
+        let t421 = t327 + t326;
+        let t423 = c_rod_leg2 * t421 - t63 * t419;
+        let t425 = t315 * t315;
+        let t437 = s_rod_leg3 * t357 + c_rod_leg3 * (1.8867924528301887 * (t353 + t346));
+        let t440 = t129 * t437 + c_rod_leg3 * t359;
+        let t443 = t364 * t364;
+        let t450 = t173 * t391;
+        let t459 = c_rod_leg4 * (1.8867924528301887 * (t383 - t377)) - s_rod_leg4 * t373;
+        let t461 = c_rod_leg4 * t387 + t173 * t459;
+        let t466 = t30 * t305;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t47;
+        let t470 = 3.5599857600569598 * t408;
+        let t473 = s_rod_leg1 * (t466 + rate_dot_rod_leg1) + c_rod_leg1 * (t41 - t470);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t100;
+        let t482 = 3.5599857600569598 * t425;
+        let t485 = s_rod_leg2 * (t333 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t88 - t482);
+        let t491 = t135 * t366;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t159;
+        let t495 = 3.5599857600569598 * t443;
+        let t498 = s_rod_leg3 * (t491 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t138 - t495);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t212;
+        let t508 = 3.5599857600569598 * t450;
+        let t511 = s_rod_leg4 * (t392 + rate_dot_rod_leg4) + c_rod_leg4 * (t195 - t508);
+        let t532 = 1.8867924528301887 * acceleration[1];
+        let t538 = 1.8867924528301887 * acceleration[0];
+        let t556 = 0.2 * s_cross_leg1;
+        let t565 = t556 * (c_rod_leg1 * (t466 - rate_dot_rod_leg1))
+            + t556 * s_rod_leg1 * (t470 + t41) + t282 * t299;
+        let t567 = t237 + t28;
+        let t570 = 0.2 * rate_dot_arm_leg1 - t221;
+        let t573 = s_rod_leg1 * (s_cross_leg1 * t567 + c_cross_leg1 * t570);
+        let t581 = s_cross_leg1 * t570 - c_cross_leg1 * t567;
+        let t587 = t320 - t225;
+        let t590 = t241 + t58 * t314;
+        let t592 = s_cross_leg2 * t587 - c_cross_leg2 * t590;
+        let t594 = 0.2 * s_cross_leg2;
+        let t603 = t594 * (c_rod_leg2 * (t333 + minus_rate_dot_rod_leg2))
+            + t594 * s_rod_leg2 * (t482 + t88) - t82 * t421;
+        let t608 = s_rod_leg2 * (s_cross_leg2 * t590 + c_cross_leg2 * t587);
+        let t618 = 0.2 * s_cross_leg3;
+        let t627 = t618 * (c_rod_leg3 * (t491 + minus_rate_dot_rod_leg3))
+            + t618 * s_rod_leg3 * (t495 + t138) - t144 * t359;
+        let t630 = t245 + t119 * t133;
+        let t633 = 0.2 * rate_dot_arm_leg3 - t229;
+        let t636 = s_rod_leg3 * (s_cross_leg3 * t630 + c_cross_leg3 * t633);
+        let t641 = s_cross_leg3 * t633 - c_cross_leg3 * t630;
+        let t650 = 0.2 * s_cross_leg4;
+        let t659 = t650 * (c_rod_leg4 * (t392 - rate_dot_rod_leg4))
+            + t650 * s_rod_leg4 * (t508 + t195) - t199 * t387;
+        let t661 = t249 + t190;
+        let t663 = t381 - t233;
+        let t666 = s_rod_leg4 * (s_cross_leg4 * t661 + c_cross_leg4 * t663);
+        let t671 = s_cross_leg4 * t663 - c_cross_leg4 * t661;
+        let t682 = t282 * t39 - t556 * minus_rate_dot_cross_leg1;
+        let t695 = t82 * t94 - t594 * minus_rate_dot_cross_leg2;
+        let t707 = t618 * rate_dot_cross_leg3 + t144 * t150;
+        let t718 = t650 * rate_dot_cross_leg4 + t199 * t203;
         Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vx_leg3 * rate_dot_arm_leg3), garm_vx_leg4 * rate_dot_arm_leg4,
-                -(garm_vx_leg1 * t212), minus_garm_vx_leg2 * t216, minus_garm_vx_leg3 * t220,
-                -(garm_vx_leg4 * t224), garm_vx_leg1 * t228, -(minus_garm_vx_leg2 * t232),
-                -(minus_garm_vx_leg3 * t236), garm_vx_leg4 * t240, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t221), minus_garm_vx_leg2 * t225, minus_garm_vx_leg3 * t229,
+                -(garm_vx_leg4 * t233), garm_vx_leg1 * t237, -(minus_garm_vx_leg2 * t241),
+                -(minus_garm_vx_leg3 * t245), garm_vx_leg4 * t249, garm_vx_leg1 * rate_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_arm_leg2), minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
-                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t288,
-                gcross_vx_leg2 * t319 + t324, gcross_vx_leg3 * t351,
-                -(minus_gcross_vx_leg4 * t381 + t383), -(minus_gcross_vx_leg1 * t395),
-                gcross_vx_leg2 * t407 - 6.716954264258415 * ((t409 - t321) / c_rod_leg2),
-                gcross_vx_leg3 * t421, grod_vx_leg4 * (t193 - t191) - minus_gcross_vx_leg4 * t435,
-                -(minus_gcross_vx_leg1 * t447), gcross_vx_leg2 * t459 + minus_grod_vx_leg2 * t313,
-                gcross_vx_leg3 * t472, grod_vx_leg4 * t377 - minus_gcross_vx_leg4 * t484,
-                -(minus_gcross_vx_leg1 * t287), -(gcross_vx_leg2 * t405 + t324),
-                gcross_vx_leg3 * t350, t383 - minus_gcross_vx_leg4 * t433,
-                -(minus_gcross_vx_leg1 * t505),
-                -(gcross_vx_leg2 * t511
+                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t300,
+                gcross_vx_leg2 * t330 + t334, gcross_vx_leg3 * t360,
+                -(minus_gcross_vx_leg4 * t388 + t393), -(minus_gcross_vx_leg1 * t406),
+                gcross_vx_leg2 * t423 - 6.716954264258415 * (t62 * (t425 - t92 * t92)),
+                gcross_vx_leg3 * t440,
+                6.716954264258415 * ((t450 - t390) / c_rod_leg4)
+                    - minus_gcross_vx_leg4 * t461,
+                -(minus_gcross_vx_leg1 * t473),
+                gcross_vx_leg2 * t485 + minus_grod_vx_leg2 * t324,
+                gcross_vx_leg3 * t498,
+                grod_vx_leg4 * t385 - minus_gcross_vx_leg4 * t511,
+                -(minus_gcross_vx_leg1 * t403),
+                -(gcross_vx_leg2 * t419 + t334),
+                gcross_vx_leg3 * t437,
+                t393 - minus_gcross_vx_leg4 * t459,
+                -(minus_gcross_vx_leg1 * t532),
+                -(gcross_vx_leg2 * t538
                     - 1.8867924528301887 * minus_rate_dot_cross_leg2),
-                -(gcross_vx_leg3 * t505),
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t511,
+                -(gcross_vx_leg3 * t532),
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t538,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t538 + minus_gcross_vx_leg1 * t546,
-                1.8867924528301887 * t565
-                    - (minus_garm_vx_leg2 * t575 + gcross_vx_leg2 * t580),
-                -(minus_garm_vx_leg3 * t599 + gcross_vx_leg3 * t608),
-                garm_vx_leg4 * t631 + minus_gcross_vx_leg4 * t640
-                    - 1.8867924528301887 * t645,
-                garm_vx_leg1 * t656 - minus_gcross_vx_leg1 * t554,
-                gcross_vx_leg2 * t565 - minus_garm_vx_leg2 * t669,
-                gcross_vx_leg3 * t613 - minus_garm_vx_leg3 * t681,
-                garm_vx_leg4 * t692 - minus_gcross_vx_leg4 * t645,
+                garm_vx_leg1 * t565 + minus_gcross_vx_leg1 * t573,
+                1.8867924528301887 * t592
+                    - (minus_garm_vx_leg2 * t603 + gcross_vx_leg2 * t608),
+                -(minus_garm_vx_leg3 * t627 + gcross_vx_leg3 * t636),
+                garm_vx_leg4 * t659 + minus_gcross_vx_leg4 * t666
+                    - 1.8867924528301887 * t671,
+                garm_vx_leg1 * t682 - minus_gcross_vx_leg1 * t581,
+                gcross_vx_leg2 * t592 - minus_garm_vx_leg2 * t695,
+                gcross_vx_leg3 * t641 - minus_garm_vx_leg3 * t707,
+                garm_vx_leg4 * t718 - minus_gcross_vx_leg4 * t671,
             ],
             [
                 acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1, garm_vy_leg2 * rate_dot_arm_leg2,
                 -(minus_garm_vy_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t212),
-                -(garm_vy_leg2 * t216), minus_garm_vy_leg3 * t220, minus_garm_vy_leg4 * t224,
-                garm_vy_leg1 * t228, garm_vy_leg2 * t232, -(minus_garm_vy_leg3 * t236),
-                -(minus_garm_vy_leg4 * t240), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t221),
+                -(garm_vy_leg2 * t225), minus_garm_vy_leg3 * t229, minus_garm_vy_leg4 * t233,
+                garm_vy_leg1 * t237, garm_vy_leg2 * t241, -(minus_garm_vy_leg3 * t245),
+                -(minus_garm_vy_leg4 * t249), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
@@ -5910,48 +5950,48 @@ impl Delta4 {
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
-                minus_gcross_vy_leg1 * t288 - t294, -(minus_gcross_vy_leg2 * t319),
-                gcross_vy_leg3 * t351 + t358, gcross_vy_leg4 * t381,
-                6.716954264258415 * ((t397 - t35 * t35) / c_rod_leg1)
-                    - minus_gcross_vy_leg1 * t395,
-                -(minus_gcross_vy_leg2 * t407),
-                gcross_vy_leg3 * t421
-                    - 6.716954264258415 * ((t424 - t137 * t137) / c_rod_leg3),
-                gcross_vy_leg4 * t435,
-                -(minus_gcross_vy_leg1 * t447 + grod_vy_leg1 * t391),
-                -(minus_gcross_vy_leg2 * t459),
-                gcross_vy_leg3 * t472 - minus_grod_vy_leg3 * t417,
-                gcross_vy_leg4 * t484,
-                t294 - minus_gcross_vy_leg1 * t287,
-                minus_gcross_vy_leg2 * t405,
-                gcross_vy_leg3 * t350 - t358,
-                gcross_vy_leg4 * t433,
-                -(minus_gcross_vy_leg1 * t505
-                    + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t511,
-                -(gcross_vy_leg3 * t505 + 1.8867924528301887 * rate_dot_cross_leg3),
+                minus_gcross_vy_leg1 * t300 - t305, -(minus_gcross_vy_leg2 * t330),
+                gcross_vy_leg3 * t360 + t366, gcross_vy_leg4 * t388,
+                6.716954264258415 * (t22 * (t408 - t37 * t37))
+                    - minus_gcross_vy_leg1 * t406,
+                -(minus_gcross_vy_leg2 * t423),
+                gcross_vy_leg3 * t440
+                    - 6.716954264258415 * (t128 * (t443 - t148 * t148)),
+                gcross_vy_leg4 * t461,
+                -(minus_gcross_vy_leg1 * t473 + grod_vy_leg1 * t297),
+                -(minus_gcross_vy_leg2 * t485),
+                gcross_vy_leg3 * t498 - minus_grod_vy_leg3 * t355,
                 gcross_vy_leg4 * t511,
+                t305 - minus_gcross_vy_leg1 * t403,
+                minus_gcross_vy_leg2 * t419,
+                gcross_vy_leg3 * t437 - t366,
+                gcross_vy_leg4 * t459,
+                -(minus_gcross_vy_leg1 * t532
+                    + 1.8867924528301887 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t538,
+                -(gcross_vy_leg3 * t532 + 1.8867924528301887 * rate_dot_cross_leg3),
+                gcross_vy_leg4 * t538,
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t538 + minus_gcross_vy_leg1 * t546
-                    - 1.8867924528301887 * t554,
-                garm_vy_leg2 * t575 + minus_gcross_vy_leg2 * t580,
-                1.8867924528301887 * t613
-                    - (minus_garm_vy_leg3 * t599 + gcross_vy_leg3 * t608),
-                -(minus_garm_vy_leg4 * t631 + gcross_vy_leg4 * t640),
-                garm_vy_leg1 * t656 - minus_gcross_vy_leg1 * t554,
-                garm_vy_leg2 * t669 - minus_gcross_vy_leg2 * t565,
-                gcross_vy_leg3 * t613 - minus_garm_vy_leg3 * t681,
-                gcross_vy_leg4 * t645 - minus_garm_vy_leg4 * t692,
+                garm_vy_leg1 * t565 + minus_gcross_vy_leg1 * t573
+                    - 1.8867924528301887 * t581,
+                garm_vy_leg2 * t603 + minus_gcross_vy_leg2 * t608,
+                1.8867924528301887 * t641
+                    - (minus_garm_vy_leg3 * t627 + gcross_vy_leg3 * t636),
+                -(minus_garm_vy_leg4 * t659 + gcross_vy_leg4 * t666),
+                garm_vy_leg1 * t682 - minus_gcross_vy_leg1 * t581,
+                garm_vy_leg2 * t695 - minus_gcross_vy_leg2 * t592,
+                gcross_vy_leg3 * t641 - minus_garm_vy_leg3 * t707,
+                gcross_vy_leg4 * t671 - minus_garm_vy_leg4 * t718,
             ],
             [
                 acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t212,
-                minus_garm_vz_leg2 * t216, minus_garm_vz_leg3 * t220, minus_garm_vz_leg4 * t224,
-                -(minus_garm_vz_leg1 * t228), -(minus_garm_vz_leg2 * t232),
-                -(minus_garm_vz_leg3 * t236), -(minus_garm_vz_leg4 * t240),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t221,
+                minus_garm_vz_leg2 * t225, minus_garm_vz_leg3 * t229, minus_garm_vz_leg4 * t233,
+                -(minus_garm_vz_leg1 * t237), -(minus_garm_vz_leg2 * t241),
+                -(minus_garm_vz_leg3 * t245), -(minus_garm_vz_leg4 * t249),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 minus_garm_vz_leg3 * minus_rate_arm_leg3, -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -5959,21 +5999,21 @@ impl Delta4 {
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_minus_gcross_vz_leg1 * t288), gcross_vz_leg2 * t319, gcross_vz_leg3 * t351,
-                gcross_vz_leg4 * t381, minus_minus_gcross_vz_leg1 * t395, gcross_vz_leg2 * t407,
-                gcross_vz_leg3 * t421, gcross_vz_leg4 * t435, minus_minus_gcross_vz_leg1 * t447,
-                gcross_vz_leg2 * t459, gcross_vz_leg3 * t472, gcross_vz_leg4 * t484,
-                minus_minus_gcross_vz_leg1 * t287, -(gcross_vz_leg2 * t405), gcross_vz_leg3 * t350,
-                gcross_vz_leg4 * t433, minus_minus_gcross_vz_leg1 * t505, -(gcross_vz_leg2 * t511),
-                -(gcross_vz_leg3 * t505), gcross_vz_leg4 * t511, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t546 + minus_garm_vz_leg1 * t538),
-                -(minus_garm_vz_leg2 * t575 + gcross_vz_leg2 * t580),
-                -(minus_garm_vz_leg3 * t599 + gcross_vz_leg3 * t608),
-                -(minus_garm_vz_leg4 * t631 + gcross_vz_leg4 * t640),
-                -(minus_garm_vz_leg1 * t656 - minus_minus_gcross_vz_leg1 * t554),
-                gcross_vz_leg2 * t565 - minus_garm_vz_leg2 * t669,
-                gcross_vz_leg3 * t613 - minus_garm_vz_leg3 * t681,
-                gcross_vz_leg4 * t645 - minus_garm_vz_leg4 * t692,
+                -(minus_minus_gcross_vz_leg1 * t300), gcross_vz_leg2 * t330, gcross_vz_leg3 * t360,
+                gcross_vz_leg4 * t388, minus_minus_gcross_vz_leg1 * t406, gcross_vz_leg2 * t423,
+                gcross_vz_leg3 * t440, gcross_vz_leg4 * t461, minus_minus_gcross_vz_leg1 * t473,
+                gcross_vz_leg2 * t485, gcross_vz_leg3 * t498, gcross_vz_leg4 * t511,
+                minus_minus_gcross_vz_leg1 * t403, -(gcross_vz_leg2 * t419), gcross_vz_leg3 * t437,
+                gcross_vz_leg4 * t459, minus_minus_gcross_vz_leg1 * t532, -(gcross_vz_leg2 * t538),
+                -(gcross_vz_leg3 * t532), gcross_vz_leg4 * t538, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t573 + minus_garm_vz_leg1 * t565),
+                -(minus_garm_vz_leg2 * t603 + gcross_vz_leg2 * t608),
+                -(minus_garm_vz_leg3 * t627 + gcross_vz_leg3 * t636),
+                -(minus_garm_vz_leg4 * t659 + gcross_vz_leg4 * t666),
+                -(minus_garm_vz_leg1 * t682 - minus_minus_gcross_vz_leg1 * t581),
+                gcross_vz_leg2 * t592 - minus_garm_vz_leg2 * t695,
+                gcross_vz_leg3 * t641 - minus_garm_vz_leg3 * t707,
+                gcross_vz_leg4 * t671 - minus_garm_vz_leg4 * t718,
             ],
         ])
     }
@@ -5988,7 +6028,7 @@ impl Delta4 {
     /// Output: 3 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 857 operations (273 additions, 547 multiplications, 37 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 715 intermediates.
+    /// 871 operations (277 additions, 562 multiplications, 32 divisions), 6 square roots, 0 trigonometric pairs, 12 signs, 729 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6000,458 +6040,469 @@ impl Delta4 {
     ) -> Result<[[f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
-        let t2 = 0.4 * t1;
-        let t4 = pose[2] * pose[2];
-        let t5 = t1 * t1 + t4;
-        let t6 = pose[1] * pose[1];
-        let t7 = t6 + -0.2809;
-        let t8 = t5 + t7;
-        let t9 = t8 + 0.04;
-        let t11 = 0.4 * pose[2];
-        let t12 = 0.16 * t5;
-        let t14 = t12 - t9 * t9;
-        ::overact::guard::reach(t14, "leg1")?;
-        let t15 = ::overact::math::sqrt(t14);
-        let c_arm_leg1 = (t2 * t9 - t11 * t15) / t12;
-        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t7));
+        let t3 = pose[2] * pose[2];
+        let t4 = t1 * t1 + t3;
+        let t5 = 0.16 * t4;
+        let t6 = 1.0 / t5;
+        let t7 = 0.4 * t1;
+        let t8 = pose[1] * pose[1];
+        let t9 = t8 + -0.2809;
+        let t10 = t4 + t9;
+        let t11 = t10 + 0.04;
+        let t13 = 0.4 * pose[2];
+        let t15 = t5 - t11 * t11;
+        ::overact::guard::reach(t15, "leg1")?;
+        let t16 = ::overact::math::sqrt(t15);
+        let c_arm_leg1 = t6 * (t7 * t11 - t13 * t16);
+        let c_rod_leg1 = ::overact::math::sqrt(-(3.5599857600569598 * t9));
         ::overact::guard::leg(c_rod_leg1, 1.0, "leg1")?;
-        let t23 = 0.212 * c_rod_leg1;
-        let c_cross_leg1 = (t8 + -0.04) / t23;
-        let minus_s_arm_leg1 = (t11 * t9 + t2 * t15) / t12;
-        let t30 = 0.9433962264150944 * t15;
-        let t31 = t30 / c_rod_leg1;
-        let s_cross_leg1 = 5.0 * t31;
+        let t24 = 0.212 * c_rod_leg1;
+        let c_cross_leg1 = (t10 + -0.04) / t24;
+        let minus_s_arm_leg1 = t6 * (t13 * t11 + t7 * t16);
+        let s_cross_leg1 = t16 / t24;
         ::overact::guard::leg(s_cross_leg1, 0.9471622941895194, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t35 = 5.0 / s_cross_leg1;
+        let t34 = 1.0 / s_cross_leg1;
+        let t35 = 5.0 * t34;
         let garm_vx_leg1 = c_armcross_leg1 * t35;
-        let t38 = pose[0] * pose[0];
-        let t39 = 0.2809 - t38;
-        let t40 = 3.5599857600569598 * t39;
-        ::overact::guard::reach(t40, "leg2")?;
-        ::overact::guard::reach(t40, "leg4")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t40);
+        let t39 = pose[1] + 0.05 - 0.2;
+        let t41 = t39 * t39 + t3;
+        let t42 = 0.16 * t41;
+        let t44 = pose[1] - 0.05 + 0.2;
+        let t45 = t44 * t44;
+        let t46 = t45 + t3;
+        let t47 = pose[0] * pose[0];
+        let t50 = t47 + t45 + t3 - 0.2809;
+        let t51 = t46 - t50;
+        let t52 = t41 - t51;
+        let t53 = t52 + 0.04;
+        let t55 = t42 - t53 * t53;
+        ::overact::guard::reach(t55, "leg2")?;
+        let t56 = ::overact::math::sqrt(t55);
+        let t57 = 3.5599857600569598 * t51;
+        ::overact::guard::reach(t57, "leg2")?;
+        ::overact::guard::reach(t57, "leg4")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t57);
         ::overact::guard::leg(c_rod_leg2, 1.0, "leg2")?;
-        let t42 = 1.0 / c_rod_leg2;
-        let t44 = pose[1] + 0.05 - 0.2;
-        let t46 = t44 * t44 + t4;
-        let t47 = 0.16 * t46;
-        let t48 = t46 - t39;
-        let t49 = t48 + 0.04;
-        let t51 = t47 - t49 * t49;
-        ::overact::guard::reach(t51, "leg2")?;
-        let t52 = ::overact::math::sqrt(t51);
-        let t53 = 0.9433962264150944 * t52;
-        let t54 = t42 * t53;
-        let s_cross_leg2 = 5.0 * t54;
+        let t59 = 0.212 * c_rod_leg2;
+        let s_cross_leg2 = t56 / t59;
         ::overact::guard::leg(s_cross_leg2, 0.9471622941895194, "leg2")?;
-        let t56 = 5.0 / s_cross_leg2;
-        let minus_grod_vx_leg2 = 1.8867924528301887 * t42;
-        let t58 = pose[0] * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t56 * t58;
-        let t63 = pose[0] - 0.05 + 0.2;
-        let t64 = 0.4 * t63;
-        let t66 = t63 * t63 + t4;
-        let t67 = t66 + t7;
-        let t68 = t67 + 0.04;
-        let t70 = 0.16 * t66;
-        let t72 = t70 - t68 * t68;
-        ::overact::guard::reach(t72, "leg3")?;
-        let t73 = ::overact::math::sqrt(t72);
-        let minus_c_arm_leg3 = (t64 * t68 + t11 * t73) / t70;
-        let c_cross_leg3 = (-0.04 + t67) / t23;
-        let s_arm_leg3 = (t64 * t73 - t11 * t68) / t70;
-        let t84 = 1.0 / c_rod_leg1;
-        let t85 = 0.9433962264150944 * t73;
-        let t86 = t84 * t85;
-        let s_cross_leg3 = 5.0 * t86;
+        let t61 = 5.0 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.8867924528301887 / c_rod_leg2;
+        let t63 = pose[0] * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t61 * t63;
+        let t68 = pose[0] - 0.05 + 0.2;
+        let t69 = 0.4 * t68;
+        let t71 = t68 * t68 + t3;
+        let t72 = t71 + t9;
+        let t73 = t72 + 0.04;
+        let t75 = 0.16 * t71;
+        let t77 = t75 - t73 * t73;
+        ::overact::guard::reach(t77, "leg3")?;
+        let t78 = ::overact::math::sqrt(t77);
+        let minus_c_arm_leg3 = (t69 * t73 + t13 * t78) / t75;
+        let c_cross_leg3 = (-0.04 + t72) / t24;
+        let s_arm_leg3 = (t69 * t78 - t13 * t73) / t75;
+        let t89 = 1.0 / c_rod_leg1;
+        let t90 = 0.9433962264150944 * t78;
+        let t91 = t89 * t90;
+        let s_cross_leg3 = 5.0 * t91;
         ::overact::guard::leg(s_cross_leg3, 0.9471622941895194, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t90 = 5.0 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t90;
-        let t95 = pose[1] - 0.05 + 0.2;
-        let t97 = t95 * t95 + t4;
-        let t98 = 0.16 * t97;
-        let t99 = t97 - t39;
-        let t100 = t99 + 0.04;
-        let t102 = t98 - t100 * t100;
-        ::overact::guard::reach(t102, "leg4")?;
-        let t103 = ::overact::math::sqrt(t102);
-        let t104 = 0.212 * c_rod_leg2;
-        let s_cross_leg4 = t103 / t104;
+        let t95 = 1.0 / s_cross_leg3;
+        let t96 = 5.0 * t95;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t96;
+        let t100 = 0.16 * t46;
+        let t101 = t50 + 0.04;
+        let t103 = t100 - t101 * t101;
+        ::overact::guard::reach(t103, "leg4")?;
+        let t104 = ::overact::math::sqrt(t103);
+        let t106 = 0.53 * c_rod_leg2;
+        let s_cross_leg4 = 2.5 * t104 / t106;
         ::overact::guard::leg(s_cross_leg4, 0.9471622941895194, "leg4")?;
-        let t106 = 5.0 / s_cross_leg4;
-        let garm_vx_leg4 = t58 * t106;
-        let t109 = garm_vx_leg1 * actuator_velocities[0]
+        let t108 = 1.0 / s_cross_leg4;
+        let t109 = 5.0 * t108;
+        let garm_vx_leg4 = t63 * t109;
+        let t112 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t112, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t112, 22.533170865545554, "actuators")?;
+        let t113 = 1.0 / t112;
+        let t114 = 0.2 * c_cross_leg1;
+        let t121 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t116 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t116, 22.533170865545554, "actuators")?;
-        let grod_vy_leg1 = 1.8867924528301887 * t84;
-        let t119 = pose[1] * grod_vy_leg1;
-        let garm_vy_leg1 = t35 * t119;
-        let t122 = 0.4 * t44;
-        let c_arm_leg2 = (t122 * t49 - t11 * t52) / t47;
-        let c_cross_leg2 = (-0.04 + t48) / t104;
-        let minus_s_arm_leg2 = (t11 * t49 + t122 * t52) / t47;
+        let grod_vy_leg1 = 1.8867924528301887 * t89;
+        let t124 = pose[1] * grod_vy_leg1;
+        let garm_vy_leg1 = t35 * t124;
+        let t127 = 0.4 * t39;
+        let c_arm_leg2 = (t127 * t53 - t13 * t56) / t42;
+        let c_cross_leg2 = (-0.04 + t52) / t59;
+        let minus_s_arm_leg2 = (t13 * t53 + t127 * t56) / t42;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t56;
-        let garm_vy_leg3 = t119 * t90;
-        let t142 = 0.4 * t95;
-        let minus_c_arm_leg4 = (t142 * t100 + t11 * t103) / t98;
-        let c_cross_leg4 = (-0.04 + t99) / t104;
-        let s_arm_leg4 = (t142 * t103 - t11 * t100) / t98;
+        let garm_vy_leg2 = c_armcross_leg2 * t61;
+        let garm_vy_leg3 = t124 * t96;
+        let t147 = 0.4 * t44;
+        let minus_c_arm_leg4 = (t147 * t101 + t13 * t104) / t100;
+        let c_cross_leg4 = (-0.04 + t50) / t59;
+        let s_arm_leg4 = (t147 * t104 - t13 * t101) / t100;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t106;
-        let t158 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t109;
+        let t163 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t159 = t158 / t116;
-        let t168 = garm_vy_leg1 * actuator_velocities[0]
+        let t164 = t163 * t113;
+        let t173 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t109 * t159;
-        let t177 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t158 * t159;
-        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
-        ::overact::guard::platform(t177, 22.533170865545554, "actuators")?;
+            + garm_vy_leg4 * actuator_velocities[3] - t121 * t164;
+        let t182 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t163 * t164;
+        ::overact::guard::platform(t182, 22.533170865545554, "actuators")?;
+        ::overact::guard::platform(t182, 22.533170865545554, "actuators")?;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t35;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t56;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t61;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t90;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t96;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t106;
-        let t201 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t109;
+        let t206 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t202 = t201 / t116;
-        let t211 = t158 * t202
+        let t207 = t206 * t113;
+        let t216 = t163 * t207
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t212 = t211 / t177;
-        let t223 = t109 * t202
+        let t217 = t216 / t182;
+        let t228 = t121 * t207
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t212 * t168;
-        let t234 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t217 * t173;
+        let t239 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t201 * t202 - t211 * t212;
-        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
-        ::overact::guard::platform(t234, 66.4019122371629, "actuators")?;
-        let t235 = t223 / t234;
-        let t237 = t168 / t177 - t212 * t235;
-        let t241 = t109 / t116 - t159 * t237 + t202 * t235;
-        let t245 = t119 * t237;
-        let t246 = c_armcross_leg1 * t241 - s_armcross_leg1 * t235 + t245;
-        let rate_arm_leg1 = t35 * t246;
-        let t248 = 0.2 * c_cross_leg1;
-        let t249 = t248 * rate_arm_leg1;
-        let t251 = grod_vy_leg1 * t7;
-        let t255 = t249 + s_armcross_leg1 * t241 + c_armcross_leg1 * t235;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t255;
-        let t257 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t237;
-        let t259 = rate_rod_leg1 * rate_rod_leg1;
-        let t262 = rate_arm_leg1 * t249 - t251 * (t257 + t259);
-        let t263 = t245 * rate_rod_leg1;
-        let t264 = t119 * t263;
-        let rate_dot_arm_leg1 = t35 * (t262 + t264);
-        let t267 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t272 = t58 * t241;
-        let t273 = c_armcross_leg2 * t237 - s_armcross_leg2 * t235 + t272;
-        let rate_arm_leg2 = t56 * t273;
-        let t275 = t273 * rate_arm_leg2;
-        let t276 = t275 / s_cross_leg2;
-        let t278 = minus_grod_vx_leg2 * t39;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t241;
-        let t280 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t284 = 0.2 * c_cross_leg2;
-        let t286 = s_armcross_leg2 * t237 + c_armcross_leg2 * t235
-            + t284 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t286;
-        let t288 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t291 = c_cross_leg2 * t276 + t278 * (t280 + t288);
-        let t292 = t272 * minus_rate_rod_leg2;
-        let t293 = t58 * t292;
-        let rate_dot_arm_leg2 = t56 * (t291 + t293);
-        let t296 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t302 = minus_c_armcross_leg3 * t241 - s_armcross_leg3 * t235 + t245;
-        let rate_arm_leg3 = t90 * t302;
-        let t304 = 0.2 * c_cross_leg3;
-        let t305 = t304 * rate_arm_leg3;
-        let t310 = s_armcross_leg3 * t241 + minus_c_armcross_leg3 * t235 - t305;
-        let rate_cross_leg3 = grod_vy_leg1 * t310;
-        let t312 = rate_cross_leg3 * rate_cross_leg3;
-        let t315 = rate_arm_leg3 * t305 - t251 * (t259 + t312);
-        let rate_dot_arm_leg3 = t90 * (t315 + t264);
-        let t318 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t324 = minus_c_armcross_leg4 * t237 - s_armcross_leg4 * t235 + t272;
-        let rate_arm_leg4 = t106 * t324;
-        let t326 = t324 * rate_arm_leg4;
-        let t327 = t326 / s_cross_leg4;
-        let t332 = 0.2 * c_cross_leg4;
-        let t334 = s_armcross_leg4 * t237 + minus_c_armcross_leg4 * t235
-            - t332 * rate_arm_leg4;
-        let rate_cross_leg4 = minus_grod_vx_leg2 * t334;
-        let t336 = rate_cross_leg4 * rate_cross_leg4;
-        let t337 = t280 + t336;
-        let t339 = c_cross_leg4 * t327 + t278 * t337;
-        let rate_dot_arm_leg4 = t106 * (t339 + t293);
-        let t342 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t344 = garm_vx_leg1 * t267 + garm_vx_leg2 * t296 + garm_vx_leg3 * t318
-            + garm_vx_leg4 * t342;
-        let t354 = garm_vy_leg1 * t267 + garm_vy_leg2 * t296 + garm_vy_leg3 * t318
-            + garm_vy_leg4 * t342 - t159 * t344;
-        let t366 = t202 * t344
-            - (minus_garm_vz_leg1 * t267 + minus_garm_vz_leg2 * t296
-                + minus_garm_vz_leg3 * t318 + minus_garm_vz_leg4 * t342) - t212 * t354;
-        let t367 = t366 / t234;
-        let t369 = t354 / t177 - t212 * t367;
-        let t373 = t344 / t116 - t159 * t369 + t202 * t367;
-        let t379 = t369 + t263;
-        let t380 = t119 * t379;
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t206 * t207 - t216 * t217;
+        ::overact::guard::platform(t239, 66.4019122371629, "actuators")?;
+        ::overact::guard::platform(t239, 66.4019122371629, "actuators")?;
+        let t240 = t228 / t239;
+        let t242 = t173 / t182 - t217 * t240;
+        let t246 = t121 * t113 - t164 * t242 + t207 * t240;
+        let t250 = t124 * t242;
+        let rate_arm_leg1 = t35
+            * (c_armcross_leg1 * t246 - s_armcross_leg1 * t240 + t250);
+        let t253 = rate_arm_leg1 * rate_arm_leg1;
+        let t255 = 0.53 * c_rod_leg1;
+        let t260 = t114 * rate_arm_leg1 + s_armcross_leg1 * t246
+            + c_armcross_leg1 * t240;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t260;
+        let t262 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t242;
+        let t264 = rate_rod_leg1 * rate_rod_leg1;
+        let t267 = t114 * t253 + t255 * (t262 + t264);
+        let t268 = pose[1] * t264;
+        let t269 = t124 * t268;
+        let rate_dot_arm_leg1 = t35 * (t267 + t269);
+        let t272 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t274 = 0.2 * c_cross_leg2;
+        let t278 = t63 * t246;
+        let rate_arm_leg2 = t61
+            * (c_armcross_leg2 * t242 - s_armcross_leg2 * t240 + t278);
+        let t281 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t246;
+        let t284 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t289 = s_armcross_leg2 * t242 + c_armcross_leg2 * t240
+            + t274 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t289;
+        let t291 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t294 = t274 * t281 + t106 * (t284 + t291);
+        let t295 = t278 * minus_rate_rod_leg2;
+        let t296 = t63 * t295;
+        let rate_dot_arm_leg2 = t61 * (t294 + t296);
+        let t299 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t302 = 0.2 * c_cross_leg3;
+        let rate_arm_leg3 = t96
+            * (minus_c_armcross_leg3 * t246 - s_armcross_leg3 * t240 + t250);
+        let t308 = rate_arm_leg3 * rate_arm_leg3;
+        let t314 = s_armcross_leg3 * t246 + minus_c_armcross_leg3 * t240
+            - t302 * rate_arm_leg3;
+        let rate_cross_leg3 = grod_vy_leg1 * t314;
+        let t316 = rate_cross_leg3 * rate_cross_leg3;
+        let t319 = t302 * t308 + t255 * (t264 + t316);
+        let rate_dot_arm_leg3 = t96 * (t319 + t269);
+        let t322 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t327 = minus_c_armcross_leg4 * t242 - s_armcross_leg4 * t240;
+        let t328 = t327 + t278;
+        let rate_arm_leg4 = t109 * t328;
+        let t330 = t328 * rate_arm_leg4;
+        let t331 = t108 * t330;
+        let t336 = c_cross_leg4 * t108;
+        let t339 = 0.2 * c_cross_leg4;
+        let t340 = t339 * garm_vx_leg4;
+        let t342 = s_armcross_leg4 * t242 + minus_c_armcross_leg4 * t240 - t336 * t327
+            - t340 * t246;
+        let rate_cross_leg4 = minus_grod_vx_leg2 * t342;
+        let t344 = rate_cross_leg4 * rate_cross_leg4;
+        let t345 = t284 + t344;
+        let t347 = c_cross_leg4 * t331 + t106 * t345;
+        let rate_dot_arm_leg4 = t109 * (t347 + t296);
+        let t350 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t352 = garm_vx_leg1 * t272 + garm_vx_leg2 * t299 + garm_vx_leg3 * t322
+            + garm_vx_leg4 * t350;
+        let t362 = garm_vy_leg1 * t272 + garm_vy_leg2 * t299 + garm_vy_leg3 * t322
+            + garm_vy_leg4 * t350 - t164 * t352;
+        let t374 = t207 * t352
+            - (minus_garm_vz_leg1 * t272 + minus_garm_vz_leg2 * t299
+                + minus_garm_vz_leg3 * t322 + minus_garm_vz_leg4 * t350) - t217 * t362;
+        let t375 = t374 / t239;
+        let t377 = t362 / t182 - t217 * t375;
+        let t381 = t113 * t352 - t164 * t377 + t207 * t375;
+        let t387 = t377 + t268;
+        let t388 = t124 * t387;
         let rate_dot_arm_leg1_2 = t35
-            * (c_armcross_leg1 * t373 - s_armcross_leg1 * t367 + t262 + t380);
-        let t390 = t373 + t292;
-        let t391 = t58 * t390;
-        let rate_dot_arm_leg2_2 = t56
-            * (c_armcross_leg2 * t369 - s_armcross_leg2 * t367 + t291 + t391);
-        let rate_dot_arm_leg3_2 = t90
-            * (minus_c_armcross_leg3 * t373 - s_armcross_leg3 * t367 + t315 + t380);
-        let rate_dot_arm_leg4_2 = t106
-            * (minus_c_armcross_leg4 * t369 - s_armcross_leg4 * t367 + t339 + t391);
-        let t415 = 9.81 * c_arm_leg1;
-        let t419 = 9.81 * c_arm_leg2;
-        let t423 = 9.81 * minus_c_arm_leg3;
-        let t427 = 9.81 * minus_c_arm_leg4;
-        let t431 = 9.81 * minus_s_arm_leg1;
-        let t435 = 9.81 * minus_s_arm_leg2;
-        let t439 = 9.81 * s_arm_leg3;
-        let t443 = 9.81 * s_arm_leg4;
-        let t471 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t471;
+            * (c_armcross_leg1 * t381 - s_armcross_leg1 * t375 + t267 + t388);
+        let t398 = t381 + t295;
+        let t399 = t63 * t398;
+        let rate_dot_arm_leg2_2 = t61
+            * (c_armcross_leg2 * t377 - s_armcross_leg2 * t375 + t294 + t399);
+        let rate_dot_arm_leg3_2 = t96
+            * (minus_c_armcross_leg3 * t381 - s_armcross_leg3 * t375 + t319 + t388);
+        let t418 = minus_c_armcross_leg4 * t377 - s_armcross_leg4 * t375 + t347 + t399;
+        let rate_dot_arm_leg4_2 = t109 * t418;
+        let t423 = 9.81 * c_arm_leg1;
+        let t427 = 9.81 * c_arm_leg2;
+        let t431 = 9.81 * minus_c_arm_leg3;
+        let t435 = 9.81 * minus_c_arm_leg4;
+        let t439 = 9.81 * minus_s_arm_leg1;
+        let t443 = 9.81 * minus_s_arm_leg2;
+        let t447 = 9.81 * s_arm_leg3;
+        let t451 = 9.81 * s_arm_leg4;
+        let t479 = t34 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t479;
         let s_rod_leg1 = 1.8867924528301887 * pose[1];
-        let t475 = rate_rod_leg1 * (1.8867924528301887 * t255);
-        let t480 = t246 * rate_arm_leg1;
-        let t481 = t245 * minus_rate_cross_leg1;
+        let t483 = rate_rod_leg1 * (1.8867924528301887 * t260);
+        let t488 = 0.2 * s_cross_leg1;
+        let t490 = t250 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t248 * rate_dot_arm_leg1_2 + s_armcross_leg1 * t373
-                + c_armcross_leg1 * t367 + t480 + t481 + t481);
-        let t487 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t489 = t475 + t487 + t475;
-        let t490 = s_rod_leg1 * t489;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t248 * garm_vy_leg1);
-        let t496 = 3.5599857600569598 * (pose[1] * t257);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t471;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t284 * garm_vx_leg2);
+            * (t114 * rate_dot_arm_leg1_2 + s_armcross_leg1 * t381
+                + c_armcross_leg1 * t375 + t253 * t488 + t490 + t490);
+        let t496 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t498 = t483 + t496 + t483;
+        let t499 = s_rod_leg1 * t498;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t114 * garm_vy_leg1);
+        let t505 = 3.5599857600569598 * (pose[1] * t262);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t479;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t274 * garm_vx_leg2);
+        let t512 = minus_rate_rod_leg2 * (1.8867924528301887 * t289);
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t504 = minus_rate_rod_leg2 * (1.8867924528301887 * t286);
-        let t508 = t272 * minus_rate_cross_leg2;
-        let t512 = 0.2 * rate_dot_arm_leg2_2;
+        let t517 = 0.2 * t281;
+        let t519 = t278 * minus_rate_cross_leg2;
+        let t523 = 0.2 * rate_dot_arm_leg2_2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t369 + c_armcross_leg2 * t367 + t275 + t508 + t508
-                + c_cross_leg2 * t512);
-        let t516 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t518 = t504 + t516 + t504;
-        let t519 = minus_s_rod_leg2 * t518;
-        let t522 = t40 * (t58 * t288);
-        let t523 = minus_grod_vx_leg2 * t522;
-        let t525 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t525;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t525;
-        let t530 = grod_vy_leg1 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t530;
-        let t533 = rate_rod_leg1 * (1.8867924528301887 * t310);
-        let t537 = t302 * rate_arm_leg3;
-        let t538 = t245 * rate_cross_leg3;
+            * (s_armcross_leg2 * t377 + c_armcross_leg2 * t375 + s_cross_leg2 * t517
+                + t519 + t519 + c_cross_leg2 * t523);
+        let t527 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t529 = t512 + t527 + t512;
+        let t530 = c_rod_leg2 * t529;
+        let t531 = t63 * t530;
+        let t534 = t57 * (t63 * t291);
+        let t535 = t534 / t106;
+        let t537 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t537;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t537;
+        let t542 = t95 * grod_vy_leg1;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t542;
+        let t545 = rate_rod_leg1 * (1.8867924528301887 * t314);
+        let t550 = t250 * rate_cross_leg3;
+        let t554 = 0.2 * rate_dot_arm_leg3_2;
         let rate_dot_cross_leg3 = grod_vy_leg1
-            * (s_armcross_leg3 * t373 + minus_c_armcross_leg3 * t367
-                - (t537 - t538 - t538) - t304 * rate_dot_arm_leg3_2);
-        let t545 = s_rod_leg1 * rate_dot_cross_leg3;
-        let t547 = t533 + t545 + t533;
-        let t548 = s_rod_leg1 * t547;
-        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t304 * garm_vy_leg3);
-        let t554 = 3.5599857600569598 * (pose[1] * t312);
-        let gcross_vz_leg3 = s_arm_leg3 * t530;
-        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * (t332 * garm_vx_leg4);
-        let t560 = 1.8867924528301887 * t334;
-        let t561 = minus_rate_rod_leg2 * t560;
-        let t565 = t272 * rate_cross_leg4;
-        let t569 = 0.2 * rate_dot_arm_leg4_2;
+            * (s_armcross_leg3 * t381 + minus_c_armcross_leg3 * t375
+                - (t308 * t91 - t550 - t550) - c_cross_leg3 * t554);
+        let t558 = s_rod_leg1 * rate_dot_cross_leg3;
+        let t560 = t545 + t558 + t545;
+        let t561 = c_rod_leg1 * t560;
+        let t562 = t124 * t561;
+        let minus_gcross_vy_leg3 = grod_vy_leg1 * (t302 * garm_vy_leg3);
+        let t568 = 3.5599857600569598 * (pose[1] * t316);
+        let gcross_vz_leg3 = s_arm_leg3 * t542;
+        let minus_gcross_vx_leg4 = minus_grod_vx_leg2 * t340;
+        let t576 = t278 * rate_cross_leg4;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2
-            * (s_armcross_leg4 * t369 + minus_c_armcross_leg4 * t367
-                - (t326 - t565 - t565) - c_cross_leg4 * t569);
-        let t573 = minus_s_rod_leg2 * rate_dot_cross_leg4;
-        let t575 = t561 + t573 + t561;
-        let t576 = minus_s_rod_leg2 * t575;
-        let t578 = t560 * t560;
-        let t579 = t58 * t578;
-        let t580 = minus_grod_vx_leg2 * t579;
-        let t582 = minus_grod_vx_leg2 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t582;
-        let gcross_vz_leg4 = s_arm_leg4 * t582;
-        let t587 = t490 - minus_rate_dot_cross_leg1;
-        let t590 = t119 * t587 - c_rod_leg1 * t489;
-        let t592 = t6 + t7;
-        let t600 = t519 - minus_rate_dot_cross_leg2;
-        let t602 = c_rod_leg2 * t518 - t58 * t600;
-        let t604 = t38 - t39;
-        let t611 = rate_dot_cross_leg3 - t548;
-        let t614 = t119 * t611 + c_rod_leg1 * t547;
-        let t626 = rate_dot_cross_leg4 - t576;
-        let t628 = c_rod_leg2 * t575 + t58 * t626;
-        let t633 = t251 * t496;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t379;
-        let t637 = pose[1] * t496;
-        let t640 = s_rod_leg1 * (rate_dot_rod_leg1 - t633) + c_rod_leg1 * (t259 - t637);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t390;
-        let t649 = pose[0] * t523;
-        let t652 = minus_s_rod_leg2 * (t522 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t280 - t649);
-        let t684 = 1.8867924528301887 * t369;
-        let t690 = 1.8867924528301887 * t373;
-        let t715 = t119 * t30 * (t637 + t259) - t30 * (t633 + rate_dot_rod_leg1)
-            + t248 * t489;
-        let t718 = 0.2 * rate_dot_arm_leg1_2 - t415;
-        let t721 = t431 - t480 / s_cross_leg1;
-        let t724 = s_rod_leg1 * (c_cross_leg1 * t718 - s_cross_leg1 * t721);
-        let t732 = c_cross_leg1 * t721 + s_cross_leg1 * t718;
-        let t745 = t53 * (minus_rate_dot_rod_leg2 - t522)
-            - minus_s_rod_leg2 * t54 * (t649 + t280) - t284 * t518;
-        let t747 = t512 - t419;
-        let t749 = t435 - t276;
-        let t752 = minus_s_rod_leg2 * (c_cross_leg2 * t747 - s_cross_leg2 * t749);
-        let t757 = c_cross_leg2 * t749 + s_cross_leg2 * t747;
-        let t766 = t251 * t554;
-        let t775 = t85 * (rate_dot_rod_leg1 + t766) - t119 * t85 * (t259 - t119 * t766)
-            + t304 * t547;
-        let t778 = t439 + t537 / s_cross_leg3;
-        let t781 = t423 + 0.2 * rate_dot_arm_leg3_2;
-        let t784 = s_rod_leg1 * (s_cross_leg3 * t778 + c_cross_leg3 * t781);
-        let t792 = s_cross_leg3 * t781 - c_cross_leg3 * t778;
-        let t798 = 0.9433962264150944 * t103;
-        let t801 = t42 * t798;
-        let t807 = t798 * (t579 - minus_rate_dot_rod_leg2)
-            + minus_s_rod_leg2 * t801 * (t337 - t578) - t332 * t575;
-        let t809 = t443 + t327;
-        let t811 = t427 + t569;
-        let t814 = minus_s_rod_leg2 * (s_cross_leg4 * t809 + c_cross_leg4 * t811);
-        let t819 = s_cross_leg4 * t811 - c_cross_leg4 * t809;
-        let t830 = t248 * t257 - minus_rate_dot_cross_leg1 * t31;
-        let t842 = t284 * t288 - minus_rate_dot_cross_leg2 * t54;
-        let t854 = rate_dot_cross_leg3 * t86 + t304 * t312;
-        let t866 = rate_dot_cross_leg4 * t801 + t332 * t336;
+            * (s_armcross_leg4 * t377 + minus_c_armcross_leg4 * t375
+                - (t330 - t576 - t576) - t339 * rate_dot_arm_leg4_2);
+        let t583 = minus_s_rod_leg2 * rate_dot_cross_leg4;
+        let t584 = 1.8867924528301887 * t342;
+        let t585 = minus_rate_rod_leg2 * t584;
+        let t586 = t583 + t585;
+        let t589 = minus_s_rod_leg2 * t586 + minus_s_rod_leg2 * t585;
+        let t591 = t584 * t584;
+        let t592 = t63 * t591;
+        let t593 = t592 / t106;
+        let t595 = minus_grod_vx_leg2 * t108;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t595;
+        let gcross_vz_leg4 = s_arm_leg4 * t595;
+        let t600 = t499 - minus_rate_dot_cross_leg1;
+        let t603 = t124 * t600 - c_rod_leg1 * t498;
+        let t605 = t8 + t9;
+        let t612 = t531 - minus_rate_dot_cross_leg2;
+        let t614 = t530 - t63 * t612;
+        let t616 = t47 - t51;
+        let t623 = rate_dot_cross_leg3 - t562;
+        let t625 = t124 * t623 + t561;
+        let t636 = t585 + t586;
+        let t638 = rate_dot_cross_leg4 - t589;
+        let t640 = c_rod_leg2 * t636 + t63 * t638;
+        let t645 = t255 * t505;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t387;
+        let t649 = t124 * t645;
+        let t652 = s_rod_leg1 * (t645 + rate_dot_rod_leg1) + c_rod_leg1 * (t264 - t649);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t398;
+        let t661 = pose[0] * t535;
+        let t664 = minus_s_rod_leg2 * (t534 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t284 - t661);
+        let t696 = 1.8867924528301887 * t377;
+        let t702 = 1.8867924528301887 * t381;
+        let t720 = 0.9433962264150944 * t16;
+        let t728 = t720 * (t645 - rate_dot_rod_leg1) + t124 * t720 * (t649 + t264)
+            + t114 * t498;
+        let t731 = 0.2 * rate_dot_arm_leg1_2 - t423;
+        let t734 = t439 - 0.2 * t253;
+        let t737 = s_rod_leg1 * (c_cross_leg1 * t731 - s_cross_leg1 * t734);
+        let t745 = c_cross_leg1 * t734 + s_cross_leg1 * t731;
+        let t754 = 0.2 * s_cross_leg2;
+        let t760 = 0.9433962264150944 * t56 * (minus_rate_dot_rod_leg2 - t534)
+            - minus_s_rod_leg2 * t754 * (t661 + t284) - t274 * t529;
+        let t762 = t523 - t427;
+        let t764 = t443 - t517;
+        let t767 = minus_s_rod_leg2 * (c_cross_leg2 * t762 - s_cross_leg2 * t764);
+        let t772 = c_cross_leg2 * t764 + s_cross_leg2 * t762;
+        let t781 = t255 * t568;
+        let t790 = t90 * (rate_dot_rod_leg1 - t781) - t124 * t90 * (t124 * t781 + t264)
+            + t302 * t560;
+        let t793 = t447 + 0.2 * t308;
+        let t795 = t431 + t554;
+        let t798 = s_rod_leg1 * (s_cross_leg3 * t793 + c_cross_leg3 * t795);
+        let t806 = s_cross_leg3 * t795 - c_cross_leg3 * t793;
+        let t812 = 0.9433962264150944 * t104;
+        let t815 = t812 / c_rod_leg2;
+        let t821 = t812 * (t592 - minus_rate_dot_rod_leg2)
+            + minus_s_rod_leg2 * t815 * (t345 - t591) - t339 * t636;
+        let t823 = t451 + t331;
+        let t826 = t418 + s_cross_leg4 * t435;
+        let t829 = minus_s_rod_leg2 * (s_cross_leg4 * t823 + t336 * t826);
+        let t833 = t826 - c_cross_leg4 * t823;
+        let t844 = t114 * t262 - minus_rate_dot_cross_leg1 * t488;
+        let t856 = t274 * t291 - minus_rate_dot_cross_leg2 * t754;
+        let t868 = rate_dot_cross_leg3 * t91 + t302 * t316;
+        let t880 = rate_dot_cross_leg4 * t815 + t339 * t344;
         Ok([
             [
-                t373, garm_vx_leg1 * rate_dot_arm_leg1_2, garm_vx_leg2 * rate_dot_arm_leg2_2,
+                t381, garm_vx_leg1 * rate_dot_arm_leg1_2, garm_vx_leg2 * rate_dot_arm_leg2_2,
                 garm_vx_leg3 * rate_dot_arm_leg3_2, garm_vx_leg4 * rate_dot_arm_leg4_2,
-                -(garm_vx_leg1 * t415), -(garm_vx_leg2 * t419), garm_vx_leg3 * t423,
-                garm_vx_leg4 * t427, -(garm_vx_leg1 * t431), -(garm_vx_leg2 * t435),
-                garm_vx_leg3 * t439, garm_vx_leg4 * t443, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t423), -(garm_vx_leg2 * t427), garm_vx_leg3 * t431,
+                garm_vx_leg4 * t435, -(garm_vx_leg1 * t439), -(garm_vx_leg2 * t443),
+                garm_vx_leg3 * t447, garm_vx_leg4 * t451, garm_vx_leg1 * rate_arm_leg1,
                 garm_vx_leg2 * rate_arm_leg2, garm_vx_leg3 * rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t490,
-                minus_gcross_vx_leg2 * t519 - t523, -(minus_gcross_vx_leg3 * t548),
-                -(minus_gcross_vx_leg4 * t576 + t580), -(minus_gcross_vx_leg1 * t590),
-                -(minus_gcross_vx_leg2 * t602
-                    + 6.716954264258415 * (t42 * (t288 * t604))),
-                minus_gcross_vx_leg3 * t614,
-                6.716954264258415 * (t42 * (t336 * t604)) - minus_gcross_vx_leg4 * t628,
-                -(minus_gcross_vx_leg1 * t640),
-                -(minus_gcross_vx_leg2 * t652 + minus_grod_vx_leg2 * t516),
-                -(minus_gcross_vx_leg3 * t640),
-                minus_grod_vx_leg2 * t573 - minus_gcross_vx_leg4 * t652,
-                -(minus_gcross_vx_leg1 * t587),
-                t523 - minus_gcross_vx_leg2 * t600,
-                -(minus_gcross_vx_leg3 * t611),
-                t580 - minus_gcross_vx_leg4 * t626,
-                -(minus_gcross_vx_leg1 * t684),
-                minus_gcross_vx_leg2 * t690
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t499,
+                minus_gcross_vx_leg2 * t531 - t535, -(minus_gcross_vx_leg3 * t562),
+                -(minus_gcross_vx_leg4 * t589 + t593), -(minus_gcross_vx_leg1 * t603),
+                -(minus_gcross_vx_leg2 * t614
+                    + 6.716954264258415 * (t291 * t616 / c_rod_leg2)),
+                minus_gcross_vx_leg3 * t625,
+                6.716954264258415 * (t344 * t616 / c_rod_leg2)
+                    - minus_gcross_vx_leg4 * t640,
+                -(minus_gcross_vx_leg1 * t652),
+                -(minus_gcross_vx_leg2 * t664 + minus_grod_vx_leg2 * t527),
+                -(minus_gcross_vx_leg3 * t652),
+                minus_grod_vx_leg2 * t583 - minus_gcross_vx_leg4 * t664,
+                -(minus_gcross_vx_leg1 * t600),
+                t535 - minus_gcross_vx_leg2 * t612,
+                -(minus_gcross_vx_leg3 * t623),
+                t593 - minus_gcross_vx_leg4 * t638,
+                -(minus_gcross_vx_leg1 * t696),
+                minus_gcross_vx_leg2 * t702
                     + 1.8867924528301887 * minus_rate_dot_cross_leg2,
-                minus_gcross_vx_leg3 * t684,
-                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t690,
+                minus_gcross_vx_leg3 * t696,
+                1.8867924528301887 * rate_dot_cross_leg4 - minus_gcross_vx_leg4 * t702,
                 0.0,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
-                garm_vx_leg1 * t715 + minus_gcross_vx_leg1 * t724,
-                garm_vx_leg2 * t745 - minus_gcross_vx_leg2 * t752
-                    + 1.8867924528301887 * t757,
-                garm_vx_leg3 * t775 - minus_gcross_vx_leg3 * t784,
-                garm_vx_leg4 * t807 + minus_gcross_vx_leg4 * t814
-                    - 1.8867924528301887 * t819,
-                garm_vx_leg1 * t830 - minus_gcross_vx_leg1 * t732,
-                garm_vx_leg2 * t842 - minus_gcross_vx_leg2 * t757,
-                garm_vx_leg3 * t854 - minus_gcross_vx_leg3 * t792,
-                garm_vx_leg4 * t866 - minus_gcross_vx_leg4 * t819,
+                garm_vx_leg1 * t728 + minus_gcross_vx_leg1 * t737,
+                garm_vx_leg2 * t760 - minus_gcross_vx_leg2 * t767
+                    + 1.8867924528301887 * t772,
+                garm_vx_leg3 * t790 - minus_gcross_vx_leg3 * t798,
+                garm_vx_leg4 * t821 + minus_gcross_vx_leg4 * t829
+                    - 1.8867924528301887 * t833,
+                garm_vx_leg1 * t844 - minus_gcross_vx_leg1 * t745,
+                garm_vx_leg2 * t856 - minus_gcross_vx_leg2 * t772,
+                garm_vx_leg3 * t868 - minus_gcross_vx_leg3 * t806,
+                garm_vx_leg4 * t880 - minus_gcross_vx_leg4 * t833,
             ],
             [
-                t369, garm_vy_leg1 * rate_dot_arm_leg1_2, garm_vy_leg2 * rate_dot_arm_leg2_2,
+                t377, garm_vy_leg1 * rate_dot_arm_leg1_2, garm_vy_leg2 * rate_dot_arm_leg2_2,
                 garm_vy_leg3 * rate_dot_arm_leg3_2, garm_vy_leg4 * rate_dot_arm_leg4_2,
-                -(garm_vy_leg1 * t415), -(garm_vy_leg2 * t419), garm_vy_leg3 * t423,
-                garm_vy_leg4 * t427, -(garm_vy_leg1 * t431), -(garm_vy_leg2 * t435),
-                garm_vy_leg3 * t439, garm_vy_leg4 * t443, garm_vy_leg1 * rate_arm_leg1,
+                -(garm_vy_leg1 * t423), -(garm_vy_leg2 * t427), garm_vy_leg3 * t431,
+                garm_vy_leg4 * t435, -(garm_vy_leg1 * t439), -(garm_vy_leg2 * t443),
+                garm_vy_leg3 * t447, garm_vy_leg4 * t451, garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, garm_vy_leg3 * rate_arm_leg3,
                 garm_vy_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t490 - t496,
-                minus_gcross_vy_leg2 * t519, -(minus_gcross_vy_leg3 * t548 + t554),
-                -(minus_gcross_vy_leg4 * t576),
-                6.716954264258415 * (t84 * (t257 * t592)) - minus_gcross_vy_leg1 * t590,
-                -(minus_gcross_vy_leg2 * t602),
-                -(6.716954264258415 * (t84 * (t312 * t592))
-                    - minus_gcross_vy_leg3 * t614),
-                -(minus_gcross_vy_leg4 * t628),
-                -(minus_gcross_vy_leg1 * t640 + grod_vy_leg1 * t487),
-                -(minus_gcross_vy_leg2 * t652),
-                grod_vy_leg1 * t545 - minus_gcross_vy_leg3 * t640,
-                -(minus_gcross_vy_leg4 * t652),
-                t496 - minus_gcross_vy_leg1 * t587,
-                -(minus_gcross_vy_leg2 * t600),
-                t554 - minus_gcross_vy_leg3 * t611,
-                -(minus_gcross_vy_leg4 * t626),
-                -(minus_gcross_vy_leg1 * t684
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t499 - t505,
+                minus_gcross_vy_leg2 * t531, -(minus_gcross_vy_leg3 * t562 + t568),
+                -(minus_gcross_vy_leg4 * t589),
+                6.716954264258415 * (t89 * (t262 * t605)) - minus_gcross_vy_leg1 * t603,
+                -(minus_gcross_vy_leg2 * t614),
+                -(6.716954264258415 * (t89 * (t316 * t605))
+                    - minus_gcross_vy_leg3 * t625),
+                -(minus_gcross_vy_leg4 * t640),
+                -(minus_gcross_vy_leg1 * t652 + grod_vy_leg1 * t496),
+                -(minus_gcross_vy_leg2 * t664),
+                grod_vy_leg1 * t558 - minus_gcross_vy_leg3 * t652,
+                -(minus_gcross_vy_leg4 * t664),
+                t505 - minus_gcross_vy_leg1 * t600,
+                -(minus_gcross_vy_leg2 * t612),
+                t568 - minus_gcross_vy_leg3 * t623,
+                -(minus_gcross_vy_leg4 * t638),
+                -(minus_gcross_vy_leg1 * t696
                     + 1.8867924528301887 * minus_rate_dot_cross_leg1),
-                minus_gcross_vy_leg2 * t690,
-                minus_gcross_vy_leg3 * t684 - 1.8867924528301887 * rate_dot_cross_leg3,
-                -(minus_gcross_vy_leg4 * t690),
+                minus_gcross_vy_leg2 * t702,
+                minus_gcross_vy_leg3 * t696 - 1.8867924528301887 * rate_dot_cross_leg3,
+                -(minus_gcross_vy_leg4 * t702),
                 grod_vy_leg1 * rate_dot_rod_leg1,
                 0.0,
-                garm_vy_leg1 * t715 + minus_gcross_vy_leg1 * t724
-                    - 1.8867924528301887 * t732,
-                garm_vy_leg2 * t745 - minus_gcross_vy_leg2 * t752,
-                garm_vy_leg3 * t775 - minus_gcross_vy_leg3 * t784
-                    + 1.8867924528301887 * t792,
-                garm_vy_leg4 * t807 + minus_gcross_vy_leg4 * t814,
-                garm_vy_leg1 * t830 - minus_gcross_vy_leg1 * t732,
-                garm_vy_leg2 * t842 - minus_gcross_vy_leg2 * t757,
-                garm_vy_leg3 * t854 - minus_gcross_vy_leg3 * t792,
-                garm_vy_leg4 * t866 - minus_gcross_vy_leg4 * t819,
+                garm_vy_leg1 * t728 + minus_gcross_vy_leg1 * t737
+                    - 1.8867924528301887 * t745,
+                garm_vy_leg2 * t760 - minus_gcross_vy_leg2 * t767,
+                garm_vy_leg3 * t790 - minus_gcross_vy_leg3 * t798
+                    + 1.8867924528301887 * t806,
+                garm_vy_leg4 * t821 + minus_gcross_vy_leg4 * t829,
+                garm_vy_leg1 * t844 - minus_gcross_vy_leg1 * t745,
+                garm_vy_leg2 * t856 - minus_gcross_vy_leg2 * t772,
+                garm_vy_leg3 * t868 - minus_gcross_vy_leg3 * t806,
+                garm_vy_leg4 * t880 - minus_gcross_vy_leg4 * t833,
             ],
             [
-                t367 + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1_2),
+                t375 + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1_2),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2_2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3_2),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4_2), minus_garm_vz_leg1 * t415,
-                minus_garm_vz_leg2 * t419, -(minus_garm_vz_leg3 * t423),
-                -(minus_garm_vz_leg4 * t427), minus_garm_vz_leg1 * t431, minus_garm_vz_leg2 * t435,
-                -(minus_garm_vz_leg3 * t439), -(minus_garm_vz_leg4 * t443),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4_2), minus_garm_vz_leg1 * t423,
+                minus_garm_vz_leg2 * t427, -(minus_garm_vz_leg3 * t431),
+                -(minus_garm_vz_leg4 * t435), minus_garm_vz_leg1 * t439, minus_garm_vz_leg2 * t443,
+                -(minus_garm_vz_leg3 * t447), -(minus_garm_vz_leg4 * t451),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6459,22 +6510,22 @@ impl Delta4 {
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t490, minus_gcross_vz_leg2 * t519, gcross_vz_leg3 * t548,
-                gcross_vz_leg4 * t576, -(minus_gcross_vz_leg1 * t590),
-                -(minus_gcross_vz_leg2 * t602), -(gcross_vz_leg3 * t614), gcross_vz_leg4 * t628,
-                -(minus_gcross_vz_leg1 * t640), -(minus_gcross_vz_leg2 * t652),
-                gcross_vz_leg3 * t640, gcross_vz_leg4 * t652, -(minus_gcross_vz_leg1 * t587),
-                -(minus_gcross_vz_leg2 * t600), gcross_vz_leg3 * t611, gcross_vz_leg4 * t626,
-                -(minus_gcross_vz_leg1 * t684), minus_gcross_vz_leg2 * t690,
-                -(gcross_vz_leg3 * t684), gcross_vz_leg4 * t690, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t724 - minus_garm_vz_leg1 * t715,
-                -(minus_gcross_vz_leg2 * t752 + minus_garm_vz_leg2 * t745),
-                gcross_vz_leg3 * t784 - minus_garm_vz_leg3 * t775,
-                -(minus_garm_vz_leg4 * t807 + gcross_vz_leg4 * t814),
-                -(minus_garm_vz_leg1 * t830 + minus_gcross_vz_leg1 * t732),
-                -(minus_gcross_vz_leg2 * t757 + minus_garm_vz_leg2 * t842),
-                gcross_vz_leg3 * t792 - minus_garm_vz_leg3 * t854,
-                gcross_vz_leg4 * t819 - minus_garm_vz_leg4 * t866,
+                minus_gcross_vz_leg1 * t499, minus_gcross_vz_leg2 * t531, gcross_vz_leg3 * t562,
+                gcross_vz_leg4 * t589, -(minus_gcross_vz_leg1 * t603),
+                -(minus_gcross_vz_leg2 * t614), -(gcross_vz_leg3 * t625), gcross_vz_leg4 * t640,
+                -(minus_gcross_vz_leg1 * t652), -(minus_gcross_vz_leg2 * t664),
+                gcross_vz_leg3 * t652, gcross_vz_leg4 * t664, -(minus_gcross_vz_leg1 * t600),
+                -(minus_gcross_vz_leg2 * t612), gcross_vz_leg3 * t623, gcross_vz_leg4 * t638,
+                -(minus_gcross_vz_leg1 * t696), minus_gcross_vz_leg2 * t702,
+                -(gcross_vz_leg3 * t696), gcross_vz_leg4 * t702, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t737 - minus_garm_vz_leg1 * t728,
+                -(minus_gcross_vz_leg2 * t767 + minus_garm_vz_leg2 * t760),
+                gcross_vz_leg3 * t798 - minus_garm_vz_leg3 * t790,
+                -(minus_garm_vz_leg4 * t821 + gcross_vz_leg4 * t829),
+                -(minus_garm_vz_leg1 * t844 + minus_gcross_vz_leg1 * t745),
+                -(minus_gcross_vz_leg2 * t772 + minus_garm_vz_leg2 * t856),
+                gcross_vz_leg3 * t806 - minus_garm_vz_leg3 * t868,
+                gcross_vz_leg4 * t833 - minus_garm_vz_leg4 * t880,
             ],
         ])
     }
@@ -10716,58 +10767,59 @@ impl Delta4 {
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
         let t271 = 0.9433962264150944 * t198;
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t253;
-        let t273 = t200 * t249;
-        let t274 = t207 * t273;
-        let t275 = minus_rate_dot_rod_leg2 - t274;
-        let t281 = 0.2 * t234;
-        let t283 = t231 * minus_rate_cross_leg2;
-        let t289 = 1.8867924528301887
-            * (t239 * t252 + s_cross_leg2 * t281 + t283 + t283 + t245 * t253);
-        let t292 = t261 - t281;
-        let t295 = 0.2 * rate_dot_arm_leg2 - t258;
-        let t297 = c_cross_leg2 * t292 + s_cross_leg2 * t295;
-        let t298 = c_rod_leg2 * t297;
+        let t273 = 1.8867924528301887 * t247;
+        let t274 = t273 * t273;
+        let t275 = t207 * t274;
+        let t276 = minus_rate_dot_rod_leg2 - t275;
+        let t282 = 0.2 * t234;
+        let t284 = t231 * minus_rate_cross_leg2;
+        let t290 = 1.8867924528301887
+            * (t239 * t252 + s_cross_leg2 * t282 + t284 + t284 + t245 * t253);
+        let t293 = t261 - t282;
+        let t296 = 0.2 * rate_dot_arm_leg2 - t258;
+        let t298 = c_cross_leg2 * t293 + s_cross_leg2 * t296;
+        let t299 = c_rod_leg2 * t298;
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t304 = minus_s_rod_leg2 * t297;
-        let t306 = t274 + minus_rate_dot_rod_leg2;
-        let t308 = t199 * t249;
-        let t312 = t207 * t289;
-        let t316 = t207 * t271
-            * (parameters[33] * t304
-                - (parameters[30] * t306 + parameters[31] * (t308 + t238)
-                    + parameters[32] * t312));
-        let t317 = t271
-            * (parameters[31] * t275 - parameters[30] * (t273 + t238)
-                - parameters[32] * t289 + parameters[33] * t298) + t316;
-        let t319 = minus_rate_rod_leg2 * (1.8867924528301887 * t247);
-        let t320 = t312 + t319;
+        let t305 = minus_s_rod_leg2 * t298;
+        let t307 = t275 + minus_rate_dot_rod_leg2;
+        let t309 = t207 * t275;
+        let t313 = t207 * t290;
+        let t317 = t207 * t271
+            * (parameters[33] * t305
+                - (parameters[30] * t307 + parameters[31] * (t309 + t238)
+                    + parameters[32] * t313));
+        let t318 = t271
+            * (parameters[31] * t276 - parameters[30] * (t274 + t238)
+                - parameters[32] * t290 + parameters[33] * t299) + t317;
+        let t319 = minus_rate_rod_leg2 * t273;
+        let t320 = t313 + t319;
         let t321 = t319 + t320;
-        let t323 = 1.8867924528301887 * t283;
-        let t324 = t323 - t289;
+        let t323 = 1.8867924528301887 * t284;
+        let t324 = t323 - t290;
         let t325 = t323 + t324;
-        let t332 = c_cross_leg2 * t295 - s_cross_leg2 * t292;
-        let t337 = t270 + t317
+        let t332 = c_cross_leg2 * t296 - s_cross_leg2 * t293;
+        let t337 = t270 + t318
             - t211
                 * (parameters[31] * t321 - parameters[30] * t325 - parameters[32] * t249
                     - parameters[33] * t332);
         let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t245;
         let t349 = parameters[25] * t321 - parameters[24] * t323
-            + parameters[26] * (t238 - t308) + parameters[27] * t324
-            - parameters[28] * t275;
-        let t366 = parameters[24] * t320 + parameters[25] * t325 - parameters[26] * t306
-            - parameters[27] * t319 + parameters[28] * (t273 - t238);
+            + parameters[26] * (t238 - t309) + parameters[27] * t324
+            - parameters[28] * t276;
+        let t366 = parameters[24] * t320 + parameters[25] * t325 - parameters[26] * t307
+            - parameters[27] * t319 + parameters[28] * (t274 - t238);
         let t374 = c_rod_leg2
             * (t349 + parameters[29] * t323 + parameters[30] * t332
-                + parameters[32] * t298)
+                + parameters[32] * t299)
             - minus_s_rod_leg2
                 * (t366 + parameters[29] * t319 - parameters[31] * t332
-                    - parameters[32] * t304);
-        let t386 = parameters[24] * t274 + parameters[25] * (t308 - t273)
-            + parameters[26] * t312 - parameters[27] * t274 - parameters[28] * t289;
+                    - parameters[32] * t305);
+        let t386 = parameters[24] * t275 + parameters[25] * (t309 - t274)
+            + parameters[26] * t313 - parameters[27] * t275 - parameters[28] * t290;
         let t394 = garm_vx_leg2 * t337 - minus_gcross_vx_leg2 * t374
             - minus_grod_vx_leg2
                 * (t386 - parameters[29] * minus_rate_dot_rod_leg2
-                    + parameters[30] * t304 - parameters[31] * t298);
+                    + parameters[30] * t305 - parameters[31] * t299);
         let t397 = pose[0] - 0.05 + 0.2;
         let t399 = t397 * t397 + t3;
         let t400 = 0.16 * t399;
@@ -11174,60 +11226,61 @@ impl Delta4 {
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
         let t285 = 0.9433962264150944 * t207;
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t267;
-        let t287 = t209 * t261;
-        let t288 = t216 * t287;
-        let t289 = minus_rate_dot_rod_leg2 - t288;
-        let t298 = 0.2 * t246;
-        let t300 = t243 * minus_rate_cross_leg2;
-        let t306 = t251 * t265 + s_armcross_leg2 * acceleration[1]
-            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t298 + t300 + t300
+        let t287 = 1.8867924528301887 * t259;
+        let t288 = t287 * t287;
+        let t289 = t216 * t288;
+        let t290 = minus_rate_dot_rod_leg2 - t289;
+        let t299 = 0.2 * t246;
+        let t301 = t243 * minus_rate_cross_leg2;
+        let t307 = t251 * t265 + s_armcross_leg2 * acceleration[1]
+            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t299 + t301 + t301
             + t257 * t267;
-        let t307 = 1.8867924528301887 * t306;
-        let t310 = t275 - t298;
-        let t313 = 0.2 * rate_dot_arm_leg2 - t272;
-        let t315 = c_cross_leg2 * t310 + s_cross_leg2 * t313;
-        let t316 = c_rod_leg2 * t315;
+        let t308 = 1.8867924528301887 * t307;
+        let t311 = t275 - t299;
+        let t314 = 0.2 * rate_dot_arm_leg2 - t272;
+        let t316 = c_cross_leg2 * t311 + s_cross_leg2 * t314;
+        let t317 = c_rod_leg2 * t316;
         let minus_s_rod_leg2 = 1.8867924528301887 * pose[0];
-        let t322 = minus_s_rod_leg2 * t315;
-        let t324 = t288 + minus_rate_dot_rod_leg2;
-        let t326 = t208 * t261;
-        let t330 = t216 * t307;
-        let t334 = t216 * t285
-            * (parameters[33] * t322
-                - (parameters[30] * t324 + parameters[31] * (t326 + t250)
-                    + parameters[32] * t330));
-        let t335 = t285
-            * (parameters[31] * t289 - parameters[30] * (t287 + t250)
-                - parameters[32] * t307 + parameters[33] * t316) + t334;
-        let t337 = minus_rate_rod_leg2 * (1.8867924528301887 * t259);
-        let t338 = t330 + t337;
+        let t323 = minus_s_rod_leg2 * t316;
+        let t325 = t289 + minus_rate_dot_rod_leg2;
+        let t327 = t216 * t289;
+        let t331 = t216 * t308;
+        let t335 = t216 * t285
+            * (parameters[33] * t323
+                - (parameters[30] * t325 + parameters[31] * (t327 + t250)
+                    + parameters[32] * t331));
+        let t336 = t285
+            * (parameters[31] * t290 - parameters[30] * (t288 + t250)
+                - parameters[32] * t308 + parameters[33] * t317) + t335;
+        let t337 = minus_rate_rod_leg2 * t287;
+        let t338 = t331 + t337;
         let t339 = t337 + t338;
-        let t341 = 1.8867924528301887 * t300;
-        let t342 = t341 - t307;
+        let t341 = 1.8867924528301887 * t301;
+        let t342 = t341 - t308;
         let t343 = t341 + t342;
-        let t350 = c_cross_leg2 * t313 - s_cross_leg2 * t310;
-        let t355 = t284 + t335
+        let t350 = c_cross_leg2 * t314 - s_cross_leg2 * t311;
+        let t355 = t284 + t336
             - t239
                 * (parameters[31] * t339 - parameters[30] * t343 - parameters[32] * t261
                     - parameters[33] * t350);
         let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t257;
         let t367 = parameters[25] * t339 - parameters[24] * t341
-            + parameters[26] * (t250 - t326) + parameters[27] * t342
-            - parameters[28] * t289;
-        let t384 = parameters[24] * t338 + parameters[25] * t343 - parameters[26] * t324
-            - parameters[27] * t337 + parameters[28] * (t287 - t250);
+            + parameters[26] * (t250 - t327) + parameters[27] * t342
+            - parameters[28] * t290;
+        let t384 = parameters[24] * t338 + parameters[25] * t343 - parameters[26] * t325
+            - parameters[27] * t337 + parameters[28] * (t288 - t250);
         let t392 = c_rod_leg2
             * (t367 + parameters[29] * t341 + parameters[30] * t350
-                + parameters[32] * t316)
+                + parameters[32] * t317)
             - minus_s_rod_leg2
                 * (t384 + parameters[29] * t337 - parameters[31] * t350
-                    - parameters[32] * t322);
-        let t404 = parameters[24] * t288 + parameters[25] * (t326 - t287)
-            + parameters[26] * t330 - parameters[27] * t288 - parameters[28] * t307;
+                    - parameters[32] * t323);
+        let t404 = parameters[24] * t289 + parameters[25] * (t327 - t288)
+            + parameters[26] * t331 - parameters[27] * t289 - parameters[28] * t308;
         let t412 = garm_vx_leg2 * t355 - minus_gcross_vx_leg2 * t392
             - minus_grod_vx_leg2
                 * (t404 - parameters[29] * minus_rate_dot_rod_leg2
-                    + parameters[30] * t322 - parameters[31] * t316);
+                    + parameters[30] * t323 - parameters[31] * t317);
         let t415 = pose[0] - 0.05 + 0.2;
         let t417 = t415 * t415 + t3;
         let t418 = 0.16 * t417;

@@ -1699,7 +1699,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 367 operations (122 additions, 241 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 249 intermediates.
+    /// 368 operations (122 additions, 242 multiplications, 4 divisions), 0 square roots, 9 trigonometric pairs, 36 signs, 250 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1803,62 +1803,63 @@ impl DualV {
         let minus_g2_vy_leg3 = s1_leg3 * t226;
         let t237 = twist[1] + t15;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * t234 + minus_g2_vy_leg3 * t237;
-        let t241 = 0.28 * (minus_rate_2_leg3 * minus_rate_2_leg3);
-        let t242 = c12_leg3 * t228 + s12_leg3 * t230 + t241;
+        let t240 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t242 = c12_leg3 * t228 + s12_leg3 * t230 + 0.28 * t240;
         let g1_vy_leg3 = s12_leg3 * t226;
         let rate_1_leg3 = g1_vx_leg3 * t234 + g1_vy_leg3 * t237;
-        let t248 = 0.28 * (rate_1_leg3 * rate_1_leg3);
-        let rate_dot_1_leg3 = t226 * (t242 + c2_leg3 * t248);
+        let t247 = rate_1_leg3 * rate_1_leg3;
+        let t248 = 0.28 * c2_leg3;
+        let rate_dot_1_leg3 = t226 * (t242 + t247 * t248);
         let t252 = g1_vx_leg3 * rate_dot_1_leg3;
         let t253 = g1_vy_leg3 * rate_dot_1_leg3;
         let g1_wz_leg3 = t14 * g1_vy_leg3 + t17 * g1_vx_leg3;
         let t257 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t267 = c1_leg3 * t228 + s1_leg3 * t230 + t248;
-        let minus_rate_dot_2_leg3 = t226 * (t267 + t241 * c2_leg3);
-        let t271 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t272 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let t268 = c1_leg3 * t228 + s1_leg3 * t230 + 0.28 * t247;
+        let minus_rate_dot_2_leg3 = t226 * (t268 + t240 * t248);
+        let t272 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t273 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let minus_g2_wz_leg3 = t14 * minus_g2_vy_leg3 + t17 * minus_g2_vx_leg3;
-        let t276 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t277 = 3.5714285714285716 * t228;
-        let t281 = 3.5714285714285716 * t230;
-        let t286 = 0.04321428571428571 * (acceleration[2] + t84);
-        let t302 = rate_1_leg3 + minus_rate_2_leg3;
-        let t303 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t305 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t307 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t312 = minus_rate_2_leg3 + twist[2];
-        let t315 = minus_g2_wz_leg3 + 1.0;
+        let t277 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t278 = 3.5714285714285716 * t228;
+        let t282 = 3.5714285714285716 * t230;
+        let t287 = 0.04321428571428571 * (acceleration[2] + t84);
+        let t303 = rate_1_leg3 + minus_rate_2_leg3;
+        let t304 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t306 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t308 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t313 = minus_rate_2_leg3 + twist[2];
+        let t316 = minus_g2_wz_leg3 + 1.0;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t330 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t330;
-        let minus_g2_vx_leg4 = c1_leg4 * t330;
-        let minus_g2_vy_leg4 = s1_leg4 * t330;
+        let t331 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t331;
+        let minus_g2_vx_leg4 = c1_leg4 * t331;
+        let minus_g2_vy_leg4 = s1_leg4 * t331;
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * t234 + minus_g2_vy_leg4 * t237;
-        let t341 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
-        let t342 = c12_leg4 * t228 + s12_leg4 * t230 + t341;
-        let g1_vy_leg4 = s12_leg4 * t330;
+        let t342 = 0.28 * (minus_rate_2_leg4 * minus_rate_2_leg4);
+        let t343 = c12_leg4 * t228 + s12_leg4 * t230 + t342;
+        let g1_vy_leg4 = s12_leg4 * t331;
         let rate_1_leg4 = g1_vx_leg4 * t234 + g1_vy_leg4 * t237;
-        let t348 = 0.28 * (rate_1_leg4 * rate_1_leg4);
-        let rate_dot_1_leg4 = t330 * (t342 + c2_leg4 * t348);
-        let t352 = g1_vx_leg4 * rate_dot_1_leg4;
-        let t353 = g1_vy_leg4 * rate_dot_1_leg4;
+        let t349 = 0.28 * (rate_1_leg4 * rate_1_leg4);
+        let rate_dot_1_leg4 = t331 * (t343 + c2_leg4 * t349);
+        let t353 = g1_vx_leg4 * rate_dot_1_leg4;
+        let t354 = g1_vy_leg4 * rate_dot_1_leg4;
         let g1_wz_leg4 = t14 * g1_vy_leg4 + t17 * g1_vx_leg4;
-        let t357 = g1_wz_leg4 * rate_dot_1_leg4;
-        let t367 = c1_leg4 * t228 + s1_leg4 * t230 + t348;
-        let minus_rate_dot_2_leg4 = t330 * (t367 + t341 * c2_leg4);
-        let t371 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let t372 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
+        let t358 = g1_wz_leg4 * rate_dot_1_leg4;
+        let t368 = c1_leg4 * t228 + s1_leg4 * t230 + t349;
+        let minus_rate_dot_2_leg4 = t331 * (t368 + t342 * c2_leg4);
+        let t372 = minus_g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let t373 = minus_g2_vy_leg4 * minus_rate_dot_2_leg4;
         let minus_g2_wz_leg4 = t14 * minus_g2_vy_leg4 + t17 * minus_g2_vx_leg4;
-        let t376 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
-        let t398 = rate_1_leg4 + minus_rate_2_leg4;
-        let t399 = g1_vx_leg4 + minus_g2_vx_leg4;
-        let t401 = g1_vy_leg4 + minus_g2_vy_leg4;
-        let t403 = g1_wz_leg4 + minus_g2_wz_leg4;
-        let t408 = minus_rate_2_leg4 + twist[2];
-        let t411 = minus_g2_wz_leg4 + 1.0;
-        let t416 = 9.090909090909092 * t25;
-        let t417 = 9.090909090909092 * t19;
+        let t377 = minus_g2_wz_leg4 * minus_rate_dot_2_leg4;
+        let t399 = rate_1_leg4 + minus_rate_2_leg4;
+        let t400 = g1_vx_leg4 + minus_g2_vx_leg4;
+        let t402 = g1_vy_leg4 + minus_g2_vy_leg4;
+        let t404 = g1_wz_leg4 + minus_g2_wz_leg4;
+        let t409 = minus_rate_2_leg4 + twist[2];
+        let t412 = minus_g2_wz_leg4 + 1.0;
+        let t417 = 9.090909090909092 * t25;
+        let t418 = 9.090909090909092 * t19;
         Ok([
             [
                 t48, t48, g1_vx_leg1 * rate_1_leg1,
@@ -1872,15 +1873,15 @@ impl DualV {
                 ::overact::math::signed(t199, t198), -t199, minus_g2_vx_leg2 * t208,
                 ::overact::math::signed(minus_g2_vx_leg2, t208), minus_g2_vx_leg2, t252, t252,
                 g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t271, t277 - 0.28 * (t252 + t271),
-                g1_vx_leg3 * t267 + minus_g2_vx_leg3 * t242, 0.0784 * t252, t302 * t303,
-                ::overact::math::signed(t303, t302), -t303, minus_g2_vx_leg3 * t312,
-                ::overact::math::signed(minus_g2_vx_leg3, t312), minus_g2_vx_leg3, t352, t352,
+                g1_vx_leg3, t272, t278 - 0.28 * (t252 + t272),
+                g1_vx_leg3 * t268 + minus_g2_vx_leg3 * t242, 0.0784 * t252, t303 * t304,
+                ::overact::math::signed(t304, t303), -t304, minus_g2_vx_leg3 * t313,
+                ::overact::math::signed(minus_g2_vx_leg3, t313), minus_g2_vx_leg3, t353, t353,
                 g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, t371, t277 - 0.28 * (t352 + t371),
-                g1_vx_leg4 * t367 + minus_g2_vx_leg4 * t342, 0.0784 * t352, t398 * t399,
-                ::overact::math::signed(t399, t398), -t399, minus_g2_vx_leg4 * t408,
-                ::overact::math::signed(minus_g2_vx_leg4, t408), minus_g2_vx_leg4, 0.0, -t416, t417,
+                g1_vx_leg4, t372, t278 - 0.28 * (t353 + t372),
+                g1_vx_leg4 * t368 + minus_g2_vx_leg4 * t343, 0.0784 * t353, t399 * t400,
+                ::overact::math::signed(t400, t399), -t400, minus_g2_vx_leg4 * t409,
+                ::overact::math::signed(minus_g2_vx_leg4, t409), minus_g2_vx_leg4, 0.0, -t417, t418,
                 acceleration[0],
             ],
             [
@@ -1895,16 +1896,16 @@ impl DualV {
                 ::overact::math::signed(t201, t198), -t201, minus_g2_vy_leg2 * t208,
                 ::overact::math::signed(minus_g2_vy_leg2, t208), minus_g2_vy_leg2, t253, t253,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t272, t281 - 0.28 * (t253 + t272),
-                g1_vy_leg3 * t267 + minus_g2_vy_leg3 * t242, 0.0784 * t253, t302 * t305,
-                ::overact::math::signed(t305, t302), -t305, minus_g2_vy_leg3 * t312,
-                ::overact::math::signed(minus_g2_vy_leg3, t312), minus_g2_vy_leg3, t353, t353,
+                g1_vy_leg3, t273, t282 - 0.28 * (t253 + t273),
+                g1_vy_leg3 * t268 + minus_g2_vy_leg3 * t242, 0.0784 * t253, t303 * t306,
+                ::overact::math::signed(t306, t303), -t306, minus_g2_vy_leg3 * t313,
+                ::overact::math::signed(minus_g2_vy_leg3, t313), minus_g2_vy_leg3, t354, t354,
                 g1_vy_leg4 * rate_1_leg4, ::overact::math::signed(g1_vy_leg4, rate_1_leg4),
-                g1_vy_leg4, t372, t281 - 0.28 * (t353 + t372),
-                g1_vy_leg4 * t367 + minus_g2_vy_leg4 * t342, 0.0784 * t353, t398 * t401,
-                ::overact::math::signed(t401, t398), -t401, minus_g2_vy_leg4 * t408,
-                ::overact::math::signed(minus_g2_vy_leg4, t408), minus_g2_vy_leg4, 0.0, -t417,
-                -t416, acceleration[1],
+                g1_vy_leg4, t373, t282 - 0.28 * (t354 + t373),
+                g1_vy_leg4 * t368 + minus_g2_vy_leg4 * t343, 0.0784 * t354, t399 * t402,
+                ::overact::math::signed(t402, t399), -t402, minus_g2_vy_leg4 * t409,
+                ::overact::math::signed(minus_g2_vy_leg4, t409), minus_g2_vy_leg4, 0.0, -t418,
+                -t417, acceleration[1],
             ],
             [
                 -t53, -t53, -(minus_g1_wz_leg1 * rate_1_leg1),
@@ -1918,14 +1919,14 @@ impl DualV {
                 -(0.0784 * t157), -(t198 * t203), -::overact::math::signed(t203, t198), t203,
                 t208 * t211, ::overact::math::signed(t211, t208), t211, t257, t257,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t276, t286 - 0.28 * (t257 + t276),
-                g1_wz_leg3 * t267 + minus_g2_wz_leg3 * t242, 0.0784 * t257, t302 * t307,
-                ::overact::math::signed(t307, t302), -t307, t312 * t315,
-                ::overact::math::signed(t315, t312), t315, t357, t357, g1_wz_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t376,
-                t286 - 0.28 * (t357 + t376), g1_wz_leg4 * t367 + minus_g2_wz_leg4 * t342,
-                0.0784 * t357, t398 * t403, ::overact::math::signed(t403, t398), -t403, t408 * t411,
-                ::overact::math::signed(t411, t408), t411, acceleration[2],
+                g1_wz_leg3, t277, t287 - 0.28 * (t257 + t277),
+                g1_wz_leg3 * t268 + minus_g2_wz_leg3 * t242, 0.0784 * t257, t303 * t308,
+                ::overact::math::signed(t308, t303), -t308, t313 * t316,
+                ::overact::math::signed(t316, t313), t316, t358, t358, g1_wz_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg4, t377,
+                t287 - 0.28 * (t358 + t377), g1_wz_leg4 * t368 + minus_g2_wz_leg4 * t343,
+                0.0784 * t358, t399 * t404, ::overact::math::signed(t404, t399), -t404, t409 * t412,
+                ::overact::math::signed(t412, t409), t412, acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0], -t83, 0.0,
             ],
         ])
@@ -1941,7 +1942,7 @@ impl DualV {
     /// Output: 3 x 64.
     /// Columns: `PARAMETERS`.
     ///
-    /// 587 operations (224 additions, 340 multiplications, 23 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 454 intermediates.
+    /// 588 operations (225 additions, 346 multiplications, 17 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 455 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1954,211 +1955,211 @@ impl DualV {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
-        let t3 = pose[0] - t2;
+        let t3 = pose[0] + t2;
         let t4 = t3 - 0.3950502153918333;
-        let t6 = 0.11 * c_phi;
-        let t7 = t6 + -0.10970563941232059;
-        let t8 = pose[1] + t7;
-        let t10 = t8 * t8;
-        let t11 = t4 * t4 + t10;
-        let t13 = 0.0784 / t11 - 0.25;
-        ::overact::guard::reach(t13, "leg1")?;
-        let t14 = ::overact::math::sqrt(t13);
-        let t16 = 0.5 * t4 + t8 * t14;
-        let t17 = t4 - t16;
-        let t18 = t11 * t14;
-        ::overact::guard::leg(t18, 0.07839913810297301, "leg1")?;
-        let g1_vx_leg1 = t17 / t18;
-        let t20 = 0.5 * t8;
-        let t22 = t20 - t4 * t14;
-        let t23 = t8 - t22;
-        let t24 = t3 + 0.3950502153918333;
-        let t26 = t24 * t24 + t10;
-        let t28 = 0.0784 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t31 = t20 + t24 * t29;
-        let t32 = t8 - t31;
-        let t33 = t26 * t29;
-        ::overact::guard::leg(t33, 0.07839913810297301, "leg2")?;
-        let t34 = 1.0 / t33;
-        let minus_g1_vy_leg2 = t32 * t34;
-        let t37 = 0.5 * t24;
-        let t39 = t37 - t8 * t29;
-        let t40 = t24 - t39;
-        let minus_g1_vx_leg2 = t40 * t34;
-        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let minus_g2_vy_leg1 = t22 / t18;
-        let t46 = t8 / t18;
-        let g1_vy_leg1 = t46 - minus_g2_vy_leg1;
-        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
-        let t53 = pose[1] - t7;
-        let t54 = 0.5 * t53;
-        let t55 = t2 + t37;
-        let t56 = t55 + t55;
-        let t58 = t53 * t53;
-        let t59 = t56 * t56 + t58;
-        let t61 = 0.0784 / t59 - 0.25;
-        ::overact::guard::reach(t61, "leg3")?;
-        let t62 = ::overact::math::sqrt(t61);
-        let t64 = t54 - t56 * t62;
-        let t65 = t53 - t64;
-        let t66 = t59 * t62;
-        ::overact::guard::leg(t66, 0.07839913810297301, "leg3")?;
-        let t67 = 1.0 / t66;
-        let g1_vy_leg3 = t65 * t67;
-        let t71 = t55 + t53 * t62;
-        let t72 = t56 - t71;
-        let g1_vx_leg3 = t72 * t67;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t78 = pose[0] - t37;
-        let t79 = t78 + t78;
-        let t81 = t79 * t79 + t58;
-        let t83 = 0.0784 / t81 - 0.25;
-        ::overact::guard::reach(t83, "leg4")?;
-        let t84 = ::overact::math::sqrt(t83);
-        let t86 = t54 + t79 * t84;
-        let t87 = t53 - t86;
-        let t88 = t81 * t84;
-        ::overact::guard::leg(t88, 0.07839913810297301, "leg4")?;
-        let t89 = 1.0 / t88;
-        let minus_g1_vy_leg4 = t87 * t89;
-        let t93 = t78 - t53 * t84;
-        let t94 = t79 - t93;
-        let minus_g1_vx_leg4 = t94 * t89;
-        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        let t106 = g1_vx_leg1 * actuator_velocities[0]
+        let t5 = 0.5 * t4;
+        let t6 = t5 - t2;
+        let t7 = t6 + t6;
+        let t8 = 0.11 * c_phi;
+        let t10 = pose[1] - t8 + 0.10970563941232059;
+        let t11 = 0.5 * t10;
+        let t12 = pose[1] - t11;
+        let t13 = t12 + t12;
+        let t15 = t13 * t13;
+        let t16 = t7 * t7 + t15;
+        let t18 = 0.0784 / t16 - 0.25;
+        ::overact::guard::reach(t18, "leg1")?;
+        let t19 = ::overact::math::sqrt(t18);
+        let t21 = t6 + t13 * t19;
+        let t22 = t7 - t21;
+        let t23 = t16 * t19;
+        ::overact::guard::leg(t23, 0.07839913810297301, "leg1")?;
+        let t24 = 1.0 / t23;
+        let g1_vx_leg1 = t22 * t24;
+        let t27 = t12 - t7 * t19;
+        let t28 = t13 - t27;
+        let t29 = t3 + 0.3950502153918333;
+        let t30 = 0.5 * t29;
+        let t31 = t30 - t2;
+        let t32 = t31 + t31;
+        let t34 = t32 * t32 + t15;
+        let t36 = 0.0784 / t34 - 0.25;
+        ::overact::guard::reach(t36, "leg2")?;
+        let t37 = ::overact::math::sqrt(t36);
+        let t39 = t12 + t32 * t37;
+        let t40 = t13 - t39;
+        let t41 = t34 * t37;
+        ::overact::guard::leg(t41, 0.07839913810297301, "leg2")?;
+        let t42 = 1.0 / t41;
+        let minus_g1_vy_leg2 = t40 * t42;
+        let t46 = t31 - t13 * t37;
+        let t47 = t32 - t46;
+        let minus_g1_vx_leg2 = t47 * t42;
+        let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t8 * minus_g1_vx_leg2;
+        let g1_vy_leg1 = t28 * t24;
+        let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t8 * g1_vx_leg1;
+        let t59 = t10 * t10;
+        let t60 = t29 * t29 + t59;
+        let t62 = 0.0784 / t60 - 0.25;
+        ::overact::guard::reach(t62, "leg3")?;
+        let t63 = ::overact::math::sqrt(t62);
+        let t65 = t11 - t29 * t63;
+        let t66 = t10 - t65;
+        let t67 = t60 * t63;
+        ::overact::guard::leg(t67, 0.07839913810297301, "leg3")?;
+        let t68 = 1.0 / t67;
+        let g1_vy_leg3 = t66 * t68;
+        let t72 = t30 + t10 * t63;
+        let t73 = t29 - t72;
+        let g1_vx_leg3 = t73 * t68;
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t8 * g1_vx_leg3;
+        let t80 = t4 * t4 + t59;
+        let t82 = 0.0784 / t80 - 0.25;
+        ::overact::guard::reach(t82, "leg4")?;
+        let t83 = ::overact::math::sqrt(t82);
+        let t85 = t11 + t4 * t83;
+        let t86 = t10 - t85;
+        let t87 = t80 * t83;
+        ::overact::guard::leg(t87, 0.07839913810297301, "leg4")?;
+        let t88 = 1.0 / t87;
+        let minus_g1_vy_leg4 = t86 * t88;
+        let t92 = t5 - t10 * t83;
+        let t93 = t4 - t92;
+        let minus_g1_vx_leg4 = t93 * t88;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t8 * minus_g1_vx_leg4;
+        let t105 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t113 = g1_vx_leg3 * g1_wz_leg3
+        let t112 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t120 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t119 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t120, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t120, 25.429161076750646, "actuators")?;
-        let t121 = t113 / t120;
-        let t137 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t119, 25.429161076750646, "actuators")?;
+        let t120 = t112 / t119;
+        let t136 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t139 = g1_vy_leg3 * g1_wz_leg3
+        let t138 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t137 * t121;
-        let t147 = t137 / t120;
-        let t149 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t136 * t120;
+        let t146 = t136 / t119;
+        let t148 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t137 * t147;
-        ::overact::guard::platform(t149, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t149, 25.592368899353342, "actuators")?;
-        let t150 = t139 / t149;
-        let t159 = g1_vy_leg1 * actuator_velocities[0]
+            - t136 * t146;
+        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t148, 25.592368899353342, "actuators")?;
+        let t149 = t138 / t148;
+        let t158 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t106 * t147;
-        let t161 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t105 * t146;
+        let t160 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t106 * t121 - t150 * t159;
-        let t172 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t113 * t121
-            - t139 * t150;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t172, 0.3076928490286828, "actuators")?;
-        let rate_3_leg1 = t161 / t172;
-        let t174 = t6 * rate_3_leg1;
-        let t175 = rate_3_leg1 * t174;
-        let t177 = t2 * rate_3_leg1;
-        let t178 = rate_3_leg1 * t177;
-        let minus_g2_vx_leg1 = t16 / t18;
-        let t185 = t159 / t149 - t150 * rate_3_leg1;
-        let t189 = t106 / t120 - t147 * t185 - t121 * rate_3_leg1;
-        let t190 = t189 - t174;
-        let t192 = t185 - t177;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t190 + minus_g2_vy_leg1 * t192;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t105 * t120 - t149 * t158;
+        let t171 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t112 * t120
+            - t138 * t149;
+        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t171, 0.3076928490286828, "actuators")?;
+        let rate_3_leg1 = t160 / t171;
+        let t173 = t8 * rate_3_leg1;
+        let t174 = rate_3_leg1 * t173;
+        let t176 = t2 * rate_3_leg1;
+        let t177 = rate_3_leg1 * t176;
+        let minus_g2_vx_leg1 = t21 * t24;
+        let t184 = t158 / t148 - t149 * rate_3_leg1;
+        let t188 = t105 / t119 - t146 * t184 - t120 * rate_3_leg1;
+        let t189 = t188 - t173;
+        let minus_g2_vy_leg1 = t27 * t24;
+        let t192 = t184 - t176;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t189 + minus_g2_vy_leg1 * t192;
         let t195 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t196 = 0.0784 * t195;
-        let rate_1_leg1 = g1_vx_leg1 * t190 + g1_vy_leg1 * t192;
+        let rate_1_leg1 = g1_vx_leg1 * t189 + g1_vy_leg1 * t192;
         let t201 = rate_1_leg1 * rate_1_leg1;
-        let t203 = 0.5 * (t11 - 0.1568);
+        let t203 = 0.5 * (t16 - 0.1568);
         let t204 = t201 * t203;
-        let minus_rate_dot_1_leg1 = (t23 * t175 - t17 * t178 - t196 - t204) / t18;
+        let minus_rate_dot_1_leg1 = t24 * (t28 * t174 - t22 * t177 - t196 - t204);
         let t207 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let g2_vx_leg2 = t39 * t34;
-        let g2_vy_leg2 = t31 * t34;
-        let rate_2_leg2 = g2_vx_leg2 * t190 + g2_vy_leg2 * t192;
+        let g2_vx_leg2 = t46 * t42;
+        let g2_vy_leg2 = t39 * t42;
+        let rate_2_leg2 = g2_vx_leg2 * t189 + g2_vy_leg2 * t192;
         let t217 = rate_2_leg2 * rate_2_leg2;
         let t218 = 0.0784 * t217;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t190 + minus_g1_vy_leg2 * t192;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t189 + minus_g1_vy_leg2 * t192;
         let t223 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t225 = 0.5 * (t26 - 0.1568);
+        let t225 = 0.5 * (t34 - 0.1568);
         let t226 = t223 * t225;
-        let rate_dot_1_leg2 = t34 * (t32 * t175 - t40 * t178 - t218 - t226);
+        let rate_dot_1_leg2 = t42 * (t40 * t174 - t47 * t177 - t218 - t226);
         let t229 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = t71 * t67;
-        let t236 = t189 + t174;
-        let minus_g2_vy_leg3 = t64 * t67;
-        let t239 = t185 + t177;
+        let minus_g2_vx_leg3 = t72 * t68;
+        let t236 = t188 + t173;
+        let minus_g2_vy_leg3 = t65 * t68;
+        let t239 = t184 + t176;
         let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t239;
         let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let t243 = 0.0784 * t242;
         let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t239;
         let t248 = rate_1_leg3 * rate_1_leg3;
-        let t249 = t59 - 0.1568;
+        let t249 = t60 - 0.1568;
         let t250 = 0.5 * t249;
         let t251 = t248 * t250;
-        let minus_rate_dot_1_leg3 = t67 * (t72 * t178 - t65 * t175 - t243 - t251);
+        let minus_rate_dot_1_leg3 = t68 * (t73 * t177 - t66 * t174 - t243 - t251);
         let t254 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t93 * t89;
-        let g2_vy_leg4 = t86 * t89;
+        let g2_vx_leg4 = t92 * t88;
+        let g2_vy_leg4 = t85 * t88;
         let rate_2_leg4 = g2_vx_leg4 * t236 + g2_vy_leg4 * t239;
         let t265 = rate_2_leg4 * rate_2_leg4;
         let t266 = 0.0784 * t265;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * t236 + minus_g1_vy_leg4 * t239;
         let t271 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t273 = 0.5 * (t81 - 0.1568);
+        let t273 = 0.5 * (t80 - 0.1568);
         let t274 = t271 * t273;
-        let rate_dot_1_leg4 = t89 * (t94 * t178 - t87 * t175 - t266 - t274);
+        let rate_dot_1_leg4 = t88 * (t93 * t177 - t86 * t174 - t266 - t274);
         let t277 = actuator_accelerations[3] - rate_dot_1_leg4;
         let t279 = g1_vx_leg1 * t207 - minus_g1_vx_leg2 * t229 + g1_vx_leg3 * t254
             - minus_g1_vx_leg4 * t277;
         let t289 = g1_vy_leg1 * t207 - minus_g1_vy_leg2 * t229 + g1_vy_leg3 * t254
-            - minus_g1_vy_leg4 * t277 - t147 * t279;
+            - minus_g1_vy_leg4 * t277 - t146 * t279;
         let t301 = g1_wz_leg2 * t229 - minus_g1_wz_leg1 * t207 + g1_wz_leg3 * t254
-            - minus_g1_wz_leg4 * t277 - t121 * t279 - t150 * t289;
-        let rate_dot_3_leg1 = t301 / t172;
-        let t304 = t289 / t149 - t150 * rate_dot_3_leg1;
-        let t308 = t279 / t120 - t147 * t304 - t121 * rate_dot_3_leg1;
-        let t310 = t178 - t6 * rate_dot_3_leg1;
+            - minus_g1_wz_leg4 * t277 - t120 * t279 - t149 * t289;
+        let rate_dot_3_leg1 = t301 / t171;
+        let t304 = t289 / t148 - t149 * rate_dot_3_leg1;
+        let t308 = t279 / t119 - t146 * t304 - t120 * rate_dot_3_leg1;
+        let t310 = t177 - t8 * rate_dot_3_leg1;
         let t311 = t308 + t310;
-        let t314 = t175 + t2 * rate_dot_3_leg1;
+        let t314 = t174 + t2 * rate_dot_3_leg1;
         let t315 = t304 - t314;
-        let t318 = t17 * t311 + t23 * t315 + t196;
-        let rate_dot_1_leg1 = (t318 + t204) / t18;
+        let t318 = t22 * t311 + t28 * t315 + t196;
+        let rate_dot_1_leg1 = t24 * (t318 + t204);
         let t321 = g1_vx_leg1 * rate_dot_1_leg1;
         let t322 = g1_vy_leg1 * rate_dot_1_leg1;
         let t323 = minus_g1_wz_leg1 * rate_dot_1_leg1;
-        let t334 = t16 * t311 + t22 * t315 + 0.0784 * t201;
-        let minus_rate_dot_2_leg1 = (t334 + t195 * t203) / t18;
+        let t334 = t21 * t311 + t27 * t315 + 0.0784 * t201;
+        let minus_rate_dot_2_leg1 = t24 * (t334 + t195 * t203);
         let t338 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         let t339 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
-        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t8 * minus_g2_vx_leg1;
         let t343 = g2_wz_leg1 * minus_rate_dot_2_leg1;
         let t344 = 3.5714285714285716 * t311;
         let t348 = 3.5714285714285716 * t315;
-        let c12_leg3 = 3.5714285714285716 * t72;
-        let s12_leg3 = 3.5714285714285716 * t65;
+        let c12_leg3 = 3.5714285714285716 * t73;
+        let s12_leg3 = 3.5714285714285716 * t66;
         let c3_leg3 = c_phi * c12_leg3 + s_phi * s12_leg3;
         let t357 = t308 - t310;
         let t359 = t304 + t314;
-        let t361 = t72 * t357 + t65 * t359;
+        let t361 = t73 * t357 + t66 * t359;
         let s3_leg3 = s_phi * c12_leg3 - c_phi * s12_leg3;
         let t369 = t361 + t243;
-        let rate_dot_1_leg3 = t67 * (t369 + t251);
-        let t379 = t71 * t357 + t64 * t359 + 0.0784 * t248;
-        let minus_rate_dot_2_leg3 = t67 * (t379 + t242 * t250);
+        let rate_dot_1_leg3 = t68 * (t369 + t251);
+        let t379 = t72 * t357 + t65 * t359 + 0.0784 * t248;
+        let minus_rate_dot_2_leg3 = t68 * (t379 + t242 * t250);
         let t386 = c3_leg3 * (3.5714285714285716 * t361)
             + s3_leg3
-                * (3.5714285714285716 * (t66 * t248)
+                * (3.5714285714285716 * (t67 * t248)
                     + 1.7857142857142858 * (t249 * rate_dot_1_leg3)
                     - 0.28 * minus_rate_dot_2_leg3);
         let t387 = 0.11 * rate_dot_3_leg1;
@@ -2168,135 +2169,136 @@ impl DualV {
         let t396 = 3.5714285714285716 * t318;
         let t408 = g1_vx_leg1 + minus_g2_vx_leg1;
         let t409 = rate_1_leg1 + minus_rate_2_leg1;
-        let t412 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t417 = minus_rate_2_leg1 + rate_3_leg1;
-        let t420 = 1.0 - g2_wz_leg1;
-        let t428 = t40 * t311 + t32 * t315 + t218;
-        let minus_rate_dot_1_leg2 = t34 * (t428 + t226);
-        let t431 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let t432 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t433 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t444 = t39 * t311 + t31 * t315 + 0.0784 * t223;
-        let rate_dot_2_leg2 = t34 * (t444 + t217 * t225);
-        let t448 = g2_vx_leg2 * rate_dot_2_leg2;
-        let t449 = g2_vy_leg2 * rate_dot_2_leg2;
-        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t453 = minus_g2_wz_leg2 * rate_dot_2_leg2;
-        let t463 = 3.5714285714285716 * t444;
-        let t465 = 3.5714285714285716 * t428;
-        let t477 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t478 = minus_rate_1_leg2 + rate_2_leg2;
-        let t480 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t482 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t487 = rate_3_leg1 - rate_2_leg2;
-        let t490 = minus_g2_wz_leg2 + 1.0;
-        let t495 = g1_vx_leg3 * rate_dot_1_leg3;
-        let t496 = g1_vy_leg3 * rate_dot_1_leg3;
-        let t497 = g1_wz_leg3 * rate_dot_1_leg3;
-        let t504 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let t505 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
-        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
-        let t509 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
-        let t510 = 3.5714285714285716 * t357;
-        let t514 = 3.5714285714285716 * t359;
-        let t518 = 0.39285714285714285 * t386;
-        let t522 = 3.5714285714285716 * t379;
-        let t524 = 3.5714285714285716 * t369;
-        let t536 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t537 = rate_1_leg3 + minus_rate_2_leg3;
-        let t539 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t541 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t546 = minus_rate_2_leg3 + rate_3_leg1;
-        let t549 = minus_g2_wz_leg3 + 1.0;
-        let t557 = t94 * t357 + t87 * t359 + t266;
-        let minus_rate_dot_1_leg4 = t89 * (t557 + t274);
-        let t560 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let t561 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let t562 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let t573 = t93 * t357 + t86 * t359 + 0.0784 * t271;
-        let rate_dot_2_leg4 = t89 * (t573 + t265 * t273);
-        let t577 = g2_vx_leg4 * rate_dot_2_leg4;
-        let t578 = g2_vy_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
-        let t582 = g2_wz_leg4 * rate_dot_2_leg4;
-        let t592 = 3.5714285714285716 * t573;
-        let t594 = 3.5714285714285716 * t557;
-        let t606 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t607 = minus_rate_1_leg4 + rate_2_leg4;
-        let t609 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t611 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t616 = rate_3_leg1 - rate_2_leg4;
-        let t619 = 1.0 - g2_wz_leg4;
-        let t624 = 9.090909090909092 * t314;
-        let t625 = 9.090909090909092 * t310;
+        let t411 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t413 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t418 = minus_rate_2_leg1 + rate_3_leg1;
+        let t421 = 1.0 - g2_wz_leg1;
+        let t429 = t47 * t311 + t40 * t315 + t218;
+        let minus_rate_dot_1_leg2 = t42 * (t429 + t226);
+        let t432 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let t433 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t434 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let t445 = t46 * t311 + t39 * t315 + 0.0784 * t223;
+        let rate_dot_2_leg2 = t42 * (t445 + t217 * t225);
+        let t449 = g2_vx_leg2 * rate_dot_2_leg2;
+        let t450 = g2_vy_leg2 * rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t8 * g2_vx_leg2;
+        let t454 = minus_g2_wz_leg2 * rate_dot_2_leg2;
+        let t464 = 3.5714285714285716 * t445;
+        let t466 = 3.5714285714285716 * t429;
+        let t478 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t479 = minus_rate_1_leg2 + rate_2_leg2;
+        let t481 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t483 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t488 = rate_3_leg1 - rate_2_leg2;
+        let t491 = minus_g2_wz_leg2 + 1.0;
+        let t496 = g1_vx_leg3 * rate_dot_1_leg3;
+        let t497 = g1_vy_leg3 * rate_dot_1_leg3;
+        let t498 = g1_wz_leg3 * rate_dot_1_leg3;
+        let t505 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let t506 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t8 * minus_g2_vx_leg3;
+        let t510 = minus_g2_wz_leg3 * minus_rate_dot_2_leg3;
+        let t511 = 3.5714285714285716 * t357;
+        let t515 = 3.5714285714285716 * t359;
+        let t519 = 0.39285714285714285 * t386;
+        let t523 = 3.5714285714285716 * t379;
+        let t525 = 3.5714285714285716 * t369;
+        let t537 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t538 = rate_1_leg3 + minus_rate_2_leg3;
+        let t540 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t542 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t547 = minus_rate_2_leg3 + rate_3_leg1;
+        let t550 = minus_g2_wz_leg3 + 1.0;
+        let t558 = t93 * t357 + t86 * t359 + t266;
+        let minus_rate_dot_1_leg4 = t88 * (t558 + t274);
+        let t561 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let t562 = minus_g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let t563 = minus_g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let t574 = t92 * t357 + t85 * t359 + 0.0784 * t271;
+        let rate_dot_2_leg4 = t88 * (t574 + t265 * t273);
+        let t578 = g2_vx_leg4 * rate_dot_2_leg4;
+        let t579 = g2_vy_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t8 * g2_vx_leg4;
+        let t583 = g2_wz_leg4 * rate_dot_2_leg4;
+        let t593 = 3.5714285714285716 * t574;
+        let t595 = 3.5714285714285716 * t558;
+        let t607 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t608 = minus_rate_1_leg4 + rate_2_leg4;
+        let t610 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t612 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t617 = rate_3_leg1 - rate_2_leg4;
+        let t620 = 1.0 - g2_wz_leg4;
+        let t625 = 9.090909090909092 * t314;
+        let t626 = 9.090909090909092 * t310;
         Ok([
             [
                 t321, t321, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t338,
                 t344 - 0.28 * (t321 + t338), g1_vx_leg1 * t394 + minus_g2_vx_leg1 * t396,
                 0.0784 * t321, t408 * t409, ::overact::math::signed(t408, t409), -t408,
-                minus_g2_vx_leg1 * t417, ::overact::math::signed(minus_g2_vx_leg1, t417),
-                minus_g2_vx_leg1, t431, t431, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                minus_g2_vx_leg1 * t418, ::overact::math::signed(minus_g2_vx_leg1, t418),
+                minus_g2_vx_leg1, t432, t432, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t448, t344 - 0.28 * (t431 + t448), -(minus_g1_vx_leg2 * t463 + g2_vx_leg2 * t465),
-                0.0784 * t431, t477 * t478, ::overact::math::signed(t477, t478), t477,
-                -(g2_vx_leg2 * t487), -::overact::math::signed(g2_vx_leg2, t487), -g2_vx_leg2, t495,
-                t495, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
-                g1_vx_leg3, t504, t510 - 0.28 * (t495 + t504),
-                g1_vx_leg3 * t522 + minus_g2_vx_leg3 * t524, 0.0784 * t495, t536 * t537,
-                ::overact::math::signed(t536, t537), -t536, minus_g2_vx_leg3 * t546,
-                ::overact::math::signed(minus_g2_vx_leg3, t546), minus_g2_vx_leg3, t560, t560,
+                t449, t344 - 0.28 * (t432 + t449), -(minus_g1_vx_leg2 * t464 + g2_vx_leg2 * t466),
+                0.0784 * t432, t478 * t479, ::overact::math::signed(t478, t479), t478,
+                -(g2_vx_leg2 * t488), -::overact::math::signed(g2_vx_leg2, t488), -g2_vx_leg2, t496,
+                t496, g1_vx_leg3 * rate_1_leg3, ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
+                g1_vx_leg3, t505, t511 - 0.28 * (t496 + t505),
+                g1_vx_leg3 * t523 + minus_g2_vx_leg3 * t525, 0.0784 * t496, t537 * t538,
+                ::overact::math::signed(t537, t538), -t537, minus_g2_vx_leg3 * t547,
+                ::overact::math::signed(minus_g2_vx_leg3, t547), minus_g2_vx_leg3, t561, t561,
                 minus_g1_vx_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vx_leg4, minus_rate_1_leg4), -minus_g1_vx_leg4,
-                t577, t510 - 0.28 * (t560 + t577), -(minus_g1_vx_leg4 * t592 + g2_vx_leg4 * t594),
-                0.0784 * t560, t606 * t607, ::overact::math::signed(t606, t607), t606,
-                -(g2_vx_leg4 * t616), -::overact::math::signed(g2_vx_leg4, t616), -g2_vx_leg4, 0.0,
-                -t624, t625, t308,
+                t578, t511 - 0.28 * (t561 + t578), -(minus_g1_vx_leg4 * t593 + g2_vx_leg4 * t595),
+                0.0784 * t561, t607 * t608, ::overact::math::signed(t607, t608), t607,
+                -(g2_vx_leg4 * t617), -::overact::math::signed(g2_vx_leg4, t617), -g2_vx_leg4, 0.0,
+                -t625, t626, t308,
             ],
             [
                 t322, t322, g1_vy_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t339,
                 t348 - 0.28 * (t322 + t339), g1_vy_leg1 * t394 + minus_g2_vy_leg1 * t396,
-                0.0784 * t322, t46 * t409, ::overact::math::signed(t46, t409), -t46,
-                minus_g2_vy_leg1 * t417, ::overact::math::signed(minus_g2_vy_leg1, t417),
-                minus_g2_vy_leg1, t432, t432, minus_g1_vy_leg2 * minus_rate_1_leg2,
+                0.0784 * t322, t411 * t409, ::overact::math::signed(t411, t409), -t411,
+                minus_g2_vy_leg1 * t418, ::overact::math::signed(minus_g2_vy_leg1, t418),
+                minus_g2_vy_leg1, t433, t433, minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                t449, t348 - 0.28 * (t432 + t449), -(minus_g1_vy_leg2 * t463 + g2_vy_leg2 * t465),
-                0.0784 * t432, t480 * t478, ::overact::math::signed(t480, t478), t480,
-                -(g2_vy_leg2 * t487), -::overact::math::signed(g2_vy_leg2, t487), -g2_vy_leg2, t496,
-                t496, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
-                g1_vy_leg3, t505, t514 - 0.28 * (t496 + t505),
-                g1_vy_leg3 * t522 + minus_g2_vy_leg3 * t524, 0.0784 * t496, t539 * t537,
-                ::overact::math::signed(t539, t537), -t539, minus_g2_vy_leg3 * t546,
-                ::overact::math::signed(minus_g2_vy_leg3, t546), minus_g2_vy_leg3, t561, t561,
+                t450, t348 - 0.28 * (t433 + t450), -(minus_g1_vy_leg2 * t464 + g2_vy_leg2 * t466),
+                0.0784 * t433, t481 * t479, ::overact::math::signed(t481, t479), t481,
+                -(g2_vy_leg2 * t488), -::overact::math::signed(g2_vy_leg2, t488), -g2_vy_leg2, t497,
+                t497, g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
+                g1_vy_leg3, t506, t515 - 0.28 * (t497 + t506),
+                g1_vy_leg3 * t523 + minus_g2_vy_leg3 * t525, 0.0784 * t497, t540 * t538,
+                ::overact::math::signed(t540, t538), -t540, minus_g2_vy_leg3 * t547,
+                ::overact::math::signed(minus_g2_vy_leg3, t547), minus_g2_vy_leg3, t562, t562,
                 minus_g1_vy_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_vy_leg4, minus_rate_1_leg4), -minus_g1_vy_leg4,
-                t578, t514 - 0.28 * (t561 + t578), -(minus_g1_vy_leg4 * t592 + g2_vy_leg4 * t594),
-                0.0784 * t561, t609 * t607, ::overact::math::signed(t609, t607), t609,
-                -(g2_vy_leg4 * t616), -::overact::math::signed(g2_vy_leg4, t616), -g2_vy_leg4, 0.0,
-                -t625, -t624, t304,
+                t579, t515 - 0.28 * (t562 + t579), -(minus_g1_vy_leg4 * t593 + g2_vy_leg4 * t595),
+                0.0784 * t562, t610 * t608, ::overact::math::signed(t610, t608), t610,
+                -(g2_vy_leg4 * t617), -::overact::math::signed(g2_vy_leg4, t617), -g2_vy_leg4, 0.0,
+                -t626, -t625, t304,
             ],
             [
                 -t323, -t323, -(minus_g1_wz_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_wz_leg1, rate_1_leg1), -minus_g1_wz_leg1, -t343,
                 t390 + 0.28 * (t323 + t343), -(minus_g1_wz_leg1 * t394 + g2_wz_leg1 * t396),
-                -(0.0784 * t323), -(t412 * t409), -::overact::math::signed(t412, t409), t412,
-                t420 * t417, ::overact::math::signed(t420, t417), t420, -t433, -t433,
+                -(0.0784 * t323), -(t413 * t409), -::overact::math::signed(t413, t409), t413,
+                t421 * t418, ::overact::math::signed(t421, t418), t421, -t434, -t434,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
-                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t453,
-                t390 + 0.28 * (t433 + t453), g1_wz_leg2 * t463 + minus_g2_wz_leg2 * t465,
-                -(0.0784 * t433), -(t482 * t478), -::overact::math::signed(t482, t478), -t482,
-                t490 * t487, ::overact::math::signed(t490, t487), t490, t497, t497,
+                -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2, -t454,
+                t390 + 0.28 * (t434 + t454), g1_wz_leg2 * t464 + minus_g2_wz_leg2 * t466,
+                -(0.0784 * t434), -(t483 * t479), -::overact::math::signed(t483, t479), -t483,
+                t491 * t488, ::overact::math::signed(t491, t488), t491, t498, t498,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
-                g1_wz_leg3, t509, t518 - 0.28 * (t497 + t509),
-                g1_wz_leg3 * t522 + minus_g2_wz_leg3 * t524, 0.0784 * t497, t541 * t537,
-                ::overact::math::signed(t541, t537), -t541, t549 * t546,
-                ::overact::math::signed(t549, t546), t549, t562, t562,
+                g1_wz_leg3, t510, t519 - 0.28 * (t498 + t510),
+                g1_wz_leg3 * t523 + minus_g2_wz_leg3 * t525, 0.0784 * t498, t542 * t538,
+                ::overact::math::signed(t542, t538), -t542, t550 * t547,
+                ::overact::math::signed(t550, t547), t550, t563, t563,
                 minus_g1_wz_leg4 * minus_rate_1_leg4,
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg4,
-                t582, t518 - 0.28 * (t562 + t582), -(minus_g1_wz_leg4 * t592 + g2_wz_leg4 * t594),
-                0.0784 * t562, t611 * t607, ::overact::math::signed(t611, t607), t611, t619 * t616,
-                ::overact::math::signed(t619, t616), t619, rate_dot_3_leg1,
+                t583, t519 - 0.28 * (t563 + t583), -(minus_g1_wz_leg4 * t593 + g2_wz_leg4 * t595),
+                0.0784 * t563, t612 * t608, ::overact::math::signed(t612, t608), t612, t620 * t617,
+                ::overact::math::signed(t620, t617), t620, rate_dot_3_leg1,
                 c_phi * t304 - s_phi * t308, -t388, 0.0,
             ],
         ])
@@ -2470,86 +2472,84 @@ impl DualV {
         let t307 = rate_1_leg3 * rate_1_leg3;
         let t309 = 0.5 * (t86 - 0.1568);
         let rate_dot_1_leg3 = t94 * (t303 + t307 * t309);
-        let t317 = t2 * t214;
-        let t319 = t6 * t214;
-        let t322 = 2.0 * (minus_g2_vy_leg3 * t317 + minus_g2_vx_leg3 * t319);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t322;
-        let t325 = minus_g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t117
+        let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t6 * minus_g2_vx_leg3;
+        let t321 = minus_g2_vy_leg3 * t112 - minus_g2_vx_leg3 * t117
             - minus_g2_wz_leg3 * t126;
-        let t330 = t91 * t289 + t99 * t291 + 0.0784 * t307;
-        let minus_rate_dot_2_leg3 = t94 * (t330 + t301 * t309);
-        let t334 = t325 * minus_rate_dot_2_leg3;
-        let t339 = minus_g2_vy_leg3 * t144 - minus_g2_vx_leg3 * t149
+        let t326 = t91 * t289 + t99 * t291 + 0.0784 * t307;
+        let minus_rate_dot_2_leg3 = t94 * (t326 + t301 * t309);
+        let t330 = t321 * minus_rate_dot_2_leg3;
+        let t335 = minus_g2_vy_leg3 * t144 - minus_g2_vx_leg3 * t149
             + minus_g2_wz_leg3 * t155;
-        let t340 = t339 * minus_rate_dot_2_leg3;
-        let t341 = t322 * minus_rate_dot_2_leg3;
-        let t344 = 0.04321428571428571 * (t159 - t170 + t175);
-        let t349 = 0.04321428571428571 * (t192 - (t187 + t186));
-        let t352 = t214 * acceleration[2];
-        let t354 = t214 * t167;
-        let t355 = 0.11 * t352 + t354;
-        let t356 = 0.7857142857142857 * t355;
-        let t360 = 3.5714285714285716 * t303;
-        let t367 = rate_1_leg3 + minus_rate_2_leg3;
-        let t370 = t322 + 1.0;
-        let t375 = minus_rate_2_leg3 + twist[2];
-        let t376 = t126 - t325;
-        let t378 = t339 + t155;
-        let t380 = t214 + t322;
-        let t385 = t79 - 0.3950502153918333;
-        let t387 = t385 * t385 + t85;
-        let t389 = 0.0784 / t387 - 0.25;
-        ::overact::guard::reach(t389, "leg4")?;
-        let t390 = ::overact::math::sqrt(t389);
-        let t392 = t97 + t385 * t390;
-        let t393 = t83 - t392;
-        let t394 = t387 * t390;
-        ::overact::guard::leg(t394, 0.07839913810297301, "leg4")?;
-        let t395 = 1.0 / t394;
-        let minus_g1_vy_leg4 = t393 * t395;
-        let t400 = 0.5 * t385 - t83 * t390;
-        let t401 = t385 - t400;
-        let minus_g1_vx_leg4 = t401 * t395;
-        let t407 = minus_g1_vy_leg4 * t317 + minus_g1_vx_leg4 * t319;
-        let t408 = 2.0 * t407;
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t408;
-        let t411 = minus_g1_vy_leg4 * t112 - minus_g1_vx_leg4 * t117
+        let t336 = t335 * minus_rate_dot_2_leg3;
+        let t338 = 2.0 * (minus_g2_wz_leg3 * t214);
+        let t339 = t338 * minus_rate_dot_2_leg3;
+        let t342 = 0.04321428571428571 * (t159 - t170 + t175);
+        let t347 = 0.04321428571428571 * (t192 - (t187 + t186));
+        let t350 = t214 * acceleration[2];
+        let t352 = t214 * t167;
+        let t353 = 0.11 * t350 + t352;
+        let t354 = 0.7857142857142857 * t353;
+        let t358 = 3.5714285714285716 * t303;
+        let t365 = rate_1_leg3 + minus_rate_2_leg3;
+        let t368 = t338 + 1.0;
+        let t373 = minus_rate_2_leg3 + twist[2];
+        let t374 = t126 - t321;
+        let t376 = t335 + t155;
+        let t378 = t214 + t338;
+        let t383 = t79 - 0.3950502153918333;
+        let t385 = t383 * t383 + t85;
+        let t387 = 0.0784 / t385 - 0.25;
+        ::overact::guard::reach(t387, "leg4")?;
+        let t388 = ::overact::math::sqrt(t387);
+        let t390 = t97 + t383 * t388;
+        let t391 = t83 - t390;
+        let t392 = t385 * t388;
+        ::overact::guard::leg(t392, 0.07839913810297301, "leg4")?;
+        let t393 = 1.0 / t392;
+        let minus_g1_vy_leg4 = t391 * t393;
+        let t398 = 0.5 * t383 - t83 * t388;
+        let t399 = t383 - t398;
+        let minus_g1_vx_leg4 = t399 * t393;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t407 = minus_g1_vy_leg4 * t112 - minus_g1_vx_leg4 * t117
             - minus_g1_wz_leg4 * t126;
-        let g2_vx_leg4 = t400 * t395;
-        let g2_vy_leg4 = t392 * t395;
+        let g2_vx_leg4 = t398 * t393;
+        let g2_vy_leg4 = t390 * t393;
         let rate_2_leg4 = g2_vx_leg4 * t295 + g2_vy_leg4 * t298;
-        let t420 = rate_2_leg4 * rate_2_leg4;
-        let t422 = t401 * t289 + t393 * t291 + 0.0784 * t420;
+        let t416 = rate_2_leg4 * rate_2_leg4;
+        let t418 = t399 * t289 + t391 * t291 + 0.0784 * t416;
         let minus_rate_1_leg4 = minus_g1_vx_leg4 * t295 + minus_g1_vy_leg4 * t298;
-        let t426 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t428 = 0.5 * (t387 - 0.1568);
-        let minus_rate_dot_1_leg4 = t395 * (t422 + t426 * t428);
-        let t432 = t411 * minus_rate_dot_1_leg4;
-        let t437 = minus_g1_vy_leg4 * t144 - minus_g1_vx_leg4 * t149
+        let t422 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t424 = 0.5 * (t385 - 0.1568);
+        let minus_rate_dot_1_leg4 = t393 * (t418 + t422 * t424);
+        let t428 = t407 * minus_rate_dot_1_leg4;
+        let t433 = minus_g1_vy_leg4 * t144 - minus_g1_vx_leg4 * t149
             + minus_g1_wz_leg4 * t155;
-        let t438 = t437 * minus_rate_dot_1_leg4;
-        let t439 = t408 * minus_rate_dot_1_leg4;
-        let t451 = g2_vx_leg4 * t319 + g2_vy_leg4 * t317;
-        let t452 = 2.0 * t451;
-        let g2_wz_leg4 = g1_wz_leg3 * t452;
-        let t455 = g2_vx_leg4 * t117 - g2_vy_leg4 * t112 + g2_wz_leg4 * t126;
-        let t460 = t400 * t289 + t392 * t291 + 0.0784 * t426;
-        let rate_dot_2_leg4 = t395 * (t460 + t420 * t428);
-        let t464 = t455 * rate_dot_2_leg4;
-        let t469 = g2_vx_leg4 * t149 - g2_vy_leg4 * t144 - g2_wz_leg4 * t155;
-        let t470 = t469 * rate_dot_2_leg4;
-        let t471 = t452 * rate_dot_2_leg4;
-        let t481 = 3.5714285714285716 * t460;
-        let t483 = 3.5714285714285716 * t422;
-        let t496 = minus_rate_1_leg4 + rate_2_leg4;
-        let t497 = t455 - t411;
-        let t499 = t469 - t437;
-        let t501 = t408 + t452;
-        let t506 = twist[2] - rate_2_leg4;
-        let t507 = t126 - t455;
-        let t509 = t469 + t155;
-        let t511 = t214 - t452;
-        let t521 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t434 = t433 * minus_rate_dot_1_leg4;
+        let t435 = minus_g1_wz_leg4 * t214;
+        let t436 = 2.0 * t435;
+        let t437 = t436 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t451 = g2_vx_leg4 * t117 - g2_vy_leg4 * t112 + g2_wz_leg4 * t126;
+        let t456 = t398 * t289 + t390 * t291 + 0.0784 * t422;
+        let rate_dot_2_leg4 = t393 * (t456 + t416 * t424);
+        let t460 = t451 * rate_dot_2_leg4;
+        let t465 = g2_vx_leg4 * t149 - g2_vy_leg4 * t144 - g2_wz_leg4 * t155;
+        let t466 = t465 * rate_dot_2_leg4;
+        let t467 = g2_wz_leg4 * t214;
+        let t468 = 2.0 * t467;
+        let t469 = t468 * rate_dot_2_leg4;
+        let t479 = 3.5714285714285716 * t456;
+        let t481 = 3.5714285714285716 * t418;
+        let t494 = minus_rate_1_leg4 + rate_2_leg4;
+        let t495 = t451 - t407;
+        let t497 = t465 - t433;
+        let t499 = t436 + t468;
+        let t504 = twist[2] - rate_2_leg4;
+        let t505 = t126 - t451;
+        let t507 = t465 + t155;
+        let t509 = t214 - t468;
+        let t519 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
@@ -2559,15 +2559,15 @@ impl DualV {
                 ::overact::math::signed(t210, t209), t210, 0.0, 0.0, 0.0, 0.0, 0.0, t256,
                 t177 - 0.28 * t256, -(t247 * t268), 0.0, t247 * t274,
                 ::overact::math::signed(t247, t274), t247, t280 * t281,
-                ::overact::math::signed(t281, t280), t281, 0.0, 0.0, 0.0, 0.0, 0.0, -t334,
-                t344 + 0.28 * t334, -(t325 * t360), 0.0, -(t325 * t367),
-                -::overact::math::signed(t325, t367), t325, t375 * t376,
-                ::overact::math::signed(t376, t375), t376, -t432, -t432,
-                -(t411 * minus_rate_1_leg4), -::overact::math::signed(t411, minus_rate_1_leg4),
-                t411, t464, t344 - 0.28 * (t464 - t432), t411 * t481 - t455 * t483,
-                -(0.0784 * t432), t496 * t497, ::overact::math::signed(t497, t496), t497,
-                t506 * t507, ::overact::math::signed(t507, t506), t507, t159,
-                t112 * t160 - t117 * t162 + t126 * t521, t169, t174,
+                ::overact::math::signed(t281, t280), t281, 0.0, 0.0, 0.0, 0.0, 0.0, -t330,
+                t342 + 0.28 * t330, -(t321 * t358), 0.0, -(t321 * t365),
+                -::overact::math::signed(t321, t365), t321, t373 * t374,
+                ::overact::math::signed(t374, t373), t374, -t428, -t428,
+                -(t407 * minus_rate_1_leg4), -::overact::math::signed(t407, minus_rate_1_leg4),
+                t407, t460, t342 - 0.28 * (t460 - t428), t407 * t479 - t451 * t481,
+                -(0.0784 * t428), t494 * t495, ::overact::math::signed(t495, t494), t495,
+                t504 * t505, ::overact::math::signed(t505, t504), t505, t159,
+                t112 * t160 - t117 * t162 + t126 * t519, t169, t174,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, -t158, t194 + 0.28 * t158, -(t157 * t198), 0.0,
@@ -2578,30 +2578,30 @@ impl DualV {
                 t194 - 0.28 * (t262 - minus_rate_dot_1_leg2),
                 3.5714285714285716 * t252 - t261 * t268, -(0.0784 * minus_rate_dot_1_leg2),
                 t274 * t276, ::overact::math::signed(t276, t274), t276, -(t280 * t283),
-                -::overact::math::signed(t283, t280), -t283, 0.0, 0.0, 0.0, 0.0, 0.0, -t340,
-                t349 + 0.28 * t340, -(t339 * t360), 0.0, -(t339 * t367),
-                -::overact::math::signed(t339, t367), t339, -(t375 * t378),
-                -::overact::math::signed(t378, t375), -t378, -t438, -t438,
-                -(t437 * minus_rate_1_leg4), -::overact::math::signed(t437, minus_rate_1_leg4),
-                t437, t470, t349 - 0.28 * (t470 - t438), t437 * t481 - t469 * t483,
-                -(0.0784 * t438), t496 * t499, ::overact::math::signed(t499, t496), t499,
-                -(t506 * t509), -::overact::math::signed(t509, t506), -t509, -t187,
-                t144 * t160 - t149 * t162 - t155 * t521, t185, t191,
+                -::overact::math::signed(t283, t280), -t283, 0.0, 0.0, 0.0, 0.0, 0.0, -t336,
+                t347 + 0.28 * t336, -(t335 * t358), 0.0, -(t335 * t365),
+                -::overact::math::signed(t335, t365), t335, -(t373 * t376),
+                -::overact::math::signed(t376, t373), -t376, -t434, -t434,
+                -(t433 * minus_rate_1_leg4), -::overact::math::signed(t433, minus_rate_1_leg4),
+                t433, t466, t347 - 0.28 * (t466 - t434), t433 * t479 - t465 * t481,
+                -(0.0784 * t434), t494 * t497, ::overact::math::signed(t497, t494), t497,
+                -(t504 * t507), -::overact::math::signed(t507, t504), -t507, -t187,
+                t144 * t160 - t149 * t162 - t155 * t519, t185, t191,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214 * t209,
                 ::overact::math::signed(t214, t209), t214, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, t214 * t280, ::overact::math::signed(t214, t280), t214,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t341, t356 - 0.28 * (rate_dot_1_leg3 + t341),
-                3.5714285714285716 * t330 + t360 * t322, 0.0784 * rate_dot_1_leg3, t367 * t370,
-                ::overact::math::signed(t370, t367), -t370, t375 * t380,
-                ::overact::math::signed(t380, t375), t380, t439, t439, t408 * minus_rate_1_leg4,
-                ::overact::math::signed(t408, minus_rate_1_leg4), -t408, t471,
-                t356 - 0.28 * (t471 + t439), -(7.142857142857143 * (t407 * t460 + t451 * t422)),
-                0.0784 * t439, t496 * t501, ::overact::math::signed(t501, t496), t501, t506 * t511,
-                ::overact::math::signed(t511, t506), t511, t352,
-                t214 * t521 - (t317 * t160 + t319 * t162), -t355, 0.11 * t354,
+                1.0, t339, t354 - 0.28 * (rate_dot_1_leg3 + t339),
+                3.5714285714285716 * t326 + t358 * t338, 0.0784 * rate_dot_1_leg3, t365 * t368,
+                ::overact::math::signed(t368, t365), -t368, t373 * t378,
+                ::overact::math::signed(t378, t373), t378, t437, t437, t436 * minus_rate_1_leg4,
+                ::overact::math::signed(t436, minus_rate_1_leg4), -t436, t469,
+                t354 - 0.28 * (t469 + t437), -(7.142857142857143 * (t435 * t456 + t467 * t418)),
+                0.0784 * t437, t494 * t499, ::overact::math::signed(t499, t494), t499, t504 * t509,
+                ::overact::math::signed(t509, t504), t509, t350,
+                t214 * t519 - (t2 * t214 * t160 + t6 * t214 * t162), -t353, 0.11 * t352,
             ],
         ])
     }
@@ -2749,72 +2749,70 @@ impl DualV {
         let t283 = rate_1_leg3 * rate_1_leg3;
         let t284 = 0.28 * c2_leg3;
         let rate_dot_1_leg3 = t71 * (t279 + t283 * t284);
-        let t292 = t16 * t193;
-        let t294 = t13 * t193;
-        let t297 = 2.0 * (minus_g2_vx_leg3 * t292 + minus_g2_vy_leg3 * t294);
-        let minus_minus_g2_wz_leg3 = g1_wz_leg3 * t297;
-        let t300 = minus_g2_vy_leg3 * t102 - minus_g2_vx_leg3 * t107
-            + minus_minus_g2_wz_leg3 * t116;
-        let t305 = c1_leg3 * t265 + s1_leg3 * t267 + 0.28 * t283;
-        let minus_rate_dot_2_leg3 = t71 * (t305 + t277 * t284);
-        let t309 = t300 * minus_rate_dot_2_leg3;
-        let t314 = minus_g2_vx_leg3 * t128 - minus_g2_vy_leg3 * t130
-            + minus_minus_g2_wz_leg3 * t133;
-        let t315 = t314 * minus_rate_dot_2_leg3;
-        let t316 = t297 * minus_rate_dot_2_leg3;
-        let t319 = 0.04321428571428571 * (t137 - t148 + t153);
-        let t324 = 0.04321428571428571 * (t159 + t165 + t170);
-        let t327 = t193 * acceleration[2];
-        let t329 = t193 * t145;
-        let t330 = 0.11 * t327 + t329;
-        let t331 = 0.7857142857142857 * t330;
-        let t340 = rate_1_leg3 + minus_rate_2_leg3;
-        let t343 = t297 - 1.0;
-        let t348 = minus_rate_2_leg3 + twist[2];
-        let t349 = t116 - t300;
-        let t351 = t133 - t314;
-        let t353 = t297 + t193;
+        let minus_g2_wz_leg3 = t13 * minus_g2_vy_leg3 + t16 * minus_g2_vx_leg3;
+        let t296 = minus_g2_vy_leg3 * t102 - minus_g2_vx_leg3 * t107
+            - minus_g2_wz_leg3 * t116;
+        let t301 = c1_leg3 * t265 + s1_leg3 * t267 + 0.28 * t283;
+        let minus_rate_dot_2_leg3 = t71 * (t301 + t277 * t284);
+        let t305 = t296 * minus_rate_dot_2_leg3;
+        let t310 = minus_g2_vx_leg3 * t128 - minus_g2_vy_leg3 * t130
+            - minus_g2_wz_leg3 * t133;
+        let t311 = t310 * minus_rate_dot_2_leg3;
+        let t313 = 2.0 * (minus_g2_wz_leg3 * t193);
+        let t314 = t313 * minus_rate_dot_2_leg3;
+        let t317 = 0.04321428571428571 * (t137 - t148 + t153);
+        let t322 = 0.04321428571428571 * (t159 + t165 + t170);
+        let t325 = t193 * acceleration[2];
+        let t327 = t193 * t145;
+        let t328 = 0.11 * t325 + t327;
+        let t329 = 0.7857142857142857 * t328;
+        let t338 = rate_1_leg3 + minus_rate_2_leg3;
+        let t341 = t313 - 1.0;
+        let t346 = minus_rate_2_leg3 + twist[2];
+        let t347 = t116 - t296;
+        let t349 = t133 - t310;
+        let t351 = t313 + t193;
         let c12_leg4 = c1_leg4 * c2_leg4 - s1_leg4 * s2_leg4;
         let s12_leg4 = s1_leg4 * c2_leg4 + c1_leg4 * s2_leg4;
-        let t368 = 3.5714285714285716 / s2_leg4;
-        let g1_vx_leg4 = c12_leg4 * t368;
-        let g1_vy_leg4 = s12_leg4 * t368;
-        let t377 = 2.0 * (g1_vy_leg4 * t294 + g1_vx_leg4 * t292);
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t377;
-        let t380 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 - minus_g1_wz_leg4 * t116;
-        let minus_g2_vx_leg4 = c1_leg4 * t368;
-        let minus_g2_vy_leg4 = s1_leg4 * t368;
+        let t366 = 3.5714285714285716 / s2_leg4;
+        let g1_vx_leg4 = c12_leg4 * t366;
+        let g1_vy_leg4 = s12_leg4 * t366;
+        let g1_wz_leg4 = t13 * g1_vy_leg4 + t16 * g1_vx_leg4;
+        let t376 = g1_vx_leg4 * t107 - g1_vy_leg4 * t102 + g1_wz_leg4 * t116;
+        let minus_g2_vx_leg4 = c1_leg4 * t366;
+        let minus_g2_vy_leg4 = s1_leg4 * t366;
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * t271 + minus_g2_vy_leg4 * t274;
-        let t389 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t391 = c12_leg4 * t265 + s12_leg4 * t267 + 0.28 * t389;
+        let t385 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t387 = c12_leg4 * t265 + s12_leg4 * t267 + 0.28 * t385;
         let rate_1_leg4 = g1_vx_leg4 * t271 + g1_vy_leg4 * t274;
-        let t395 = rate_1_leg4 * rate_1_leg4;
-        let t396 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t368 * (t391 + t395 * t396);
-        let t400 = t380 * rate_dot_1_leg4;
-        let t405 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 - minus_g1_wz_leg4 * t133;
-        let t406 = t405 * rate_dot_1_leg4;
-        let t407 = t377 * rate_dot_1_leg4;
-        let t420 = 2.0 * (minus_g2_vx_leg4 * t292 + minus_g2_vy_leg4 * t294);
-        let minus_minus_g2_wz_leg4 = g1_wz_leg3 * t420;
-        let t423 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
-            + minus_minus_g2_wz_leg4 * t116;
-        let t428 = c1_leg4 * t265 + s1_leg4 * t267 + 0.28 * t395;
-        let minus_rate_dot_2_leg4 = t368 * (t428 + t389 * t396);
-        let t432 = t423 * minus_rate_dot_2_leg4;
-        let t437 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
-            + minus_minus_g2_wz_leg4 * t133;
-        let t438 = t437 * minus_rate_dot_2_leg4;
-        let t439 = t420 * minus_rate_dot_2_leg4;
-        let t461 = rate_1_leg4 + minus_rate_2_leg4;
-        let t462 = t423 - t380;
-        let t464 = t437 - t405;
-        let t466 = t377 + t420;
-        let t471 = minus_rate_2_leg4 + twist[2];
-        let t472 = t116 - t423;
-        let t474 = t133 - t437;
-        let t476 = t420 + t193;
-        let t486 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t391 = rate_1_leg4 * rate_1_leg4;
+        let t392 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t366 * (t387 + t391 * t392);
+        let t396 = t376 * rate_dot_1_leg4;
+        let t401 = g1_vy_leg4 * t130 - g1_vx_leg4 * t128 + g1_wz_leg4 * t133;
+        let t402 = t401 * rate_dot_1_leg4;
+        let t404 = 2.0 * (g1_wz_leg4 * t193);
+        let t405 = t404 * rate_dot_1_leg4;
+        let minus_g2_wz_leg4 = t13 * minus_g2_vy_leg4 + t16 * minus_g2_vx_leg4;
+        let t419 = minus_g2_vy_leg4 * t102 - minus_g2_vx_leg4 * t107
+            - minus_g2_wz_leg4 * t116;
+        let t424 = c1_leg4 * t265 + s1_leg4 * t267 + 0.28 * t391;
+        let minus_rate_dot_2_leg4 = t366 * (t424 + t385 * t392);
+        let t428 = t419 * minus_rate_dot_2_leg4;
+        let t433 = minus_g2_vx_leg4 * t128 - minus_g2_vy_leg4 * t130
+            - minus_g2_wz_leg4 * t133;
+        let t434 = t433 * minus_rate_dot_2_leg4;
+        let t436 = 2.0 * (minus_g2_wz_leg4 * t193);
+        let t437 = t436 * minus_rate_dot_2_leg4;
+        let t459 = rate_1_leg4 + minus_rate_2_leg4;
+        let t460 = t419 - t376;
+        let t462 = t433 - t401;
+        let t464 = t404 + t436;
+        let t469 = minus_rate_2_leg4 + twist[2];
+        let t470 = t116 - t419;
+        let t472 = t133 - t433;
+        let t474 = t436 + t193;
+        let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
@@ -2823,15 +2821,15 @@ impl DualV {
                 t180, t185 * t186, ::overact::math::signed(t186, t185), t186, 0.0, 0.0, 0.0, 0.0,
                 0.0, -t234, t155 + 0.28 * t234, -(t225 * t208), 0.0, -(t225 * t250),
                 -::overact::math::signed(t225, t250), t225, t256 * t257,
-                ::overact::math::signed(t257, t256), t257, 0.0, 0.0, 0.0, 0.0, 0.0, -t309,
-                t319 + 0.28 * t309, -(t300 * t279), 0.0, -(t300 * t340),
-                -::overact::math::signed(t300, t340), t300, t348 * t349,
-                ::overact::math::signed(t349, t348), t349, t400, t400, t380 * rate_1_leg4,
-                ::overact::math::signed(t380, rate_1_leg4), t380, -t432,
-                t319 - 0.28 * (t400 - t432), t380 * t428 - t423 * t391, 0.0784 * t400,
-                -(t461 * t462), -::overact::math::signed(t462, t461), t462, t471 * t472,
-                ::overact::math::signed(t472, t471), t472, t137,
-                t102 * t138 - t107 * t140 + t116 * t486, t147, t152,
+                ::overact::math::signed(t257, t256), t257, 0.0, 0.0, 0.0, 0.0, 0.0, -t305,
+                t317 + 0.28 * t305, -(t296 * t279), 0.0, -(t296 * t338),
+                -::overact::math::signed(t296, t338), t296, t346 * t347,
+                ::overact::math::signed(t347, t346), t347, t396, t396, t376 * rate_1_leg4,
+                ::overact::math::signed(t376, rate_1_leg4), t376, -t428,
+                t317 - 0.28 * (t396 - t428), t376 * t424 - t419 * t387, 0.0784 * t396,
+                -(t459 * t460), -::overact::math::signed(t460, t459), t460, t469 * t470,
+                ::overact::math::signed(t470, t469), t470, t137,
+                t102 * t138 - t107 * t140 + t116 * t484, t147, t152,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, -t136, t172 + 0.28 * t136, -(t135 * t37), 0.0,
@@ -2841,28 +2839,28 @@ impl DualV {
                 t172 - 0.28 * (rate_dot_1_leg2 - t240), t230 - t239 * t208,
                 0.0784 * rate_dot_1_leg2, -(t250 * t252), -::overact::math::signed(t252, t250),
                 t252, t256 * t259, ::overact::math::signed(t259, t256), t259, 0.0, 0.0, 0.0, 0.0,
-                0.0, -t315, t324 + 0.28 * t315, -(t314 * t279), 0.0, -(t314 * t340),
-                -::overact::math::signed(t314, t340), t314, t348 * t351,
-                ::overact::math::signed(t351, t348), t351, t406, t406, t405 * rate_1_leg4,
-                ::overact::math::signed(t405, rate_1_leg4), t405, -t438,
-                t324 - 0.28 * (t406 - t438), t405 * t428 - t437 * t391, 0.0784 * t406,
-                -(t461 * t464), -::overact::math::signed(t464, t461), t464, t471 * t474,
-                ::overact::math::signed(t474, t471), t474, t159,
-                t128 * t140 - t130 * t138 + t133 * t486, -t164, t169,
+                0.0, -t311, t322 + 0.28 * t311, -(t310 * t279), 0.0, -(t310 * t338),
+                -::overact::math::signed(t310, t338), t310, t346 * t349,
+                ::overact::math::signed(t349, t346), t349, t402, t402, t401 * rate_1_leg4,
+                ::overact::math::signed(t401, rate_1_leg4), t401, -t434,
+                t322 - 0.28 * (t402 - t434), t401 * t424 - t433 * t387, 0.0784 * t402,
+                -(t459 * t462), -::overact::math::signed(t462, t459), t462, t469 * t472,
+                ::overact::math::signed(t472, t469), t472, t159,
+                t128 * t140 - t130 * t138 + t133 * t484, -t164, t169,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(t193 * t185),
                 -::overact::math::signed(t193, t185), -t193, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, -(t193 * t256), -::overact::math::signed(t193, t256), -t193,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, -t316, -(t331 + 0.28 * (rate_dot_1_leg3 - t316)), t305 - t297 * t279,
-                0.0784 * rate_dot_1_leg3, -(t340 * t343), -::overact::math::signed(t343, t340),
-                t343, -(t348 * t353), -::overact::math::signed(t353, t348), -t353, -t407, -t407,
-                -(t377 * rate_1_leg4), -::overact::math::signed(t377, rate_1_leg4), -t377, -t439,
-                -(t331 - 0.28 * (t407 + t439)), -(t377 * t428 + t420 * t391), -(0.0784 * t407),
-                -(t461 * t466), -::overact::math::signed(t466, t461), t466, -(t471 * t476),
-                -::overact::math::signed(t476, t471), -t476, -t327,
-                t292 * t140 + t294 * t138 - t193 * t486, t330, -(0.11 * t329),
+                1.0, -t314, -(t329 + 0.28 * (rate_dot_1_leg3 - t314)), t301 - t313 * t279,
+                0.0784 * rate_dot_1_leg3, -(t338 * t341), -::overact::math::signed(t341, t338),
+                t341, -(t346 * t351), -::overact::math::signed(t351, t346), -t351, -t405, -t405,
+                -(t404 * rate_1_leg4), -::overact::math::signed(t404, rate_1_leg4), -t404, -t437,
+                -(t329 - 0.28 * (t405 + t437)), -(t404 * t424 + t436 * t387), -(0.0784 * t405),
+                -(t459 * t464), -::overact::math::signed(t464, t459), t464, -(t469 * t474),
+                -::overact::math::signed(t474, t469), -t474, -t325,
+                t16 * t193 * t140 + t13 * t193 * t138 - t193 * t484, t328, -(0.11 * t327),
             ],
         ])
     }
@@ -2963,283 +2961,283 @@ impl DualV {
         let t101 = t90 + t56 * t62;
         let t102 = t41 - t101;
         let minus_g1_vy_leg4 = t102 * t67;
-        let t106 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t107 = g1_wz_leg3 * t106;
-        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t107, 3.5376915986291904, "kept actuators")?;
-        let t108 = 0.5 / t107;
-        let t109 = t106 * t108;
-        let t110 = t2 * t109;
-        let t112 = t6 * t109;
-        let t114 = minus_g1_vy_leg4 * t110 + minus_g1_vx_leg4 * t112;
-        let t115 = 2.0 * t114;
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t115;
-        let t125 = g1_vx_leg3 * g1_wz_leg3
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t115 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t126 = t125 * t71;
-        let t142 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        let t116 = t115 * t71;
+        let t132 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t144 = g1_vy_leg3 * g1_wz_leg3
+        let t134 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t142 * t126;
-        let t152 = t142 * t71;
-        let t154 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t132 * t116;
+        let t142 = t132 * t71;
+        let t144 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t142 * t152;
-        ::overact::guard::platform(t154, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t154, 25.592368899353342, "actuators")?;
-        let t155 = 1.0 / t154;
-        let t156 = t144 * t155;
-        let t158 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t125 * t126
-            - t144 * t156;
-        ::overact::guard::platform(t158, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t158, 0.3076928490286828, "actuators")?;
-        let t159 = 1.0 / t158;
-        let t173 = g1_vx_leg1 * actuator_velocities[0]
+            - t132 * t142;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t144, 25.592368899353342, "actuators")?;
+        let t145 = 1.0 / t144;
+        let t146 = t134 * t145;
+        let t148 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t115 * t116
+            - t134 * t146;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t148, 0.3076928490286828, "actuators")?;
+        let t149 = 1.0 / t148;
+        let t163 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t184 = g1_vy_leg1 * actuator_velocities[0]
+        let t174 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t173 * t152;
-        let t186 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t163 * t142;
+        let t176 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t173 * t126 - t156 * t184;
-        let rate_3_leg1 = t159 * t186;
-        let t188 = t6 * rate_3_leg1;
-        let t189 = rate_3_leg1 * t188;
-        let t191 = t2 * rate_3_leg1;
-        let t192 = rate_3_leg1 * t191;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t163 * t116 - t146 * t174;
+        let rate_3_leg1 = t149 * t176;
+        let t178 = t6 * rate_3_leg1;
+        let t179 = rate_3_leg1 * t178;
+        let t181 = t2 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
         let minus_g2_vx_leg1 = t18 * t15;
-        let t199 = t155 * t184 - t156 * rate_3_leg1;
-        let t203 = t173 * t71 - t152 * t199 - t126 * rate_3_leg1;
-        let t204 = t203 - t188;
+        let t189 = t145 * t174 - t146 * rate_3_leg1;
+        let t193 = t163 * t71 - t142 * t189 - t116 * rate_3_leg1;
+        let t194 = t193 - t178;
         let minus_g2_vy_leg1 = t74 * t15;
-        let t207 = t199 - t191;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t204 + minus_g2_vy_leg1 * t207;
-        let t210 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t211 = 0.0784 * t210;
-        let rate_1_leg1 = g1_vx_leg1 * t204 + g1_vy_leg1 * t207;
-        let t216 = rate_1_leg1 * rate_1_leg1;
-        let t218 = 0.5 * (t10 - 0.1568);
-        let t219 = t216 * t218;
-        let minus_rate_dot_1_leg1 = t15 * (t75 * t189 - t19 * t192 - t211 - t219);
-        let t222 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t197 = t189 - t181;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t194 + minus_g2_vy_leg1 * t197;
+        let t200 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t201 = 0.0784 * t200;
+        let rate_1_leg1 = g1_vx_leg1 * t194 + g1_vy_leg1 * t197;
+        let t206 = rate_1_leg1 * rate_1_leg1;
+        let t208 = 0.5 * (t10 - 0.1568);
+        let t209 = t206 * t208;
+        let minus_rate_dot_1_leg1 = t15 * (t75 * t179 - t19 * t182 - t201 - t209);
+        let t212 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let g2_vx_leg2 = t30 * t33;
         let g2_vy_leg2 = t82 * t33;
-        let rate_2_leg2 = g2_vx_leg2 * t204 + g2_vy_leg2 * t207;
-        let t232 = rate_2_leg2 * rate_2_leg2;
-        let t233 = 0.0784 * t232;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t204 + minus_g1_vy_leg2 * t207;
-        let t238 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t240 = 0.5 * (t25 - 0.1568);
-        let t241 = t238 * t240;
-        let rate_dot_1_leg2 = t33 * (t83 * t189 - t31 * t192 - t233 - t241);
-        let t244 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let rate_2_leg2 = g2_vx_leg2 * t194 + g2_vy_leg2 * t197;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.0784 * t222;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t197;
+        let t228 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t230 = 0.5 * (t25 - 0.1568);
+        let t231 = t228 * t230;
+        let rate_dot_1_leg2 = t33 * (t83 * t179 - t31 * t182 - t223 - t231);
+        let t234 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg3 = t49 * t52;
-        let t251 = t203 + t188;
+        let t241 = t193 + t178;
         let minus_g2_vy_leg3 = t92 * t52;
-        let t254 = t199 + t191;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t251 + minus_g2_vy_leg3 * t254;
-        let t257 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t258 = 0.0784 * t257;
-        let rate_1_leg3 = g1_vx_leg3 * t251 + g1_vy_leg3 * t254;
-        let t263 = rate_1_leg3 * rate_1_leg3;
-        let t265 = 0.5 * (t44 - 0.1568);
-        let t266 = t263 * t265;
-        let minus_rate_dot_1_leg3 = t52 * (t50 * t192 - t93 * t189 - t258 - t266);
-        let t269 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t244 = t189 + t181;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t241 + minus_g2_vy_leg3 * t244;
+        let t247 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t248 = 0.0784 * t247;
+        let rate_1_leg3 = g1_vx_leg3 * t241 + g1_vy_leg3 * t244;
+        let t253 = rate_1_leg3 * rate_1_leg3;
+        let t255 = 0.5 * (t44 - 0.1568);
+        let t256 = t253 * t255;
+        let minus_rate_dot_1_leg3 = t52 * (t50 * t182 - t93 * t179 - t248 - t256);
+        let t259 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
         let g2_vx_leg4 = t64 * t67;
         let g2_vy_leg4 = t101 * t67;
-        let rate_2_leg4 = g2_vx_leg4 * t251 + g2_vy_leg4 * t254;
-        let t280 = rate_2_leg4 * rate_2_leg4;
-        let t281 = 0.0784 * t280;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t251 + minus_g1_vy_leg4 * t254;
-        let t286 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t288 = 0.5 * (t59 - 0.1568);
-        let t289 = t286 * t288;
-        let rate_dot_1_leg4 = t67 * (t65 * t192 - t102 * t189 - t281 - t289);
-        let t292 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t294 = g1_vx_leg1 * t222 - minus_g1_vx_leg2 * t244 + g1_vx_leg3 * t269
-            - minus_g1_vx_leg4 * t292;
-        let t304 = g1_vy_leg1 * t222 - minus_g1_vy_leg2 * t244 + g1_vy_leg3 * t269
-            - minus_g1_vy_leg4 * t292 - t152 * t294;
-        let t316 = g1_wz_leg2 * t244 - minus_g1_wz_leg1 * t222 + g1_wz_leg3 * t269
-            - minus_g1_wz_leg4 * t292 - t126 * t294 - t156 * t304;
-        let rate_dot_3_leg1 = t159 * t316;
-        let t319 = t155 * t304 - t156 * rate_dot_3_leg1;
-        let t323 = t71 * t294 - t152 * t319 - t126 * rate_dot_3_leg1;
-        let t325 = t192 - t6 * rate_dot_3_leg1;
-        let t326 = t323 + t325;
-        let t329 = t189 + t2 * rate_dot_3_leg1;
-        let t330 = t319 - t329;
-        let t333 = t19 * t326 + t75 * t330 + t211;
-        let rate_dot_1_leg1 = t15 * (t333 + t219);
-        let t340 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t108;
-        let t345 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t108;
+        let rate_2_leg4 = g2_vx_leg4 * t241 + g2_vy_leg4 * t244;
+        let t270 = rate_2_leg4 * rate_2_leg4;
+        let t271 = 0.0784 * t270;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t241 + minus_g1_vy_leg4 * t244;
+        let t276 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t278 = 0.5 * (t59 - 0.1568);
+        let t279 = t276 * t278;
+        let rate_dot_1_leg4 = t67 * (t65 * t182 - t102 * t179 - t271 - t279);
+        let t282 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t284 = g1_vx_leg1 * t212 - minus_g1_vx_leg2 * t234 + g1_vx_leg3 * t259
+            - minus_g1_vx_leg4 * t282;
+        let t294 = g1_vy_leg1 * t212 - minus_g1_vy_leg2 * t234 + g1_vy_leg3 * t259
+            - minus_g1_vy_leg4 * t282 - t142 * t284;
+        let t306 = g1_wz_leg2 * t234 - minus_g1_wz_leg1 * t212 + g1_wz_leg3 * t259
+            - minus_g1_wz_leg4 * t282 - t116 * t284 - t146 * t294;
+        let rate_dot_3_leg1 = t149 * t306;
+        let t309 = t145 * t294 - t146 * rate_dot_3_leg1;
+        let t313 = t71 * t284 - t142 * t309 - t116 * rate_dot_3_leg1;
+        let t315 = t182 - t6 * rate_dot_3_leg1;
+        let t316 = t313 + t315;
+        let t319 = t179 + t2 * rate_dot_3_leg1;
+        let t320 = t309 - t319;
+        let t323 = t19 * t316 + t75 * t320 + t201;
+        let rate_dot_1_leg1 = t15 * (t323 + t209);
+        let t332 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t333 = g1_wz_leg3 * t332;
+        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t333, 3.5376915986291904, "kept actuators")?;
+        let t334 = 0.5 / t333;
+        let t335 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t334;
+        let t340 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t334;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t354 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t108;
-        let t356 = minus_g2_vy_leg1 * t340 - minus_g2_vx_leg1 * t345 + g2_wz_leg1 * t354;
-        let t361 = t18 * t326 + t74 * t330 + 0.0784 * t216;
-        let minus_rate_dot_2_leg1 = t15 * (t361 + t210 * t218);
-        let t365 = t356 * minus_rate_dot_2_leg1;
-        let t369 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t108;
-        let t374 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t108;
-        let t380 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t108;
-        let t382 = minus_g2_vy_leg1 * t369 - minus_g2_vx_leg1 * t374 - g2_wz_leg1 * t380;
-        let t383 = t382 * minus_rate_dot_2_leg1;
-        let t384 = t354 * rate_dot_3_leg1;
-        let t385 = 9.090909090909092 * t325;
-        let t387 = 9.090909090909092 * t329;
-        let t392 = s_phi * t319 + c_phi * t323;
-        let t394 = t345 * t385 + t340 * t387 - t354 * t392;
-        let t395 = 9.090909090909092 * t394;
-        let t399 = t345 * t323 - t340 * t319;
-        let t400 = 82.64462809917356 * t399;
-        let t402 = 0.04321428571428571 * (t384 + t395 + t400);
-        let t410 = t374 * t385 + t369 * t387 + t380 * t392;
-        let t411 = 9.090909090909092 * t410;
-        let t412 = t380 * rate_dot_3_leg1;
-        let t416 = t374 * t323 - t369 * t319;
-        let t417 = 82.64462809917356 * t416;
-        let t419 = 0.04321428571428571 * (t411 - t412 + t417);
-        let t423 = 3.5714285714285716 * t333;
-        let t428 = rate_1_leg1 + minus_rate_2_leg1;
-        let t429 = t356 - 1.0;
-        let t434 = minus_rate_2_leg1 + rate_3_leg1;
-        let t435 = t354 - t356;
-        let t437 = t382 + t380;
-        let t446 = t31 * t326 + t83 * t330 + t233;
-        let minus_rate_dot_1_leg2 = t33 * (t446 + t241);
+        let t349 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t334;
+        let t351 = minus_g2_vy_leg1 * t335 - minus_g2_vx_leg1 * t340 + g2_wz_leg1 * t349;
+        let t356 = t18 * t316 + t74 * t320 + 0.0784 * t206;
+        let minus_rate_dot_2_leg1 = t15 * (t356 + t200 * t208);
+        let t360 = t351 * minus_rate_dot_2_leg1;
+        let t364 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t334;
+        let t369 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t334;
+        let t375 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t334;
+        let t377 = minus_g2_vy_leg1 * t364 - minus_g2_vx_leg1 * t369 - g2_wz_leg1 * t375;
+        let t378 = t377 * minus_rate_dot_2_leg1;
+        let t379 = t349 * rate_dot_3_leg1;
+        let t380 = 9.090909090909092 * t315;
+        let t382 = 9.090909090909092 * t319;
+        let t387 = s_phi * t309 + c_phi * t313;
+        let t389 = t340 * t380 + t335 * t382 - t349 * t387;
+        let t390 = 9.090909090909092 * t389;
+        let t394 = t340 * t313 - t335 * t309;
+        let t395 = 82.64462809917356 * t394;
+        let t397 = 0.04321428571428571 * (t379 + t390 + t395);
+        let t405 = t369 * t380 + t364 * t382 + t375 * t387;
+        let t406 = 9.090909090909092 * t405;
+        let t407 = t375 * rate_dot_3_leg1;
+        let t411 = t369 * t313 - t364 * t309;
+        let t412 = 82.64462809917356 * t411;
+        let t414 = 0.04321428571428571 * (t406 - t407 + t412);
+        let t418 = 3.5714285714285716 * t323;
+        let t423 = rate_1_leg1 + minus_rate_2_leg1;
+        let t424 = t351 - 1.0;
+        let t429 = minus_rate_2_leg1 + rate_3_leg1;
+        let t430 = t349 - t351;
+        let t432 = t377 + t375;
+        let t434 = t332 * t334;
+        let t442 = t31 * t316 + t83 * t320 + t223;
+        let minus_rate_dot_1_leg2 = t33 * (t442 + t231);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t457 = g2_vx_leg2 * t345 - g2_vy_leg2 * t340 - minus_g2_wz_leg2 * t354;
-        let t462 = t30 * t326 + t82 * t330 + 0.0784 * t238;
-        let rate_dot_2_leg2 = t33 * (t462 + t232 * t240);
-        let t466 = t457 * rate_dot_2_leg2;
-        let t471 = g2_vx_leg2 * t374 - g2_vy_leg2 * t369 + minus_g2_wz_leg2 * t380;
-        let t472 = t471 * rate_dot_2_leg2;
-        let t478 = 3.5714285714285716 * t446;
-        let t484 = minus_rate_1_leg2 + rate_2_leg2;
-        let t486 = t471 - 1.0;
-        let t490 = rate_3_leg1 - rate_2_leg2;
-        let t491 = t354 - t457;
-        let t493 = t471 + t380;
-        let t499 = t323 - t325;
-        let t501 = t319 + t329;
-        let t504 = t50 * t499 + t93 * t501 + t258;
-        let rate_dot_1_leg3 = t52 * (t504 + t266);
-        let t514 = 2.0 * (minus_g2_vy_leg3 * t110 + minus_g2_vx_leg3 * t112);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t514;
-        let t517 = minus_g2_vy_leg3 * t340 - minus_g2_vx_leg3 * t345
-            - minus_g2_wz_leg3 * t354;
-        let t522 = t49 * t499 + t92 * t501 + 0.0784 * t263;
-        let minus_rate_dot_2_leg3 = t52 * (t522 + t257 * t265);
-        let t526 = t517 * minus_rate_dot_2_leg3;
-        let t531 = minus_g2_vy_leg3 * t369 - minus_g2_vx_leg3 * t374
-            + minus_g2_wz_leg3 * t380;
-        let t532 = t531 * minus_rate_dot_2_leg3;
-        let t533 = t514 * minus_rate_dot_2_leg3;
-        let t536 = 0.04321428571428571 * (t384 - t395 + t400);
-        let t541 = 0.04321428571428571 * (t417 - (t412 + t411));
-        let t544 = t109 * rate_dot_3_leg1;
-        let t546 = t109 * t392;
-        let t547 = 0.11 * t544 + t546;
-        let t548 = 0.7857142857142857 * t547;
-        let t552 = 3.5714285714285716 * t504;
-        let t559 = rate_1_leg3 + minus_rate_2_leg3;
-        let t562 = t514 + 1.0;
-        let t567 = minus_rate_2_leg3 + rate_3_leg1;
-        let t568 = t354 - t517;
-        let t570 = t531 + t380;
-        let t572 = t109 + t514;
-        let t581 = minus_g1_vy_leg4 * t340 - minus_g1_vx_leg4 * t345
-            - minus_g1_wz_leg4 * t354;
-        let t585 = t65 * t499 + t102 * t501 + t281;
-        let minus_rate_dot_1_leg4 = t67 * (t585 + t289);
-        let t588 = t581 * minus_rate_dot_1_leg4;
-        let t593 = minus_g1_vy_leg4 * t369 - minus_g1_vx_leg4 * t374
-            + minus_g1_wz_leg4 * t380;
-        let t594 = t593 * minus_rate_dot_1_leg4;
-        let t595 = t115 * minus_rate_dot_1_leg4;
-        let t607 = g2_vx_leg4 * t112 + g2_vy_leg4 * t110;
-        let t608 = 2.0 * t607;
-        let g2_wz_leg4 = g1_wz_leg3 * t608;
-        let t611 = g2_vx_leg4 * t345 - g2_vy_leg4 * t340 + g2_wz_leg4 * t354;
-        let t616 = t64 * t499 + t101 * t501 + 0.0784 * t286;
-        let rate_dot_2_leg4 = t67 * (t616 + t280 * t288);
-        let t620 = t611 * rate_dot_2_leg4;
-        let t625 = g2_vx_leg4 * t374 - g2_vy_leg4 * t369 - g2_wz_leg4 * t380;
-        let t626 = t625 * rate_dot_2_leg4;
-        let t627 = t608 * rate_dot_2_leg4;
-        let t637 = 3.5714285714285716 * t616;
-        let t639 = 3.5714285714285716 * t585;
+        let t453 = g2_vx_leg2 * t340 - g2_vy_leg2 * t335 - minus_g2_wz_leg2 * t349;
+        let t458 = t30 * t316 + t82 * t320 + 0.0784 * t228;
+        let rate_dot_2_leg2 = t33 * (t458 + t222 * t230);
+        let t462 = t453 * rate_dot_2_leg2;
+        let t467 = g2_vx_leg2 * t369 - g2_vy_leg2 * t364 + minus_g2_wz_leg2 * t375;
+        let t468 = t467 * rate_dot_2_leg2;
+        let t474 = 3.5714285714285716 * t442;
+        let t480 = minus_rate_1_leg2 + rate_2_leg2;
+        let t482 = t467 - 1.0;
+        let t486 = rate_3_leg1 - rate_2_leg2;
+        let t487 = t349 - t453;
+        let t489 = t467 + t375;
+        let t495 = t313 - t315;
+        let t497 = t309 + t319;
+        let t500 = t50 * t495 + t93 * t497 + t248;
+        let rate_dot_1_leg3 = t52 * (t500 + t256);
+        let t507 = t2 * t434;
+        let t509 = t6 * t434;
+        let t512 = 2.0 * (minus_g2_vy_leg3 * t507 + minus_g2_vx_leg3 * t509);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t512;
+        let t515 = minus_g2_vy_leg3 * t335 - minus_g2_vx_leg3 * t340
+            - minus_g2_wz_leg3 * t349;
+        let t520 = t49 * t495 + t92 * t497 + 0.0784 * t253;
+        let minus_rate_dot_2_leg3 = t52 * (t520 + t247 * t255);
+        let t524 = t515 * minus_rate_dot_2_leg3;
+        let t529 = minus_g2_vy_leg3 * t364 - minus_g2_vx_leg3 * t369
+            + minus_g2_wz_leg3 * t375;
+        let t530 = t529 * minus_rate_dot_2_leg3;
+        let t531 = t512 * minus_rate_dot_2_leg3;
+        let t534 = 0.04321428571428571 * (t379 - t390 + t395);
+        let t539 = 0.04321428571428571 * (t412 - (t407 + t406));
+        let t542 = t434 * rate_dot_3_leg1;
+        let t544 = t434 * t387;
+        let t545 = 0.11 * t542 + t544;
+        let t546 = 0.7857142857142857 * t545;
+        let t550 = 3.5714285714285716 * t500;
+        let t557 = rate_1_leg3 + minus_rate_2_leg3;
+        let t560 = t512 + 1.0;
+        let t565 = minus_rate_2_leg3 + rate_3_leg1;
+        let t566 = t349 - t515;
+        let t568 = t529 + t375;
+        let t570 = t434 + t512;
+        let t579 = minus_g1_vy_leg4 * t335 - minus_g1_vx_leg4 * t340
+            - minus_g1_wz_leg4 * t349;
+        let t583 = t65 * t495 + t102 * t497 + t271;
+        let minus_rate_dot_1_leg4 = t67 * (t583 + t279);
+        let t586 = t579 * minus_rate_dot_1_leg4;
+        let t591 = minus_g1_vy_leg4 * t364 - minus_g1_vx_leg4 * t369
+            + minus_g1_wz_leg4 * t375;
+        let t592 = t591 * minus_rate_dot_1_leg4;
+        let t593 = minus_g1_wz_leg4 * t434;
+        let t594 = 2.0 * t593;
+        let t595 = t594 * minus_rate_dot_1_leg4;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t609 = g2_vx_leg4 * t340 - g2_vy_leg4 * t335 + g2_wz_leg4 * t349;
+        let t614 = t64 * t495 + t101 * t497 + 0.0784 * t276;
+        let rate_dot_2_leg4 = t67 * (t614 + t270 * t278);
+        let t618 = t609 * rate_dot_2_leg4;
+        let t623 = g2_vx_leg4 * t369 - g2_vy_leg4 * t364 - g2_wz_leg4 * t375;
+        let t624 = t623 * rate_dot_2_leg4;
+        let t625 = g2_wz_leg4 * t434;
+        let t626 = 2.0 * t625;
+        let t627 = t626 * rate_dot_2_leg4;
+        let t637 = 3.5714285714285716 * t614;
+        let t639 = 3.5714285714285716 * t583;
         let t652 = minus_rate_1_leg4 + rate_2_leg4;
-        let t653 = t611 - t581;
-        let t655 = t625 - t593;
-        let t657 = t115 + t608;
+        let t653 = t609 - t579;
+        let t655 = t623 - t591;
+        let t657 = t594 + t626;
         let t662 = rate_3_leg1 - rate_2_leg4;
-        let t663 = t354 - t611;
-        let t665 = t625 + t380;
-        let t667 = t109 - t608;
-        let t677 = c_phi * t319 - s_phi * t323;
+        let t663 = t349 - t609;
+        let t665 = t623 + t375;
+        let t667 = t434 - t626;
+        let t677 = c_phi * t309 - s_phi * t313;
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, -t365, t402 - 0.28 * (rate_dot_1_leg1 - t365),
-                3.5714285714285716 * t361 - t356 * t423, 0.0784 * rate_dot_1_leg1, -(t428 * t429),
-                -::overact::math::signed(t429, t428), t429, t434 * t435,
-                ::overact::math::signed(t435, t434), t435, 0.0, 0.0, 0.0, 0.0, 0.0, t466,
-                t402 - 0.28 * t466, -(t457 * t478), 0.0, t457 * t484,
-                ::overact::math::signed(t457, t484), t457, t490 * t491,
-                ::overact::math::signed(t491, t490), t491, 0.0, 0.0, 0.0, 0.0, 0.0, -t526,
-                t536 + 0.28 * t526, -(t517 * t552), 0.0, -(t517 * t559),
-                -::overact::math::signed(t517, t559), t517, t567 * t568,
-                ::overact::math::signed(t568, t567), t568, -t588, -t588,
-                -(t581 * minus_rate_1_leg4), -::overact::math::signed(t581, minus_rate_1_leg4),
-                t581, t620, t536 - 0.28 * (t620 - t588), t581 * t637 - t611 * t639,
-                -(0.0784 * t588), t652 * t653, ::overact::math::signed(t653, t652), t653,
-                t662 * t663, ::overact::math::signed(t663, t662), t663, t384,
-                t340 * t385 - t345 * t387 + t354 * t677, t394, t399,
+                1.0, -t360, t397 - 0.28 * (rate_dot_1_leg1 - t360),
+                3.5714285714285716 * t356 - t351 * t418, 0.0784 * rate_dot_1_leg1, -(t423 * t424),
+                -::overact::math::signed(t424, t423), t424, t429 * t430,
+                ::overact::math::signed(t430, t429), t430, 0.0, 0.0, 0.0, 0.0, 0.0, t462,
+                t397 - 0.28 * t462, -(t453 * t474), 0.0, t453 * t480,
+                ::overact::math::signed(t453, t480), t453, t486 * t487,
+                ::overact::math::signed(t487, t486), t487, 0.0, 0.0, 0.0, 0.0, 0.0, -t524,
+                t534 + 0.28 * t524, -(t515 * t550), 0.0, -(t515 * t557),
+                -::overact::math::signed(t515, t557), t515, t565 * t566,
+                ::overact::math::signed(t566, t565), t566, -t586, -t586,
+                -(t579 * minus_rate_1_leg4), -::overact::math::signed(t579, minus_rate_1_leg4),
+                t579, t618, t534 - 0.28 * (t618 - t586), t579 * t637 - t609 * t639,
+                -(0.0784 * t586), t652 * t653, ::overact::math::signed(t653, t652), t653,
+                t662 * t663, ::overact::math::signed(t663, t662), t663, t379,
+                t335 * t380 - t340 * t382 + t349 * t677, t389, t394,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t383, t419 + 0.28 * t383, -(t382 * t423), 0.0,
-                -(t382 * t428), -::overact::math::signed(t382, t428), t382, -(t434 * t437),
-                -::overact::math::signed(t437, t434), -t437, -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t378, t414 + 0.28 * t378, -(t377 * t418), 0.0,
+                -(t377 * t423), -::overact::math::signed(t377, t423), t377, -(t429 * t432),
+                -::overact::math::signed(t432, t429), -t432, -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, t472,
-                t419 - 0.28 * (t472 - minus_rate_dot_1_leg2),
-                3.5714285714285716 * t462 - t471 * t478, -(0.0784 * minus_rate_dot_1_leg2),
-                t484 * t486, ::overact::math::signed(t486, t484), t486, -(t490 * t493),
-                -::overact::math::signed(t493, t490), -t493, 0.0, 0.0, 0.0, 0.0, 0.0, -t532,
-                t541 + 0.28 * t532, -(t531 * t552), 0.0, -(t531 * t559),
-                -::overact::math::signed(t531, t559), t531, -(t567 * t570),
-                -::overact::math::signed(t570, t567), -t570, -t594, -t594,
-                -(t593 * minus_rate_1_leg4), -::overact::math::signed(t593, minus_rate_1_leg4),
-                t593, t626, t541 - 0.28 * (t626 - t594), t593 * t637 - t625 * t639,
-                -(0.0784 * t594), t652 * t655, ::overact::math::signed(t655, t652), t655,
-                -(t662 * t665), -::overact::math::signed(t665, t662), -t665, -t412,
-                t369 * t385 - t374 * t387 - t380 * t677, t410, t416,
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, t468,
+                t414 - 0.28 * (t468 - minus_rate_dot_1_leg2),
+                3.5714285714285716 * t458 - t467 * t474, -(0.0784 * minus_rate_dot_1_leg2),
+                t480 * t482, ::overact::math::signed(t482, t480), t482, -(t486 * t489),
+                -::overact::math::signed(t489, t486), -t489, 0.0, 0.0, 0.0, 0.0, 0.0, -t530,
+                t539 + 0.28 * t530, -(t529 * t550), 0.0, -(t529 * t557),
+                -::overact::math::signed(t529, t557), t529, -(t565 * t568),
+                -::overact::math::signed(t568, t565), -t568, -t592, -t592,
+                -(t591 * minus_rate_1_leg4), -::overact::math::signed(t591, minus_rate_1_leg4),
+                t591, t624, t539 - 0.28 * (t624 - t592), t591 * t637 - t623 * t639,
+                -(0.0784 * t592), t652 * t655, ::overact::math::signed(t655, t652), t655,
+                -(t662 * t665), -::overact::math::signed(t665, t662), -t665, -t407,
+                t364 * t380 - t369 * t382 - t375 * t677, t405, t411,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t109 * t434,
-                ::overact::math::signed(t109, t434), t109, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t109 * t490, ::overact::math::signed(t109, t490), t109,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t434 * t429,
+                ::overact::math::signed(t434, t429), t434, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t434 * t486, ::overact::math::signed(t434, t486), t434,
                 rate_dot_1_leg3, rate_dot_1_leg3, rate_1_leg3, ::overact::math::sign(rate_1_leg3),
-                1.0, t533, t548 - 0.28 * (rate_dot_1_leg3 + t533),
-                3.5714285714285716 * t522 + t552 * t514, 0.0784 * rate_dot_1_leg3, t559 * t562,
-                ::overact::math::signed(t562, t559), -t562, t567 * t572,
-                ::overact::math::signed(t572, t567), t572, t595, t595, t115 * minus_rate_1_leg4,
-                ::overact::math::signed(t115, minus_rate_1_leg4), -t115, t627,
-                t548 - 0.28 * (t627 + t595), -(7.142857142857143 * (t114 * t616 + t607 * t585)),
+                1.0, t531, t546 - 0.28 * (rate_dot_1_leg3 + t531),
+                3.5714285714285716 * t520 + t550 * t512, 0.0784 * rate_dot_1_leg3, t557 * t560,
+                ::overact::math::signed(t560, t557), -t560, t565 * t570,
+                ::overact::math::signed(t570, t565), t570, t595, t595, t594 * minus_rate_1_leg4,
+                ::overact::math::signed(t594, minus_rate_1_leg4), -t594, t627,
+                t546 - 0.28 * (t627 + t595), -(7.142857142857143 * (t593 * t614 + t625 * t583)),
                 0.0784 * t595, t652 * t657, ::overact::math::signed(t657, t652), t657, t662 * t667,
-                ::overact::math::signed(t667, t662), t667, t544,
-                t109 * t677 - (t110 * t385 + t112 * t387), -t547, 0.11 * t546,
+                ::overact::math::signed(t667, t662), t667, t542,
+                t434 * t677 - (t507 * t380 + t509 * t382), -t545, 0.11 * t544,
             ],
         ])
     }
@@ -3253,7 +3251,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 360 operations (127 additions, 215 multiplications, 18 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 263 intermediates.
+    /// 362 operations (127 additions, 227 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 265 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3274,160 +3272,162 @@ impl DualV {
         let t20 = pose[0] + t5;
         let t21 = t20 + 0.3950502153918333;
         let t22 = 0.5 * t21;
-        let t23 = t22 - t5;
-        let t24 = -0.3950502153918333 + t23;
-        let t25 = t24 + t24;
-        let t26 = t2 + -0.10970563941232059;
-        let t27 = pose[1] + t26;
-        let t29 = t27 * t27;
-        let t30 = t25 * t25 + t29;
-        let t32 = 0.0784 / t30 - 0.25;
-        ::overact::guard::reach(t32, "leg1")?;
-        let t33 = ::overact::math::sqrt(t32);
-        let t35 = t24 + t27 * t33;
-        let t36 = t25 - t35;
-        let t37 = t30 * t33;
-        ::overact::guard::leg(t37, 0.07839913810297301, "leg1")?;
-        let g1_vx_leg1 = t36 / t37;
+        let t23 = pose[0] - t22;
+        let t24 = t23 + t23;
+        let t26 = pose[1] + t2 + -0.10970563941232059;
+        let t28 = t26 * t26;
+        let t29 = t24 * t24 + t28;
+        let t31 = 0.0784 / t29 - 0.25;
+        ::overact::guard::reach(t31, "leg1")?;
+        let t32 = ::overact::math::sqrt(t31);
+        let t34 = t23 + t26 * t32;
+        let t35 = t24 - t34;
+        let t36 = t29 * t32;
+        ::overact::guard::leg(t36, 0.07839913810297301, "leg1")?;
+        let t37 = 1.0 / t36;
+        let g1_vx_leg1 = t35 * t37;
         let t39 = t12 + acceleration[0];
-        let t41 = 0.5 * t27;
-        let t43 = t41 - t25 * t33;
-        let t44 = t27 - t43;
+        let t41 = 0.5 * t26;
+        let t43 = t41 - t24 * t32;
+        let t44 = t26 - t43;
         let t45 = acceleration[1] - t7;
-        let minus_g2_vx_leg1 = t35 / t37;
+        let minus_g2_vx_leg1 = t34 * t37;
         let t49 = twist[0] - t3;
-        let minus_g2_vy_leg1 = t43 / t37;
+        let minus_g2_vy_leg1 = t43 * t37;
         let t52 = twist[1] - t9;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t49 + minus_g2_vy_leg1 * t52;
         let t55 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t57 = t36 * t39 + t44 * t45 + 0.0784 * t55;
-        let g1_vy_leg1 = t44 / t37;
+        let t57 = t35 * t39 + t44 * t45 + 0.0784 * t55;
+        let g1_vy_leg1 = t44 * t37;
         let rate_1_leg1 = g1_vx_leg1 * t49 + g1_vy_leg1 * t52;
         let t62 = rate_1_leg1 * rate_1_leg1;
-        let t64 = 0.5 * (t30 - 0.1568);
-        let rate_dot_1_leg1 = (t57 + t62 * t64) / t37;
+        let t64 = 0.5 * (t29 - 0.1568);
+        let rate_dot_1_leg1 = t37 * (t57 + t62 * t64);
         let minus_g1_wz_leg1 = t5 * g1_vy_leg1 + t2 * g1_vx_leg1;
-        let t74 = t23 + t23;
-        let t76 = t74 * t74 + t29;
-        let t78 = 0.0784 / t76 - 0.25;
-        ::overact::guard::reach(t78, "leg2")?;
-        let t79 = ::overact::math::sqrt(t78);
-        let t81 = t23 - t27 * t79;
-        let t82 = t74 - t81;
-        let t83 = t76 * t79;
-        ::overact::guard::leg(t83, 0.07839913810297301, "leg2")?;
-        let minus_g1_vx_leg2 = t82 / t83;
-        let t87 = t41 + t74 * t79;
-        let t88 = t27 - t87;
-        let g2_vx_leg2 = t81 / t83;
-        let g2_vy_leg2 = t87 / t83;
+        let t74 = t20 - 0.3950502153918333;
+        let t75 = 0.5 * t74;
+        let t76 = pose[0] - t75;
+        let t77 = t76 + t76;
+        let t79 = t77 * t77 + t28;
+        let t81 = 0.0784 / t79 - 0.25;
+        ::overact::guard::reach(t81, "leg2")?;
+        let t82 = ::overact::math::sqrt(t81);
+        let t84 = t76 - t26 * t82;
+        let t85 = t77 - t84;
+        let t86 = t79 * t82;
+        ::overact::guard::leg(t86, 0.07839913810297301, "leg2")?;
+        let t87 = 1.0 / t86;
+        let minus_g1_vx_leg2 = t85 * t87;
+        let t91 = t41 + t77 * t82;
+        let t92 = t26 - t91;
+        let g2_vx_leg2 = t84 * t87;
+        let g2_vy_leg2 = t91 * t87;
         let rate_2_leg2 = g2_vx_leg2 * t49 + g2_vy_leg2 * t52;
-        let t96 = rate_2_leg2 * rate_2_leg2;
-        let t98 = t82 * t39 + t88 * t45 + 0.0784 * t96;
-        let minus_g1_vy_leg2 = t88 / t83;
+        let t100 = rate_2_leg2 * rate_2_leg2;
+        let t102 = t85 * t39 + t92 * t45 + 0.0784 * t100;
+        let minus_g1_vy_leg2 = t92 * t87;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t49 + minus_g1_vy_leg2 * t52;
-        let t103 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t105 = 0.5 * (t76 - 0.1568);
-        let minus_rate_dot_1_leg2 = (t98 + t103 * t105) / t83;
+        let t107 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t109 = 0.5 * (t79 - 0.1568);
+        let minus_rate_dot_1_leg2 = t87 * (t102 + t107 * t109);
         let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t2 * minus_g1_vx_leg2;
-        let t115 = t41 - t26;
-        let t116 = t115 + t115;
-        let t118 = t116 * t116;
-        let t119 = t21 * t21 + t118;
-        let t121 = 0.0784 / t119 - 0.25;
-        ::overact::guard::reach(t121, "leg3")?;
-        let t122 = ::overact::math::sqrt(t121);
-        let t124 = t22 + t116 * t122;
-        let t125 = t21 - t124;
-        let t126 = t119 * t122;
-        ::overact::guard::leg(t126, 0.07839913810297301, "leg3")?;
-        let t127 = 1.0 / t126;
-        let g1_vx_leg3 = t125 * t127;
-        let t129 = acceleration[0] - t12;
-        let t132 = t115 - t21 * t122;
-        let t133 = t116 - t132;
-        let t134 = t7 + acceleration[1];
-        let minus_g2_vx_leg3 = t124 * t127;
-        let t138 = twist[0] + t3;
-        let minus_g2_vy_leg3 = t132 * t127;
-        let t141 = twist[1] + t9;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t138 + minus_g2_vy_leg3 * t141;
-        let t144 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t146 = t125 * t129 + t133 * t134 + 0.0784 * t144;
-        let g1_vy_leg3 = t133 * t127;
-        let rate_1_leg3 = g1_vx_leg3 * t138 + g1_vy_leg3 * t141;
-        let t151 = rate_1_leg3 * rate_1_leg3;
-        let t153 = 0.5 * (t119 - 0.1568);
-        let rate_dot_1_leg3 = t127 * (t146 + t151 * t153);
+        let t119 = pose[1] - t41;
+        let t120 = t119 + t119;
+        let t122 = t120 * t120;
+        let t123 = t21 * t21 + t122;
+        let t125 = 0.0784 / t123 - 0.25;
+        ::overact::guard::reach(t125, "leg3")?;
+        let t126 = ::overact::math::sqrt(t125);
+        let t128 = t22 + t120 * t126;
+        let t129 = t21 - t128;
+        let t130 = t123 * t126;
+        ::overact::guard::leg(t130, 0.07839913810297301, "leg3")?;
+        let t131 = 1.0 / t130;
+        let g1_vx_leg3 = t129 * t131;
+        let t133 = acceleration[0] - t12;
+        let t136 = t119 - t21 * t126;
+        let t137 = t120 - t136;
+        let t138 = t7 + acceleration[1];
+        let minus_g2_vx_leg3 = t128 * t131;
+        let t142 = twist[0] + t3;
+        let minus_g2_vy_leg3 = t136 * t131;
+        let t145 = twist[1] + t9;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t142 + minus_g2_vy_leg3 * t145;
+        let t148 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t150 = t129 * t133 + t137 * t138 + 0.0784 * t148;
+        let g1_vy_leg3 = t137 * t131;
+        let rate_1_leg3 = g1_vx_leg3 * t142 + g1_vy_leg3 * t145;
+        let t155 = rate_1_leg3 * rate_1_leg3;
+        let t157 = 0.5 * (t123 - 0.1568);
+        let rate_dot_1_leg3 = t131 * (t150 + t155 * t157);
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t2 * g1_vx_leg3;
-        let t163 = t20 - 0.3950502153918333;
-        let t166 = t163 * t163 + t118;
-        let t168 = 0.0784 / t166 - 0.25;
-        ::overact::guard::reach(t168, "leg4")?;
-        let t169 = ::overact::math::sqrt(t168);
-        let t171 = 0.5 * t163 - t116 * t169;
-        let t172 = t163 - t171;
-        let t173 = t166 * t169;
-        ::overact::guard::leg(t173, 0.07839913810297301, "leg4")?;
-        let t174 = 1.0 / t173;
-        let minus_g1_vx_leg4 = t172 * t174;
-        let t178 = t115 + t163 * t169;
-        let t179 = t116 - t178;
-        let g2_vx_leg4 = t171 * t174;
-        let g2_vy_leg4 = t178 * t174;
-        let rate_2_leg4 = g2_vx_leg4 * t138 + g2_vy_leg4 * t141;
-        let t187 = rate_2_leg4 * rate_2_leg4;
-        let t189 = t172 * t129 + t179 * t134 + 0.0784 * t187;
-        let minus_g1_vy_leg4 = t179 * t174;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t138 + minus_g1_vy_leg4 * t141;
-        let t194 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t196 = 0.5 * (t166 - 0.1568);
-        let minus_rate_dot_1_leg4 = t174 * (t189 + t194 * t196);
+        let t168 = t74 * t74 + t122;
+        let t170 = 0.0784 / t168 - 0.25;
+        ::overact::guard::reach(t170, "leg4")?;
+        let t171 = ::overact::math::sqrt(t170);
+        let t173 = t75 - t120 * t171;
+        let t174 = t74 - t173;
+        let t175 = t168 * t171;
+        ::overact::guard::leg(t175, 0.07839913810297301, "leg4")?;
+        let t176 = 1.0 / t175;
+        let minus_g1_vx_leg4 = t174 * t176;
+        let t180 = t119 + t74 * t171;
+        let t181 = t120 - t180;
+        let g2_vx_leg4 = t173 * t176;
+        let g2_vy_leg4 = t180 * t176;
+        let rate_2_leg4 = g2_vx_leg4 * t142 + g2_vy_leg4 * t145;
+        let t189 = rate_2_leg4 * rate_2_leg4;
+        let t191 = t174 * t133 + t181 * t138 + 0.0784 * t189;
+        let minus_g1_vy_leg4 = t181 * t176;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t142 + minus_g1_vy_leg4 * t145;
+        let t196 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t198 = 0.5 * (t168 - 0.1568);
+        let minus_rate_dot_1_leg4 = t176 * (t191 + t196 * t198);
         let minus_g1_wz_leg4 = t5 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
-        let t234 = t35 * t39 + t43 * t45 + 0.0784 * t62;
-        let minus_rate_dot_2_leg1 = (t234 + t55 * t64) / t37;
+        let t236 = t34 * t39 + t43 * t45 + 0.0784 * t62;
+        let minus_rate_dot_2_leg1 = t37 * (t236 + t55 * t64);
         let g2_wz_leg1 = t5 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t248 = t81 * t39 + t87 * t45 + 0.0784 * t103;
-        let rate_dot_2_leg2 = (t248 + t96 * t105) / t83;
+        let t250 = t84 * t39 + t91 * t45 + 0.0784 * t107;
+        let rate_dot_2_leg2 = t87 * (t250 + t100 * t109);
         let minus_g2_wz_leg2 = t5 * g2_vy_leg2 + t2 * g2_vx_leg2;
-        let t262 = t124 * t129 + t132 * t134 + 0.0784 * t151;
-        let minus_rate_dot_2_leg3 = t127 * (t262 + t144 * t153);
+        let t264 = t128 * t133 + t136 * t138 + 0.0784 * t155;
+        let minus_rate_dot_2_leg3 = t131 * (t264 + t148 * t157);
         let minus_g2_wz_leg3 = t5 * minus_g2_vy_leg3 + t2 * minus_g2_vx_leg3;
-        let t276 = t171 * t129 + t178 * t134 + 0.0784 * t194;
-        let rate_dot_2_leg4 = t174 * (t276 + t187 * t196);
+        let t278 = t173 * t133 + t180 * t138 + 0.0784 * t196;
+        let rate_dot_2_leg4 = t176 * (t278 + t189 * t198);
         let g2_wz_leg4 = t5 * g2_vy_leg4 + t2 * g2_vx_leg4;
-        let t286 = 3.5714285714285716 * t234;
-        let t288 = 3.5714285714285716 * t57;
-        let t297 = 3.5714285714285716 * t248;
-        let t299 = 3.5714285714285716 * t98;
-        let t308 = 3.5714285714285716 * t262;
-        let t310 = 3.5714285714285716 * t146;
-        let t319 = 3.5714285714285716 * t276;
-        let t321 = 3.5714285714285716 * t189;
-        let t330 = rate_1_leg1 + minus_rate_2_leg1;
-        let t331 = g1_vx_leg1 + minus_g2_vx_leg1;
-        let t333 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t335 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t337 = minus_rate_1_leg2 + rate_2_leg2;
-        let t338 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t340 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t342 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t344 = rate_1_leg3 + minus_rate_2_leg3;
-        let t345 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t347 = g1_vy_leg3 + minus_g2_vy_leg3;
-        let t349 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t351 = minus_rate_1_leg4 + rate_2_leg4;
-        let t352 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t354 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t356 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t370 = minus_rate_2_leg1 + twist[2];
-        let t373 = 1.0 - g2_wz_leg1;
-        let t375 = twist[2] - rate_2_leg2;
-        let t378 = minus_g2_wz_leg2 + 1.0;
-        let t380 = minus_rate_2_leg3 + twist[2];
-        let t383 = minus_g2_wz_leg3 + 1.0;
-        let t385 = twist[2] - rate_2_leg4;
-        let t388 = 1.0 - g2_wz_leg4;
+        let t288 = 3.5714285714285716 * t236;
+        let t290 = 3.5714285714285716 * t57;
+        let t299 = 3.5714285714285716 * t250;
+        let t301 = 3.5714285714285716 * t102;
+        let t310 = 3.5714285714285716 * t264;
+        let t312 = 3.5714285714285716 * t150;
+        let t321 = 3.5714285714285716 * t278;
+        let t323 = 3.5714285714285716 * t191;
+        let t332 = rate_1_leg1 + minus_rate_2_leg1;
+        let t333 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t335 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t337 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t339 = minus_rate_1_leg2 + rate_2_leg2;
+        let t340 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t342 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t344 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t346 = rate_1_leg3 + minus_rate_2_leg3;
+        let t347 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t349 = g1_vy_leg3 + minus_g2_vy_leg3;
+        let t351 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t353 = minus_rate_1_leg4 + rate_2_leg4;
+        let t354 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t356 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t358 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t372 = minus_rate_2_leg1 + twist[2];
+        let t375 = 1.0 - g2_wz_leg1;
+        let t377 = twist[2] - rate_2_leg2;
+        let t380 = minus_g2_wz_leg2 + 1.0;
+        let t382 = minus_rate_2_leg3 + twist[2];
+        let t385 = minus_g2_wz_leg3 + 1.0;
+        let t387 = twist[2] - rate_2_leg4;
+        let t390 = 1.0 - g2_wz_leg4;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3442,18 +3442,18 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t286 + minus_g2_vx_leg1 * t288,
-                -(minus_g1_vx_leg2 * t297 + g2_vx_leg2 * t299),
-                g1_vx_leg3 * t308 + minus_g2_vx_leg3 * t310,
-                -(minus_g1_vx_leg4 * t319 + g2_vx_leg4 * t321), t330 * t331, t337 * t338,
-                t344 * t345, t351 * t352, ::overact::math::signed(t331, t330),
-                ::overact::math::signed(t338, t337), ::overact::math::signed(t345, t344),
-                ::overact::math::signed(t352, t351), -t331, t338, -t345, t352,
-                minus_g2_vx_leg1 * t370, -(g2_vx_leg2 * t375), minus_g2_vx_leg3 * t380,
-                -(g2_vx_leg4 * t385), ::overact::math::signed(minus_g2_vx_leg1, t370),
-                -::overact::math::signed(g2_vx_leg2, t375),
-                ::overact::math::signed(minus_g2_vx_leg3, t380),
-                -::overact::math::signed(g2_vx_leg4, t385), minus_g2_vx_leg1,
+                g1_vx_leg1 * t288 + minus_g2_vx_leg1 * t290,
+                -(minus_g1_vx_leg2 * t299 + g2_vx_leg2 * t301),
+                g1_vx_leg3 * t310 + minus_g2_vx_leg3 * t312,
+                -(minus_g1_vx_leg4 * t321 + g2_vx_leg4 * t323), t332 * t333, t339 * t340,
+                t346 * t347, t353 * t354, ::overact::math::signed(t333, t332),
+                ::overact::math::signed(t340, t339), ::overact::math::signed(t347, t346),
+                ::overact::math::signed(t354, t353), -t333, t340, -t347, t354,
+                minus_g2_vx_leg1 * t372, -(g2_vx_leg2 * t377), minus_g2_vx_leg3 * t382,
+                -(g2_vx_leg4 * t387), ::overact::math::signed(minus_g2_vx_leg1, t372),
+                -::overact::math::signed(g2_vx_leg2, t377),
+                ::overact::math::signed(minus_g2_vx_leg3, t382),
+                -::overact::math::signed(g2_vx_leg4, t387), minus_g2_vx_leg1,
             ],
             [
                 0.0, -t13, -t8, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3468,18 +3468,18 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t286 + minus_g2_vy_leg1 * t288,
-                -(minus_g1_vy_leg2 * t297 + g2_vy_leg2 * t299),
-                g1_vy_leg3 * t308 + minus_g2_vy_leg3 * t310,
-                -(minus_g1_vy_leg4 * t319 + g2_vy_leg4 * t321), t330 * t333, t337 * t340,
-                t344 * t347, t351 * t354, ::overact::math::signed(t333, t330),
-                ::overact::math::signed(t340, t337), ::overact::math::signed(t347, t344),
-                ::overact::math::signed(t354, t351), -t333, t340, -t347, t354,
-                minus_g2_vy_leg1 * t370, -(g2_vy_leg2 * t375), minus_g2_vy_leg3 * t380,
-                -(g2_vy_leg4 * t385), ::overact::math::signed(minus_g2_vy_leg1, t370),
-                -::overact::math::signed(g2_vy_leg2, t375),
-                ::overact::math::signed(minus_g2_vy_leg3, t380),
-                -::overact::math::signed(g2_vy_leg4, t385), minus_g2_vy_leg1,
+                g1_vy_leg1 * t288 + minus_g2_vy_leg1 * t290,
+                -(minus_g1_vy_leg2 * t299 + g2_vy_leg2 * t301),
+                g1_vy_leg3 * t310 + minus_g2_vy_leg3 * t312,
+                -(minus_g1_vy_leg4 * t321 + g2_vy_leg4 * t323), t332 * t335, t339 * t342,
+                t346 * t349, t353 * t356, ::overact::math::signed(t335, t332),
+                ::overact::math::signed(t342, t339), ::overact::math::signed(t349, t346),
+                ::overact::math::signed(t356, t353), -t335, t342, -t349, t356,
+                minus_g2_vy_leg1 * t372, -(g2_vy_leg2 * t377), minus_g2_vy_leg3 * t382,
+                -(g2_vy_leg4 * t387), ::overact::math::signed(minus_g2_vy_leg1, t372),
+                -::overact::math::signed(g2_vy_leg2, t377),
+                ::overact::math::signed(minus_g2_vy_leg3, t382),
+                -::overact::math::signed(g2_vy_leg4, t387), minus_g2_vy_leg1,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3494,16 +3494,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t286 + g2_wz_leg1 * t288),
-                g1_wz_leg2 * t297 + minus_g2_wz_leg2 * t299,
-                g1_wz_leg3 * t308 + minus_g2_wz_leg3 * t310,
-                -(minus_g1_wz_leg4 * t319 + g2_wz_leg4 * t321), -(t330 * t335), -(t337 * t342),
-                t344 * t349, t351 * t356, -::overact::math::signed(t335, t330),
-                -::overact::math::signed(t342, t337), ::overact::math::signed(t349, t344),
-                ::overact::math::signed(t356, t351), t335, -t342, -t349, t356, t370 * t373,
-                t375 * t378, t380 * t383, t385 * t388, ::overact::math::signed(t373, t370),
-                ::overact::math::signed(t378, t375), ::overact::math::signed(t383, t380),
-                ::overact::math::signed(t388, t385), t373,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t288 + g2_wz_leg1 * t290),
+                g1_wz_leg2 * t299 + minus_g2_wz_leg2 * t301,
+                g1_wz_leg3 * t310 + minus_g2_wz_leg3 * t312,
+                -(minus_g1_wz_leg4 * t321 + g2_wz_leg4 * t323), -(t332 * t337), -(t339 * t344),
+                t346 * t351, t353 * t358, -::overact::math::signed(t337, t332),
+                -::overact::math::signed(t344, t339), ::overact::math::signed(t351, t346),
+                ::overact::math::signed(t358, t353), t337, -t344, -t351, t358, t372 * t375,
+                t377 * t380, t382 * t385, t387 * t390, ::overact::math::signed(t375, t372),
+                ::overact::math::signed(t380, t377), ::overact::math::signed(t385, t382),
+                ::overact::math::signed(t390, t387), t375,
             ],
         ])
     }
@@ -3735,7 +3735,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 513 operations (195 additions, 289 multiplications, 29 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 413 intermediates.
+    /// 515 operations (194 additions, 298 multiplications, 23 divisions), 4 square roots, 1 trigonometric pairs, 36 signs, 415 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3749,10 +3749,9 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = 0.11 * c_phi;
-        let t4 = t3 + -0.10970563941232059;
-        let t5 = pose[1] - t4;
+        let t5 = pose[1] - (t3 + -0.10970563941232059);
         let t6 = 0.5 * t5;
-        let t7 = t6 + t4;
+        let t7 = pose[1] - t6;
         let t8 = t7 + t7;
         let t9 = pose[0] - t2;
         let t10 = t9 + 0.3950502153918333;
@@ -3780,45 +3779,42 @@ impl DualV {
         let t40 = t8 - t39;
         let t41 = t34 * t37;
         ::overact::guard::leg(t41, 0.07839913810297301, "leg1")?;
-        let g1_vy_leg1 = t40 / t41;
-        let t44 = 0.5 * t32;
-        let t46 = t44 + t8 * t37;
-        let minus_g2_vx_leg1 = t46 / t41;
-        let t48 = t32 / t41;
-        let g1_vx_leg1 = t48 - minus_g2_vx_leg1;
+        let t42 = 1.0 / t41;
+        let g1_vy_leg1 = t40 * t42;
+        let t47 = 0.5 * t32 + t8 * t37;
+        let t48 = t32 - t47;
+        let g1_vx_leg1 = t48 * t42;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t3 * g1_vx_leg1;
-        let t54 = pose[0] - t44;
-        let t55 = t54 + t54;
+        let t54 = pose[0] + t2;
+        let t55 = t54 + 0.3950502153918333;
         let t57 = t5 * t5;
         let t58 = t55 * t55 + t57;
         let t60 = 0.0784 / t58 - 0.25;
         ::overact::guard::reach(t60, "leg3")?;
         let t61 = ::overact::math::sqrt(t60);
         let t63 = t6 - t55 * t61;
-        let t64 = t58 * t61;
-        ::overact::guard::leg(t64, 0.07839913810297301, "leg3")?;
-        let minus_g2_vy_leg3 = t63 / t64;
-        let t66 = t5 / t64;
-        let g1_vy_leg3 = t66 - minus_g2_vy_leg3;
-        let t70 = t54 + t5 * t61;
+        let t64 = t5 - t63;
+        let t65 = t58 * t61;
+        ::overact::guard::leg(t65, 0.07839913810297301, "leg3")?;
+        let g1_vy_leg3 = t64 / t65;
+        let t70 = 0.5 * t55 + t5 * t61;
         let t71 = t55 - t70;
-        let g1_vx_leg3 = t71 / t64;
+        let g1_vx_leg3 = t71 / t65;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t3 * g1_vx_leg3;
-        let t77 = -0.3950502153918333 + t54;
-        let t78 = t77 + t77;
-        let t80 = t78 * t78 + t57;
-        let t82 = 0.0784 / t80 - 0.25;
-        ::overact::guard::reach(t82, "leg4")?;
-        let t83 = ::overact::math::sqrt(t82);
-        let t85 = t6 + t78 * t83;
-        let t86 = t5 - t85;
-        let t87 = t80 * t83;
-        ::overact::guard::leg(t87, 0.07839913810297301, "leg4")?;
-        let t88 = 1.0 / t87;
-        let minus_g1_vy_leg4 = t86 * t88;
-        let t92 = t77 - t5 * t83;
-        let t93 = t78 - t92;
-        let minus_g1_vx_leg4 = t93 * t88;
+        let t77 = t54 - 0.3950502153918333;
+        let t79 = t77 * t77 + t57;
+        let t81 = 0.0784 / t79 - 0.25;
+        ::overact::guard::reach(t81, "leg4")?;
+        let t82 = ::overact::math::sqrt(t81);
+        let t84 = t6 + t77 * t82;
+        let t85 = t5 - t84;
+        let t86 = t79 * t82;
+        ::overact::guard::leg(t86, 0.07839913810297301, "leg4")?;
+        let t87 = 1.0 / t86;
+        let minus_g1_vy_leg4 = t85 * t87;
+        let t92 = 0.5 * t77 - t5 * t82;
+        let t93 = t77 - t92;
+        let minus_g1_vx_leg4 = t93 * t87;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t3 * minus_g1_vx_leg4;
         let t105 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
@@ -3877,8 +3873,8 @@ impl DualV {
         let t204 = t201 * t203;
         let rate_dot_1_leg2 = t21 * (t19 * t174 - t27 * t177 - t196 - t204);
         let t207 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t210 = t32 - t46;
-        let minus_g2_vy_leg1 = t39 / t41;
+        let minus_g2_vx_leg1 = t47 * t42;
+        let minus_g2_vy_leg1 = t39 * t42;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t189 + minus_g2_vy_leg1 * t192;
         let t217 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t218 = 0.0784 * t217;
@@ -3886,102 +3882,104 @@ impl DualV {
         let t223 = rate_1_leg1 * rate_1_leg1;
         let t225 = 0.5 * (t34 - 0.1568);
         let t226 = t223 * t225;
-        let minus_rate_dot_1_leg1 = (t40 * t174 - t210 * t177 - t218 - t226) / t41;
+        let minus_rate_dot_1_leg1 = t42 * (t40 * t174 - t48 * t177 - t218 - t226);
         let t229 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t233 = t5 - t63;
-        let minus_g2_vx_leg3 = t70 / t64;
-        let t237 = t188 + t173;
-        let t239 = t184 + t176;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t237 + minus_g2_vy_leg3 * t239;
-        let t242 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t243 = 0.0784 * t242;
-        let rate_1_leg3 = g1_vx_leg3 * t237 + g1_vy_leg3 * t239;
-        let t248 = rate_1_leg3 * rate_1_leg3;
-        let t250 = 0.5 * (t58 - 0.1568);
-        let t251 = t248 * t250;
-        let minus_rate_dot_1_leg3 = (t71 * t177 - t233 * t174 - t243 - t251) / t64;
-        let t254 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t92 * t88;
-        let g2_vy_leg4 = t85 * t88;
-        let rate_2_leg4 = g2_vx_leg4 * t237 + g2_vy_leg4 * t239;
-        let t265 = rate_2_leg4 * rate_2_leg4;
-        let t266 = 0.0784 * t265;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t237 + minus_g1_vy_leg4 * t239;
-        let t271 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t273 = 0.5 * (t80 - 0.1568);
-        let t274 = t271 * t273;
-        let rate_dot_1_leg4 = t88 * (t93 * t177 - t86 * t174 - t266 - t274);
-        let t277 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t286 = g1_vx_leg1 * t229 - minus_g1_vx_leg2 * t207 + g1_vx_leg3 * t254
-            - minus_g1_vx_leg4 * t277;
-        let t297 = g1_vy_leg1 * t229 - minus_g1_vy_leg2 * t207 + g1_vy_leg3 * t254
-            - minus_g1_vy_leg4 * t277 - t146 * t286;
-        let t299 = g1_wz_leg2 * t207 - minus_g1_wz_leg1 * t229 + g1_wz_leg3 * t254
-            - minus_g1_wz_leg4 * t277 - t120 * t286 - t149 * t297;
-        let rate_dot_3_leg1 = t299 / t171;
-        let t302 = t174 + t2 * rate_dot_3_leg1;
-        let t303 = 9.090909090909092 * t302;
-        let t305 = t177 - t3 * rate_dot_3_leg1;
-        let t306 = 9.090909090909092 * t305;
-        let t309 = t297 / t148 - t149 * rate_dot_3_leg1;
-        let t315 = t286 / t119 - t146 * t309 - t120 * rate_dot_3_leg1;
-        let t321 = t305 + t315;
-        let t323 = t309 - t302;
-        let t326 = t210 * t321 + t40 * t323 + t218;
-        let rate_dot_1_leg1 = (t326 + t226) / t41;
-        let t335 = t27 * t321 + t19 * t323 + t196;
-        let minus_rate_dot_1_leg2 = t21 * (t335 + t204);
-        let t341 = t315 - t305;
-        let t343 = t302 + t309;
-        let t346 = t71 * t341 + t233 * t343 + t243;
-        let rate_dot_1_leg3 = (t346 + t251) / t64;
-        let t355 = t93 * t341 + t86 * t343 + t266;
-        let minus_rate_dot_1_leg4 = t88 * (t355 + t274);
-        let t389 = t46 * t321 + t39 * t323 + 0.0784 * t223;
-        let minus_rate_dot_2_leg1 = (t389 + t217 * t225) / t41;
+        let minus_g2_vx_leg3 = t70 / t65;
+        let t236 = t188 + t173;
+        let t238 = t5 / t65;
+        let minus_g2_vy_leg3 = t238 - g1_vy_leg3;
+        let t240 = t184 + t176;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t236 + minus_g2_vy_leg3 * t240;
+        let t243 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t244 = 0.0784 * t243;
+        let rate_1_leg3 = g1_vx_leg3 * t236 + g1_vy_leg3 * t240;
+        let t249 = rate_1_leg3 * rate_1_leg3;
+        let t251 = 0.5 * (t58 - 0.1568);
+        let t252 = t249 * t251;
+        let minus_rate_dot_1_leg3 = (t71 * t177 - t64 * t174 - t244 - t252) / t65;
+        let t255 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t92 * t87;
+        let g2_vy_leg4 = t84 * t87;
+        let rate_2_leg4 = g2_vx_leg4 * t236 + g2_vy_leg4 * t240;
+        let t266 = rate_2_leg4 * rate_2_leg4;
+        let t267 = 0.0784 * t266;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t236 + minus_g1_vy_leg4 * t240;
+        let t272 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t274 = 0.5 * (t79 - 0.1568);
+        let t275 = t272 * t274;
+        let rate_dot_1_leg4 = t87 * (t93 * t177 - t85 * t174 - t267 - t275);
+        let t278 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t287 = g1_vx_leg1 * t229 - minus_g1_vx_leg2 * t207 + g1_vx_leg3 * t255
+            - minus_g1_vx_leg4 * t278;
+        let t298 = g1_vy_leg1 * t229 - minus_g1_vy_leg2 * t207 + g1_vy_leg3 * t255
+            - minus_g1_vy_leg4 * t278 - t146 * t287;
+        let t300 = g1_wz_leg2 * t207 - minus_g1_wz_leg1 * t229 + g1_wz_leg3 * t255
+            - minus_g1_wz_leg4 * t278 - t120 * t287 - t149 * t298;
+        let rate_dot_3_leg1 = t300 / t171;
+        let t303 = t174 + t2 * rate_dot_3_leg1;
+        let t304 = 9.090909090909092 * t303;
+        let t306 = t177 - t3 * rate_dot_3_leg1;
+        let t307 = 9.090909090909092 * t306;
+        let t310 = t298 / t148 - t149 * rate_dot_3_leg1;
+        let t316 = t287 / t119 - t146 * t310 - t120 * rate_dot_3_leg1;
+        let t322 = t306 + t316;
+        let t324 = t310 - t303;
+        let t327 = t48 * t322 + t40 * t324 + t218;
+        let rate_dot_1_leg1 = t42 * (t327 + t226);
+        let t336 = t27 * t322 + t19 * t324 + t196;
+        let minus_rate_dot_1_leg2 = t21 * (t336 + t204);
+        let t342 = t316 - t306;
+        let t344 = t303 + t310;
+        let t347 = t71 * t342 + t64 * t344 + t244;
+        let rate_dot_1_leg3 = (t347 + t252) / t65;
+        let t356 = t93 * t342 + t85 * t344 + t267;
+        let minus_rate_dot_1_leg4 = t87 * (t356 + t275);
+        let t390 = t47 * t322 + t39 * t324 + 0.0784 * t223;
+        let minus_rate_dot_2_leg1 = t42 * (t390 + t217 * t225);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t3 * minus_g2_vx_leg1;
-        let t403 = t26 * t321 + t18 * t323 + 0.0784 * t201;
-        let rate_dot_2_leg2 = t21 * (t403 + t195 * t203);
+        let t404 = t26 * t322 + t18 * t324 + 0.0784 * t201;
+        let rate_dot_2_leg2 = t21 * (t404 + t195 * t203);
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t3 * g2_vx_leg2;
-        let t417 = t70 * t341 + t63 * t343 + 0.0784 * t248;
-        let minus_rate_dot_2_leg3 = (t417 + t242 * t250) / t64;
+        let t418 = t70 * t342 + t63 * t344 + 0.0784 * t249;
+        let minus_rate_dot_2_leg3 = (t418 + t243 * t251) / t65;
         let minus_g2_wz_leg3 = t2 * minus_g2_vy_leg3 + t3 * minus_g2_vx_leg3;
-        let t431 = t92 * t341 + t85 * t343 + 0.0784 * t271;
-        let rate_dot_2_leg4 = t88 * (t431 + t265 * t273);
+        let t432 = t92 * t342 + t84 * t344 + 0.0784 * t272;
+        let rate_dot_2_leg4 = t87 * (t432 + t266 * t274);
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t3 * g2_vx_leg4;
-        let t441 = 3.5714285714285716 * t389;
-        let t443 = 3.5714285714285716 * t326;
-        let t452 = 3.5714285714285716 * t403;
-        let t454 = 3.5714285714285716 * t335;
-        let t463 = 3.5714285714285716 * t417;
-        let t465 = 3.5714285714285716 * t346;
-        let t474 = 3.5714285714285716 * t431;
-        let t476 = 3.5714285714285716 * t355;
-        let t485 = rate_1_leg1 + minus_rate_2_leg1;
-        let t487 = g1_vy_leg1 + minus_g2_vy_leg1;
-        let t489 = minus_g1_wz_leg1 + g2_wz_leg1;
-        let t491 = minus_g1_vx_leg2 + g2_vx_leg2;
-        let t492 = minus_rate_1_leg2 + rate_2_leg2;
-        let t494 = minus_g1_vy_leg2 + g2_vy_leg2;
-        let t496 = g1_wz_leg2 + minus_g2_wz_leg2;
-        let t498 = g1_vx_leg3 + minus_g2_vx_leg3;
-        let t499 = rate_1_leg3 + minus_rate_2_leg3;
-        let t502 = g1_wz_leg3 + minus_g2_wz_leg3;
-        let t504 = minus_g1_vx_leg4 + g2_vx_leg4;
-        let t505 = minus_rate_1_leg4 + rate_2_leg4;
-        let t507 = minus_g1_vy_leg4 + g2_vy_leg4;
-        let t509 = minus_g1_wz_leg4 + g2_wz_leg4;
-        let t523 = minus_rate_2_leg1 + rate_3_leg1;
-        let t526 = 1.0 - g2_wz_leg1;
-        let t528 = rate_3_leg1 - rate_2_leg2;
-        let t531 = minus_g2_wz_leg2 + 1.0;
-        let t533 = minus_rate_2_leg3 + rate_3_leg1;
-        let t536 = minus_g2_wz_leg3 + 1.0;
-        let t538 = rate_3_leg1 - rate_2_leg4;
-        let t541 = 1.0 - g2_wz_leg4;
+        let t442 = 3.5714285714285716 * t390;
+        let t444 = 3.5714285714285716 * t327;
+        let t453 = 3.5714285714285716 * t404;
+        let t455 = 3.5714285714285716 * t336;
+        let t464 = 3.5714285714285716 * t418;
+        let t466 = 3.5714285714285716 * t347;
+        let t475 = 3.5714285714285716 * t432;
+        let t477 = 3.5714285714285716 * t356;
+        let t486 = g1_vx_leg1 + minus_g2_vx_leg1;
+        let t487 = rate_1_leg1 + minus_rate_2_leg1;
+        let t489 = g1_vy_leg1 + minus_g2_vy_leg1;
+        let t491 = minus_g1_wz_leg1 + g2_wz_leg1;
+        let t493 = minus_g1_vx_leg2 + g2_vx_leg2;
+        let t494 = minus_rate_1_leg2 + rate_2_leg2;
+        let t496 = minus_g1_vy_leg2 + g2_vy_leg2;
+        let t498 = g1_wz_leg2 + minus_g2_wz_leg2;
+        let t500 = g1_vx_leg3 + minus_g2_vx_leg3;
+        let t501 = rate_1_leg3 + minus_rate_2_leg3;
+        let t504 = g1_wz_leg3 + minus_g2_wz_leg3;
+        let t506 = minus_g1_vx_leg4 + g2_vx_leg4;
+        let t507 = minus_rate_1_leg4 + rate_2_leg4;
+        let t509 = minus_g1_vy_leg4 + g2_vy_leg4;
+        let t511 = minus_g1_wz_leg4 + g2_wz_leg4;
+        let t525 = minus_rate_2_leg1 + rate_3_leg1;
+        let t528 = 1.0 - g2_wz_leg1;
+        let t530 = rate_3_leg1 - rate_2_leg2;
+        let t533 = minus_g2_wz_leg2 + 1.0;
+        let t535 = minus_rate_2_leg3 + rate_3_leg1;
+        let t538 = minus_g2_wz_leg3 + 1.0;
+        let t540 = rate_3_leg1 - rate_2_leg4;
+        let t543 = 1.0 - g2_wz_leg4;
         Ok([
             [
-                0.0, -t303, t306, t315, g1_vx_leg1 * rate_dot_1_leg1,
+                0.0, -t304, t307, t316, g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4, g1_vx_leg1 * rate_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_1_leg2, g1_vx_leg3 * rate_1_leg3,
@@ -3993,21 +3991,21 @@ impl DualV {
                 -minus_g1_vx_leg2, g1_vx_leg3, -minus_g1_vx_leg4,
                 minus_g2_vx_leg1 * minus_rate_dot_2_leg1, g2_vx_leg2 * rate_dot_2_leg2,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3, g2_vx_leg4 * rate_dot_2_leg4,
-                g1_vx_leg1 * t441 + minus_g2_vx_leg1 * t443,
-                -(minus_g1_vx_leg2 * t452 + g2_vx_leg2 * t454),
-                g1_vx_leg3 * t463 + minus_g2_vx_leg3 * t465,
-                -(minus_g1_vx_leg4 * t474 + g2_vx_leg4 * t476), t48 * t485, t491 * t492,
-                t498 * t499, t504 * t505, ::overact::math::signed(t48, t485),
-                ::overact::math::signed(t491, t492), ::overact::math::signed(t498, t499),
-                ::overact::math::signed(t504, t505), -t48, t491, -t498, t504,
-                minus_g2_vx_leg1 * t523, -(g2_vx_leg2 * t528), minus_g2_vx_leg3 * t533,
-                -(g2_vx_leg4 * t538), ::overact::math::signed(minus_g2_vx_leg1, t523),
-                -::overact::math::signed(g2_vx_leg2, t528),
-                ::overact::math::signed(minus_g2_vx_leg3, t533),
-                -::overact::math::signed(g2_vx_leg4, t538), minus_g2_vx_leg1,
+                g1_vx_leg1 * t442 + minus_g2_vx_leg1 * t444,
+                -(minus_g1_vx_leg2 * t453 + g2_vx_leg2 * t455),
+                g1_vx_leg3 * t464 + minus_g2_vx_leg3 * t466,
+                -(minus_g1_vx_leg4 * t475 + g2_vx_leg4 * t477), t486 * t487, t493 * t494,
+                t500 * t501, t506 * t507, ::overact::math::signed(t486, t487),
+                ::overact::math::signed(t493, t494), ::overact::math::signed(t500, t501),
+                ::overact::math::signed(t506, t507), -t486, t493, -t500, t506,
+                minus_g2_vx_leg1 * t525, -(g2_vx_leg2 * t530), minus_g2_vx_leg3 * t535,
+                -(g2_vx_leg4 * t540), ::overact::math::signed(minus_g2_vx_leg1, t525),
+                -::overact::math::signed(g2_vx_leg2, t530),
+                ::overact::math::signed(minus_g2_vx_leg3, t535),
+                -::overact::math::signed(g2_vx_leg4, t540), minus_g2_vx_leg1,
             ],
             [
-                0.0, -t306, -t303, t309, g1_vy_leg1 * rate_dot_1_leg1,
+                0.0, -t307, -t304, t310, g1_vy_leg1 * rate_dot_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2, g1_vy_leg3 * rate_dot_1_leg3,
                 minus_g1_vy_leg4 * minus_rate_dot_1_leg4, g1_vy_leg1 * rate_1_leg1,
                 minus_g1_vy_leg2 * minus_rate_1_leg2, g1_vy_leg3 * rate_1_leg3,
@@ -4019,21 +4017,21 @@ impl DualV {
                 -minus_g1_vy_leg2, g1_vy_leg3, -minus_g1_vy_leg4,
                 minus_g2_vy_leg1 * minus_rate_dot_2_leg1, g2_vy_leg2 * rate_dot_2_leg2,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3, g2_vy_leg4 * rate_dot_2_leg4,
-                g1_vy_leg1 * t441 + minus_g2_vy_leg1 * t443,
-                -(minus_g1_vy_leg2 * t452 + g2_vy_leg2 * t454),
-                g1_vy_leg3 * t463 + minus_g2_vy_leg3 * t465,
-                -(minus_g1_vy_leg4 * t474 + g2_vy_leg4 * t476), t487 * t485, t494 * t492,
-                t66 * t499, t507 * t505, ::overact::math::signed(t487, t485),
-                ::overact::math::signed(t494, t492), ::overact::math::signed(t66, t499),
-                ::overact::math::signed(t507, t505), -t487, t494, -t66, t507,
-                minus_g2_vy_leg1 * t523, -(g2_vy_leg2 * t528), minus_g2_vy_leg3 * t533,
-                -(g2_vy_leg4 * t538), ::overact::math::signed(minus_g2_vy_leg1, t523),
-                -::overact::math::signed(g2_vy_leg2, t528),
-                ::overact::math::signed(minus_g2_vy_leg3, t533),
-                -::overact::math::signed(g2_vy_leg4, t538), minus_g2_vy_leg1,
+                g1_vy_leg1 * t442 + minus_g2_vy_leg1 * t444,
+                -(minus_g1_vy_leg2 * t453 + g2_vy_leg2 * t455),
+                g1_vy_leg3 * t464 + minus_g2_vy_leg3 * t466,
+                -(minus_g1_vy_leg4 * t475 + g2_vy_leg4 * t477), t489 * t487, t496 * t494,
+                t238 * t501, t509 * t507, ::overact::math::signed(t489, t487),
+                ::overact::math::signed(t496, t494), ::overact::math::signed(t238, t501),
+                ::overact::math::signed(t509, t507), -t489, t496, -t238, t509,
+                minus_g2_vy_leg1 * t525, -(g2_vy_leg2 * t530), minus_g2_vy_leg3 * t535,
+                -(g2_vy_leg4 * t540), ::overact::math::signed(minus_g2_vy_leg1, t525),
+                -::overact::math::signed(g2_vy_leg2, t530),
+                ::overact::math::signed(minus_g2_vy_leg3, t535),
+                -::overact::math::signed(g2_vy_leg4, t540), minus_g2_vy_leg1,
             ],
             [
-                rate_dot_3_leg1, c_phi * t309 - s_phi * t315, -(s_phi * t309 + c_phi * t315), 0.0,
+                rate_dot_3_leg1, c_phi * t310 - s_phi * t316, -(s_phi * t310 + c_phi * t316), 0.0,
                 -(minus_g1_wz_leg1 * rate_dot_1_leg1), -(g1_wz_leg2 * minus_rate_dot_1_leg2),
                 g1_wz_leg3 * rate_dot_1_leg3, minus_g1_wz_leg4 * minus_rate_dot_1_leg4,
                 -(minus_g1_wz_leg1 * rate_1_leg1), -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -4044,16 +4042,16 @@ impl DualV {
                 ::overact::math::signed(minus_g1_wz_leg4, minus_rate_1_leg4), -minus_g1_wz_leg1,
                 g1_wz_leg2, g1_wz_leg3, -minus_g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 -(minus_g2_wz_leg2 * rate_dot_2_leg2), minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t441 + g2_wz_leg1 * t443),
-                g1_wz_leg2 * t452 + minus_g2_wz_leg2 * t454,
-                g1_wz_leg3 * t463 + minus_g2_wz_leg3 * t465,
-                -(minus_g1_wz_leg4 * t474 + g2_wz_leg4 * t476), -(t489 * t485), -(t496 * t492),
-                t502 * t499, t509 * t505, -::overact::math::signed(t489, t485),
-                -::overact::math::signed(t496, t492), ::overact::math::signed(t502, t499),
-                ::overact::math::signed(t509, t505), t489, -t496, -t502, t509, t526 * t523,
-                t531 * t528, t536 * t533, t541 * t538, ::overact::math::signed(t526, t523),
-                ::overact::math::signed(t531, t528), ::overact::math::signed(t536, t533),
-                ::overact::math::signed(t541, t538), t526,
+                g2_wz_leg4 * rate_dot_2_leg4, -(minus_g1_wz_leg1 * t442 + g2_wz_leg1 * t444),
+                g1_wz_leg2 * t453 + minus_g2_wz_leg2 * t455,
+                g1_wz_leg3 * t464 + minus_g2_wz_leg3 * t466,
+                -(minus_g1_wz_leg4 * t475 + g2_wz_leg4 * t477), -(t491 * t487), -(t498 * t494),
+                t504 * t501, t511 * t507, -::overact::math::signed(t491, t487),
+                -::overact::math::signed(t498, t494), ::overact::math::signed(t504, t501),
+                ::overact::math::signed(t511, t507), t491, -t498, -t504, t511, t528 * t525,
+                t533 * t530, t538 * t535, t543 * t540, ::overact::math::signed(t528, t525),
+                ::overact::math::signed(t533, t530), ::overact::math::signed(t538, t535),
+                ::overact::math::signed(t543, t540), t528,
             ],
         ])
     }
@@ -4401,8 +4399,6 @@ impl DualV {
         let t102 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t105 = t58 * t69;
         let t107 = t54 * t69;
-        let t112 = t46 * t77;
-        let t114 = t43 * t77;
         let t124 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t133 = t77 * t124;
         let t142 = t86 + acceleration[0];
@@ -4445,19 +4441,19 @@ impl DualV {
         let t217 = 3.5714285714285716 / s2_leg4;
         let g1_vx_leg4 = c12_leg4 * t217;
         let g1_vy_leg4 = s12_leg4 * t217;
-        let t226 = 2.0 * (g1_vy_leg4 * t114 + g1_vx_leg4 * t112);
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t226;
-        let t229 = g1_vx_leg4 * t92 - g1_vy_leg4 * t82 - minus_g1_wz_leg4 * t70;
+        let g1_wz_leg4 = t43 * g1_vy_leg4 + t46 * g1_vx_leg4;
+        let t227 = g1_vx_leg4 * t92 - g1_vy_leg4 * t82 + g1_wz_leg4 * t70;
         let minus_g2_vx_leg4 = c1_leg4 * t217;
         let minus_g2_vy_leg4 = s1_leg4 * t217;
         let minus_rate_2_leg4 = minus_g2_vx_leg4 * t190 + minus_g2_vy_leg4 * t193;
-        let t238 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let t240 = c12_leg4 * t184 + s12_leg4 * t186 + 0.28 * t238;
+        let t236 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let t238 = c12_leg4 * t184 + s12_leg4 * t186 + 0.28 * t236;
         let rate_1_leg4 = g1_vx_leg4 * t190 + g1_vy_leg4 * t193;
-        let t244 = rate_1_leg4 * rate_1_leg4;
-        let t245 = 0.28 * c2_leg4;
-        let rate_dot_1_leg4 = t217 * (t240 + t244 * t245);
-        let t254 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 - minus_g1_wz_leg4 * t72;
+        let t242 = rate_1_leg4 * rate_1_leg4;
+        let t243 = 0.28 * c2_leg4;
+        let rate_dot_1_leg4 = t217 * (t238 + t242 * t243);
+        let t252 = g1_vy_leg4 * t107 - g1_vx_leg4 * t105 + g1_wz_leg4 * t72;
+        let t255 = 2.0 * (g1_wz_leg4 * t77);
         let g2_wz_leg1 = minus_g2_vy_leg1 * t43 + minus_g2_vx_leg1 * t46;
         let t273 = minus_g2_vy_leg1 * t82 - minus_g2_vx_leg1 * t92 + g2_wz_leg1 * t70;
         let t278 = c1_leg1 * t142 + s1_leg1 * t144 + 0.28 * t160;
@@ -4468,32 +4464,32 @@ impl DualV {
         let t301 = c1_leg2 * t142 + s1_leg2 * t144 + 0.28 * t179;
         let minus_rate_dot_2_leg2 = t10 * (t301 + t173 * t180);
         let t310 = minus_g2_vx_leg2 * t105 - minus_g2_vy_leg2 * t107 + g2_wz_leg2 * t72;
-        let t318 = 2.0 * (minus_g2_vx_leg3 * t112 + minus_g2_vy_leg3 * t114);
-        let minus_minus_g2_wz_leg3 = g1_wz_leg3 * t318;
-        let t321 = minus_g2_vy_leg3 * t82 - minus_g2_vx_leg3 * t92
-            + minus_minus_g2_wz_leg3 * t70;
-        let t326 = c1_leg3 * t184 + s1_leg3 * t186 + 0.28 * t202;
-        let minus_rate_dot_2_leg3 = t22 * (t326 + t196 * t203);
-        let t335 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
-            + minus_minus_g2_wz_leg3 * t72;
-        let t344 = 2.0 * (minus_g2_vx_leg4 * t112 + minus_g2_vy_leg4 * t114);
-        let minus_minus_g2_wz_leg4 = g1_wz_leg3 * t344;
-        let t347 = minus_g2_vy_leg4 * t82 - minus_g2_vx_leg4 * t92
-            + minus_minus_g2_wz_leg4 * t70;
-        let t352 = c1_leg4 * t184 + s1_leg4 * t186 + 0.28 * t244;
-        let minus_rate_dot_2_leg4 = t217 * (t352 + t238 * t245);
-        let t361 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
-            + minus_minus_g2_wz_leg4 * t72;
+        let minus_g2_wz_leg3 = t43 * minus_g2_vy_leg3 + t46 * minus_g2_vx_leg3;
+        let t319 = minus_g2_vy_leg3 * t82 - minus_g2_vx_leg3 * t92
+            - minus_g2_wz_leg3 * t70;
+        let t324 = c1_leg3 * t184 + s1_leg3 * t186 + 0.28 * t202;
+        let minus_rate_dot_2_leg3 = t22 * (t324 + t196 * t203);
+        let t333 = minus_g2_vx_leg3 * t105 - minus_g2_vy_leg3 * t107
+            - minus_g2_wz_leg3 * t72;
+        let t336 = 2.0 * (minus_g2_wz_leg3 * t77);
+        let minus_g2_wz_leg4 = t43 * minus_g2_vy_leg4 + t46 * minus_g2_vx_leg4;
+        let t345 = minus_g2_vy_leg4 * t82 - minus_g2_vx_leg4 * t92
+            - minus_g2_wz_leg4 * t70;
+        let t350 = c1_leg4 * t184 + s1_leg4 * t186 + 0.28 * t242;
+        let minus_rate_dot_2_leg4 = t217 * (t350 + t236 * t243);
+        let t359 = minus_g2_vx_leg4 * t105 - minus_g2_vy_leg4 * t107
+            - minus_g2_wz_leg4 * t72;
+        let t362 = 2.0 * (minus_g2_wz_leg4 * t77);
         let t383 = rate_1_leg1 + minus_rate_2_leg1;
         let t384 = t273 - 1.0;
         let t387 = rate_1_leg2 + minus_rate_2_leg2;
         let t389 = t310 - 1.0;
         let t391 = rate_1_leg3 + minus_rate_2_leg3;
-        let t394 = t318 - 1.0;
+        let t394 = t336 - 1.0;
         let t396 = rate_1_leg4 + minus_rate_2_leg4;
-        let t397 = t347 - t229;
-        let t399 = t361 - t254;
-        let t401 = t226 + t344;
+        let t397 = t345 - t227;
+        let t399 = t359 - t252;
+        let t401 = t255 + t362;
         let t413 = minus_rate_2_leg1 + twist[2];
         let t414 = t70 - t273;
         let t416 = t72 - t287;
@@ -4501,27 +4497,27 @@ impl DualV {
         let t420 = t70 - t296;
         let t422 = t72 - t310;
         let t425 = minus_rate_2_leg3 + twist[2];
-        let t426 = t70 - t321;
-        let t428 = t72 - t335;
-        let t430 = t318 + t77;
+        let t426 = t70 - t319;
+        let t428 = t72 - t333;
+        let t430 = t336 + t77;
         let t432 = minus_rate_2_leg4 + twist[2];
-        let t433 = t70 - t347;
-        let t435 = t72 - t361;
-        let t437 = t344 + t77;
+        let t433 = t70 - t345;
+        let t435 = t72 - t359;
+        let t437 = t362 + t77;
         Ok([
             [
                 t70 * acceleration[2], t82 * t87 - t92 * t97 + t70 * t102,
                 t92 * t87 + t82 * t97 - t70 * t124, t92 * acceleration[0] - t82 * acceleration[1],
-                rate_dot_1_leg1, 0.0, 0.0, t229 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
-                t229 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                ::overact::math::signed(t229, rate_1_leg4), 1.0, 0.0, 0.0, t229,
+                rate_dot_1_leg1, 0.0, 0.0, t227 * rate_dot_1_leg4, rate_1_leg1, 0.0, 0.0,
+                t227 * rate_1_leg4, ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                ::overact::math::signed(t227, rate_1_leg4), 1.0, 0.0, 0.0, t227,
                 -(t273 * minus_rate_dot_2_leg1), -(t296 * minus_rate_dot_2_leg2),
-                -(t321 * minus_rate_dot_2_leg3), -(t347 * minus_rate_dot_2_leg4),
-                t278 - t273 * t156, -(t296 * t175), -(t321 * t198), t229 * t352 - t347 * t240,
-                -(t383 * t384), -(t296 * t387), -(t321 * t391), -(t396 * t397),
+                -(t319 * minus_rate_dot_2_leg3), -(t345 * minus_rate_dot_2_leg4),
+                t278 - t273 * t156, -(t296 * t175), -(t319 * t198), t227 * t350 - t345 * t238,
+                -(t383 * t384), -(t296 * t387), -(t319 * t391), -(t396 * t397),
                 -::overact::math::signed(t384, t383), -::overact::math::signed(t296, t387),
-                -::overact::math::signed(t321, t391), -::overact::math::signed(t397, t396), t384,
-                t296, t321, t397, t413 * t414, t419 * t420, t425 * t426, t432 * t433,
+                -::overact::math::signed(t319, t391), -::overact::math::signed(t397, t396), t384,
+                t296, t319, t397, t413 * t414, t419 * t420, t425 * t426, t432 * t433,
                 ::overact::math::signed(t414, t413), ::overact::math::signed(t420, t419),
                 ::overact::math::signed(t426, t425), ::overact::math::signed(t433, t432), t414,
             ],
@@ -4529,26 +4525,26 @@ impl DualV {
                 t72 * acceleration[2], t105 * t97 - t107 * t87 + t72 * t102,
                 -(t105 * t87 + t107 * t97 + t72 * t124),
                 t107 * acceleration[1] - t105 * acceleration[0], 0.0, rate_dot_1_leg2, 0.0,
-                t254 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t254 * rate_1_leg4, 0.0,
-                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t254, rate_1_leg4),
-                0.0, 1.0, 0.0, t254, -(t287 * minus_rate_dot_2_leg1),
-                -(t310 * minus_rate_dot_2_leg2), -(t335 * minus_rate_dot_2_leg3),
-                -(t361 * minus_rate_dot_2_leg4), -(t287 * t156), t301 - t310 * t175, -(t335 * t198),
-                t254 * t352 - t361 * t240, -(t287 * t383), -(t387 * t389), -(t335 * t391),
+                t252 * rate_dot_1_leg4, 0.0, rate_1_leg2, 0.0, t252 * rate_1_leg4, 0.0,
+                ::overact::math::sign(rate_1_leg2), 0.0, ::overact::math::signed(t252, rate_1_leg4),
+                0.0, 1.0, 0.0, t252, -(t287 * minus_rate_dot_2_leg1),
+                -(t310 * minus_rate_dot_2_leg2), -(t333 * minus_rate_dot_2_leg3),
+                -(t359 * minus_rate_dot_2_leg4), -(t287 * t156), t301 - t310 * t175, -(t333 * t198),
+                t252 * t350 - t359 * t238, -(t287 * t383), -(t387 * t389), -(t333 * t391),
                 -(t396 * t399), -::overact::math::signed(t287, t383),
-                -::overact::math::signed(t389, t387), -::overact::math::signed(t335, t391),
-                -::overact::math::signed(t399, t396), t287, t389, t335, t399, t413 * t416,
+                -::overact::math::signed(t389, t387), -::overact::math::signed(t333, t391),
+                -::overact::math::signed(t399, t396), t287, t389, t333, t399, t413 * t416,
                 t419 * t422, t425 * t428, t432 * t435, ::overact::math::signed(t416, t413),
                 ::overact::math::signed(t422, t419), ::overact::math::signed(t428, t425),
                 ::overact::math::signed(t435, t432), t416,
             ],
             [
-                -t78, t112 * t97 + t114 * t87 - t77 * t102, 0.11 * t78 + t133, -(0.11 * t133), 0.0,
-                0.0, rate_dot_1_leg3, -(t226 * rate_dot_1_leg4), 0.0, 0.0, rate_1_leg3,
-                -(t226 * rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                -::overact::math::signed(t226, rate_1_leg4), 0.0, 0.0, 1.0, -t226, 0.0, 0.0,
-                -(t318 * minus_rate_dot_2_leg3), -(t344 * minus_rate_dot_2_leg4), 0.0, 0.0,
-                t326 - t318 * t198, -(t226 * t352 + t344 * t240), 0.0, 0.0, -(t391 * t394),
+                -t78, t46 * t77 * t97 + t43 * t77 * t87 - t77 * t102, 0.11 * t78 + t133,
+                -(0.11 * t133), 0.0, 0.0, rate_dot_1_leg3, -(t255 * rate_dot_1_leg4), 0.0, 0.0,
+                rate_1_leg3, -(t255 * rate_1_leg4), 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                -::overact::math::signed(t255, rate_1_leg4), 0.0, 0.0, 1.0, -t255, 0.0, 0.0,
+                -(t336 * minus_rate_dot_2_leg3), -(t362 * minus_rate_dot_2_leg4), 0.0, 0.0,
+                t324 - t336 * t198, -(t255 * t350 + t362 * t238), 0.0, 0.0, -(t391 * t394),
                 -(t396 * t401), 0.0, 0.0, -::overact::math::signed(t394, t391),
                 -::overact::math::signed(t401, t396), 0.0, 0.0, t394, t401, -(t77 * t413),
                 -(t77 * t419), -(t425 * t430), -(t432 * t437), -::overact::math::signed(t77, t413),
@@ -4568,7 +4564,7 @@ impl DualV {
     /// Output: 3 x 49.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 608 operations (228 additions, 368 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 532 intermediates.
+    /// 612 operations (229 additions, 371 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 536 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4618,284 +4614,286 @@ impl DualV {
         let t46 = 0.5 * t25 + t22 * t31;
         let t47 = t25 - t46;
         let g1_vx_leg3 = t47 * t36;
-        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
-        let t54 = t3 - 0.3950502153918333;
-        let t57 = t54 * t54 + t10;
-        let t59 = 0.0784 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg1")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t54 + t8 * t60;
-        let t63 = t54 - t62;
-        let t64 = t57 * t60;
-        ::overact::guard::leg(t64, 0.07839913810297301, "leg1")?;
-        let t65 = 1.0 / t64;
-        let g1_vx_leg1 = t63 * t65;
-        let t69 = t39 - t54 * t60;
-        let t70 = t8 - t69;
-        let g1_vy_leg1 = t70 * t65;
-        let t73 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
-        let t74 = g1_wz_leg3 * t73;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        ::overact::guard::platform(t74, 3.5376915986291904, "kept actuators")?;
-        let t75 = 0.5 / t74;
-        let t76 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t75;
+        let t51 = t3 - 0.3950502153918333;
+        let t54 = t51 * t51 + t10;
+        let t56 = 0.0784 / t54 - 0.25;
+        ::overact::guard::reach(t56, "leg1")?;
+        let t57 = ::overact::math::sqrt(t56);
+        let t59 = 0.5 * t51 + t8 * t57;
+        let t60 = t51 - t59;
+        let t61 = t54 * t57;
+        ::overact::guard::leg(t61, 0.07839913810297301, "leg1")?;
+        let t62 = 1.0 / t61;
+        let g1_vx_leg1 = t60 * t62;
+        let t66 = t39 - t51 * t57;
+        let t67 = t8 - t66;
+        let g1_vy_leg1 = t67 * t62;
+        let t70 = g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * minus_g1_vx_leg2;
+        let t71 = t6 * t70;
+        let t73 = t2 * t70;
+        let t75 = g1_vx_leg3 * t71 + g1_vy_leg3 * t73;
+        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
+        ::overact::guard::platform(t75, 3.5376915986291904, "kept actuators")?;
+        let t76 = 0.5 / t75;
+        let t77 = (minus_g1_vx_leg2 * g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3) * t76;
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
-        let t88 = t24 - 0.3950502153918333;
-        let t90 = t88 * t88 + t27;
-        let t92 = 0.0784 / t90 - 0.25;
-        ::overact::guard::reach(t92, "leg4")?;
-        let t93 = ::overact::math::sqrt(t92);
-        let t95 = t23 + t88 * t93;
-        let t96 = t22 - t95;
-        let t97 = t90 * t93;
-        ::overact::guard::leg(t97, 0.07839913810297301, "leg4")?;
-        let t98 = 1.0 / t97;
-        let minus_g1_vy_leg4 = t96 * t98;
-        let t100 = t73 * t75;
-        let t101 = t2 * t100;
-        let t105 = 0.5 * t88 - t22 * t93;
-        let t106 = t88 - t105;
-        let minus_g1_vx_leg4 = t106 * t98;
-        let t108 = t6 * t100;
-        let t110 = minus_g1_vy_leg4 * t101 + minus_g1_vx_leg4 * t108;
-        let t111 = 2.0 * t110;
-        let minus_g1_wz_leg4 = g1_wz_leg3 * t111;
-        let t121 = g1_vx_leg3 * g1_wz_leg3
+        let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
+        let t92 = t24 - 0.3950502153918333;
+        let t94 = t92 * t92 + t27;
+        let t96 = 0.0784 / t94 - 0.25;
+        ::overact::guard::reach(t96, "leg4")?;
+        let t97 = ::overact::math::sqrt(t96);
+        let t99 = t23 + t92 * t97;
+        let t100 = t22 - t99;
+        let t101 = t94 * t97;
+        ::overact::guard::leg(t101, 0.07839913810297301, "leg4")?;
+        let t102 = 1.0 / t101;
+        let minus_g1_vy_leg4 = t100 * t102;
+        let t107 = 0.5 * t92 - t22 * t97;
+        let t108 = t92 - t107;
+        let minus_g1_vx_leg4 = t108 * t102;
+        let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
+        let t120 = g1_vx_leg3 * g1_wz_leg3
             - (g1_vx_leg1 * minus_g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2)
             + minus_g1_vx_leg4 * minus_g1_wz_leg4;
-        let t128 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t127 = g1_vx_leg1 * g1_vx_leg1 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3 + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t128, 25.429161076750646, "actuators")?;
-        ::overact::guard::platform(t128, 25.429161076750646, "actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = t121 * t129;
-        let t146 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t127, 25.429161076750646, "actuators")?;
+        ::overact::guard::platform(t127, 25.429161076750646, "actuators")?;
+        let t128 = 1.0 / t127;
+        let t129 = t120 * t128;
+        let t145 = g1_vx_leg1 * g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * g1_vy_leg3 + minus_g1_vx_leg4 * minus_g1_vy_leg4;
-        let t148 = g1_vy_leg3 * g1_wz_leg3
+        let t147 = g1_vy_leg3 * g1_wz_leg3
             - (g1_vy_leg1 * minus_g1_wz_leg1 + minus_g1_vy_leg2 * g1_wz_leg2)
-            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t146 * t130;
-        let t156 = t146 * t129;
-        let t158 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg4 * minus_g1_wz_leg4 - t145 * t129;
+        let t155 = t145 * t128;
+        let t157 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + g1_vy_leg3 * g1_vy_leg3 + minus_g1_vy_leg4 * minus_g1_vy_leg4
-            - t146 * t156;
-        ::overact::guard::platform(t158, 25.592368899353342, "actuators")?;
-        ::overact::guard::platform(t158, 25.592368899353342, "actuators")?;
-        let t159 = 1.0 / t158;
-        let t160 = t148 * t159;
-        let t162 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t121 * t130
-            - t148 * t160;
-        ::overact::guard::platform(t162, 0.3076928490286828, "actuators")?;
-        ::overact::guard::platform(t162, 0.3076928490286828, "actuators")?;
-        let t163 = 1.0 / t162;
-        let t177 = g1_vx_leg1 * actuator_velocities[0]
+            - t145 * t155;
+        ::overact::guard::platform(t157, 25.592368899353342, "actuators")?;
+        ::overact::guard::platform(t157, 25.592368899353342, "actuators")?;
+        let t158 = 1.0 / t157;
+        let t159 = t147 * t158;
+        let t161 = minus_g1_wz_leg1 * minus_g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + minus_g1_wz_leg4 * minus_g1_wz_leg4 - t120 * t129
+            - t147 * t159;
+        ::overact::guard::platform(t161, 0.3076928490286828, "actuators")?;
+        ::overact::guard::platform(t161, 0.3076928490286828, "actuators")?;
+        let t162 = 1.0 / t161;
+        let t176 = g1_vx_leg1 * actuator_velocities[0]
             - minus_g1_vx_leg2 * actuator_velocities[1]
             + g1_vx_leg3 * actuator_velocities[2]
             - minus_g1_vx_leg4 * actuator_velocities[3];
-        let t188 = g1_vy_leg1 * actuator_velocities[0]
+        let t187 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             + g1_vy_leg3 * actuator_velocities[2]
-            - minus_g1_vy_leg4 * actuator_velocities[3] - t177 * t156;
-        let t190 = g1_wz_leg2 * actuator_velocities[1]
+            - minus_g1_vy_leg4 * actuator_velocities[3] - t176 * t155;
+        let t189 = g1_wz_leg2 * actuator_velocities[1]
             - minus_g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg3 * actuator_velocities[2]
-            - minus_g1_wz_leg4 * actuator_velocities[3] - t177 * t130 - t160 * t188;
-        let rate_3_leg1 = t163 * t190;
-        let t192 = t6 * rate_3_leg1;
-        let t193 = rate_3_leg1 * t192;
-        let t195 = t2 * rate_3_leg1;
-        let t196 = rate_3_leg1 * t195;
+            - minus_g1_wz_leg4 * actuator_velocities[3] - t176 * t129 - t159 * t187;
+        let rate_3_leg1 = t162 * t189;
+        let t191 = t6 * rate_3_leg1;
+        let t192 = rate_3_leg1 * t191;
+        let t194 = t2 * rate_3_leg1;
+        let t195 = rate_3_leg1 * t194;
         let g2_vx_leg2 = t16 * t19;
-        let t203 = t159 * t188 - t160 * rate_3_leg1;
-        let t207 = t177 * t129 - t156 * t203 - t130 * rate_3_leg1;
-        let t208 = t207 - t192;
+        let t202 = t158 * t187 - t159 * rate_3_leg1;
+        let t206 = t176 * t128 - t155 * t202 - t129 * rate_3_leg1;
+        let t207 = t206 - t191;
         let g2_vy_leg2 = t41 * t19;
-        let t211 = t203 - t195;
-        let rate_2_leg2 = g2_vx_leg2 * t208 + g2_vy_leg2 * t211;
-        let t214 = rate_2_leg2 * rate_2_leg2;
-        let t215 = 0.0784 * t214;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t208 + minus_g1_vy_leg2 * t211;
-        let t220 = minus_rate_1_leg2 * minus_rate_1_leg2;
-        let t222 = 0.5 * (t11 - 0.1568);
-        let t223 = t220 * t222;
-        let rate_dot_1_leg2 = t19 * (t42 * t193 - t17 * t196 - t215 - t223);
-        let t226 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t62 * t65;
-        let minus_g2_vy_leg1 = t69 * t65;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t208 + minus_g2_vy_leg1 * t211;
-        let t236 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t237 = 0.0784 * t236;
-        let rate_1_leg1 = g1_vx_leg1 * t208 + g1_vy_leg1 * t211;
-        let t242 = rate_1_leg1 * rate_1_leg1;
-        let t244 = 0.5 * (t57 - 0.1568);
-        let t245 = t242 * t244;
-        let minus_rate_dot_1_leg1 = t65 * (t70 * t193 - t63 * t196 - t237 - t245);
-        let t248 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t210 = t202 - t194;
+        let rate_2_leg2 = g2_vx_leg2 * t207 + g2_vy_leg2 * t210;
+        let t213 = rate_2_leg2 * rate_2_leg2;
+        let t214 = 0.0784 * t213;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t207 + minus_g1_vy_leg2 * t210;
+        let t219 = minus_rate_1_leg2 * minus_rate_1_leg2;
+        let t221 = 0.5 * (t11 - 0.1568);
+        let t222 = t219 * t221;
+        let rate_dot_1_leg2 = t19 * (t42 * t192 - t17 * t195 - t214 - t222);
+        let t225 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let minus_g2_vx_leg1 = t59 * t62;
+        let minus_g2_vy_leg1 = t66 * t62;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t207 + minus_g2_vy_leg1 * t210;
+        let t235 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t236 = 0.0784 * t235;
+        let rate_1_leg1 = g1_vx_leg1 * t207 + g1_vy_leg1 * t210;
+        let t241 = rate_1_leg1 * rate_1_leg1;
+        let t243 = 0.5 * (t54 - 0.1568);
+        let t244 = t241 * t243;
+        let minus_rate_dot_1_leg1 = t62 * (t67 * t192 - t60 * t195 - t236 - t244);
+        let t247 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
         let minus_g2_vx_leg3 = t46 * t36;
-        let t255 = t207 + t192;
+        let t254 = t206 + t191;
         let minus_g2_vy_leg3 = t33 * t36;
-        let t258 = t203 + t195;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t255 + minus_g2_vy_leg3 * t258;
-        let t261 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t262 = 0.0784 * t261;
-        let rate_1_leg3 = g1_vx_leg3 * t255 + g1_vy_leg3 * t258;
-        let t267 = rate_1_leg3 * rate_1_leg3;
-        let t269 = 0.5 * (t28 - 0.1568);
-        let t270 = t267 * t269;
-        let minus_rate_dot_1_leg3 = t36 * (t47 * t196 - t34 * t193 - t262 - t270);
-        let t273 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = t105 * t98;
-        let g2_vy_leg4 = t95 * t98;
-        let rate_2_leg4 = g2_vx_leg4 * t255 + g2_vy_leg4 * t258;
-        let t284 = rate_2_leg4 * rate_2_leg4;
-        let t285 = 0.0784 * t284;
-        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t255 + minus_g1_vy_leg4 * t258;
-        let t290 = minus_rate_1_leg4 * minus_rate_1_leg4;
-        let t292 = 0.5 * (t90 - 0.1568);
-        let t293 = t290 * t292;
-        let rate_dot_1_leg4 = t98 * (t106 * t196 - t96 * t193 - t285 - t293);
-        let t296 = actuator_accelerations[3] - rate_dot_1_leg4;
-        let t305 = g1_vx_leg1 * t248 - minus_g1_vx_leg2 * t226 + g1_vx_leg3 * t273
-            - minus_g1_vx_leg4 * t296;
-        let t316 = g1_vy_leg1 * t248 - minus_g1_vy_leg2 * t226 + g1_vy_leg3 * t273
-            - minus_g1_vy_leg4 * t296 - t156 * t305;
-        let t318 = g1_wz_leg2 * t226 - minus_g1_wz_leg1 * t248 + g1_wz_leg3 * t273
-            - minus_g1_wz_leg4 * t296 - t130 * t305 - t160 * t316;
-        let rate_dot_3_leg1 = t163 * t318;
-        let t324 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t75;
-        let t326 = t100 * rate_dot_3_leg1;
-        let t330 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t75;
-        let t332 = t196 - t6 * rate_dot_3_leg1;
+        let t257 = t202 + t194;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t254 + minus_g2_vy_leg3 * t257;
+        let t260 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t261 = 0.0784 * t260;
+        let rate_1_leg3 = g1_vx_leg3 * t254 + g1_vy_leg3 * t257;
+        let t266 = rate_1_leg3 * rate_1_leg3;
+        let t268 = 0.5 * (t28 - 0.1568);
+        let t269 = t266 * t268;
+        let minus_rate_dot_1_leg3 = t36 * (t47 * t195 - t34 * t192 - t261 - t269);
+        let t272 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = t107 * t102;
+        let g2_vy_leg4 = t99 * t102;
+        let rate_2_leg4 = g2_vx_leg4 * t254 + g2_vy_leg4 * t257;
+        let t283 = rate_2_leg4 * rate_2_leg4;
+        let t284 = 0.0784 * t283;
+        let minus_rate_1_leg4 = minus_g1_vx_leg4 * t254 + minus_g1_vy_leg4 * t257;
+        let t289 = minus_rate_1_leg4 * minus_rate_1_leg4;
+        let t291 = 0.5 * (t94 - 0.1568);
+        let t292 = t289 * t291;
+        let rate_dot_1_leg4 = t102 * (t108 * t195 - t100 * t192 - t284 - t292);
+        let t295 = actuator_accelerations[3] - rate_dot_1_leg4;
+        let t304 = g1_vx_leg1 * t247 - minus_g1_vx_leg2 * t225 + g1_vx_leg3 * t272
+            - minus_g1_vx_leg4 * t295;
+        let t315 = g1_vy_leg1 * t247 - minus_g1_vy_leg2 * t225 + g1_vy_leg3 * t272
+            - minus_g1_vy_leg4 * t295 - t155 * t304;
+        let t317 = g1_wz_leg2 * t225 - minus_g1_wz_leg1 * t247 + g1_wz_leg3 * t272
+            - minus_g1_wz_leg4 * t295 - t129 * t304 - t159 * t315;
+        let rate_dot_3_leg1 = t162 * t317;
+        let t323 = (g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3) * t76;
+        let t325 = t70 * t76;
+        let t326 = t325 * rate_dot_3_leg1;
+        let t330 = (g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t76;
+        let t332 = t195 - t6 * rate_dot_3_leg1;
         let t333 = 9.090909090909092 * t332;
-        let t338 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t75;
-        let t340 = t193 + t2 * rate_dot_3_leg1;
+        let t338 = (g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t76;
+        let t340 = t192 + t2 * rate_dot_3_leg1;
         let t341 = 9.090909090909092 * t340;
-        let t346 = t159 * t316 - t160 * rate_dot_3_leg1;
-        let t352 = t129 * t305 - t156 * t346 - t130 * rate_dot_3_leg1;
+        let t346 = t158 * t315 - t159 * rate_dot_3_leg1;
+        let t352 = t128 * t304 - t155 * t346 - t129 * rate_dot_3_leg1;
         let t354 = c_phi * t346 - s_phi * t352;
-        let t360 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t75;
-        let t365 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t75;
-        let t380 = s_phi * t346 + c_phi * t352;
-        let t389 = t100 * t380;
-        let t398 = t332 + t352;
-        let t400 = t346 - t340;
-        let t403 = t63 * t398 + t70 * t400 + t237;
-        let rate_dot_1_leg1 = t65 * (t403 + t245);
-        let t409 = t17 * t398 + t42 * t400 + t215;
-        let minus_rate_dot_1_leg2 = t19 * (t409 + t223);
-        let t412 = t352 - t332;
-        let t414 = t340 + t346;
-        let t417 = t47 * t412 + t34 * t414 + t262;
-        let rate_dot_1_leg3 = t36 * (t417 + t270);
-        let t424 = minus_g1_vy_leg4 * t330 - minus_g1_vx_leg4 * t338
-            - minus_g1_wz_leg4 * t76;
-        let t428 = t106 * t412 + t96 * t414 + t285;
-        let minus_rate_dot_1_leg4 = t98 * (t428 + t293);
-        let t436 = minus_g1_vy_leg4 * t360 - minus_g1_vx_leg4 * t365
-            + minus_g1_wz_leg4 * t324;
+        let t360 = (minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t76;
+        let t365 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t76;
+        let t370 = t73 * t76;
+        let t372 = t71 * t76;
+        let t382 = s_phi * t346 + c_phi * t352;
+        let t391 = t325 * t382;
+        let t400 = t332 + t352;
+        let t402 = t346 - t340;
+        let t405 = t60 * t400 + t67 * t402 + t236;
+        let rate_dot_1_leg1 = t62 * (t405 + t244);
+        let t411 = t17 * t400 + t42 * t402 + t214;
+        let minus_rate_dot_1_leg2 = t19 * (t411 + t222);
+        let t414 = t352 - t332;
+        let t416 = t340 + t346;
+        let t419 = t47 * t414 + t34 * t416 + t261;
+        let rate_dot_1_leg3 = t36 * (t419 + t269);
+        let t426 = minus_g1_vy_leg4 * t330 - minus_g1_vx_leg4 * t338
+            - minus_g1_wz_leg4 * t77;
+        let t430 = t108 * t414 + t100 * t416 + t284;
+        let minus_rate_dot_1_leg4 = t102 * (t430 + t292);
+        let t438 = minus_g1_vy_leg4 * t360 - minus_g1_vx_leg4 * t365
+            + minus_g1_wz_leg4 * t323;
+        let t440 = minus_g1_wz_leg4 * t325;
+        let t441 = 2.0 * t440;
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t6 * minus_g2_vx_leg1;
-        let t455 = minus_g2_vy_leg1 * t330 - minus_g2_vx_leg1 * t338 + g2_wz_leg1 * t76;
-        let t460 = t62 * t398 + t69 * t400 + 0.0784 * t242;
-        let minus_rate_dot_2_leg1 = t65 * (t460 + t236 * t244);
-        let t469 = minus_g2_vy_leg1 * t360 - minus_g2_vx_leg1 * t365 - g2_wz_leg1 * t324;
+        let t459 = minus_g2_vy_leg1 * t330 - minus_g2_vx_leg1 * t338 + g2_wz_leg1 * t77;
+        let t464 = t59 * t400 + t66 * t402 + 0.0784 * t241;
+        let minus_rate_dot_2_leg1 = t62 * (t464 + t235 * t243);
+        let t473 = minus_g2_vy_leg1 * t360 - minus_g2_vx_leg1 * t365 - g2_wz_leg1 * t323;
         let minus_g2_wz_leg2 = t2 * g2_vy_leg2 + t6 * g2_vx_leg2;
-        let t478 = g2_vx_leg2 * t338 - g2_vy_leg2 * t330 - minus_g2_wz_leg2 * t76;
-        let t483 = t16 * t398 + t41 * t400 + 0.0784 * t220;
-        let rate_dot_2_leg2 = t19 * (t483 + t214 * t222);
-        let t492 = g2_vx_leg2 * t365 - g2_vy_leg2 * t360 + minus_g2_wz_leg2 * t324;
-        let t500 = 2.0 * (minus_g2_vy_leg3 * t101 + minus_g2_vx_leg3 * t108);
-        let minus_g2_wz_leg3 = g1_wz_leg3 * t500;
-        let t503 = minus_g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t338
-            - minus_g2_wz_leg3 * t76;
-        let t508 = t46 * t412 + t33 * t414 + 0.0784 * t267;
-        let minus_rate_dot_2_leg3 = t36 * (t508 + t261 * t269);
-        let t517 = minus_g2_vy_leg3 * t360 - minus_g2_vx_leg3 * t365
-            + minus_g2_wz_leg3 * t324;
-        let t525 = g2_vx_leg4 * t108 + g2_vy_leg4 * t101;
-        let t526 = 2.0 * t525;
-        let g2_wz_leg4 = g1_wz_leg3 * t526;
-        let t529 = g2_vx_leg4 * t338 - g2_vy_leg4 * t330 + g2_wz_leg4 * t76;
-        let t534 = t105 * t412 + t95 * t414 + 0.0784 * t290;
-        let rate_dot_2_leg4 = t98 * (t534 + t284 * t292);
-        let t543 = g2_vx_leg4 * t365 - g2_vy_leg4 * t360 - g2_wz_leg4 * t324;
-        let t547 = 3.5714285714285716 * t403;
-        let t551 = 3.5714285714285716 * t409;
-        let t556 = 3.5714285714285716 * t417;
-        let t562 = 3.5714285714285716 * t534;
-        let t564 = 3.5714285714285716 * t428;
-        let t574 = rate_1_leg1 + minus_rate_2_leg1;
-        let t575 = t455 - 1.0;
-        let t578 = minus_rate_1_leg2 + rate_2_leg2;
-        let t580 = t492 - 1.0;
-        let t582 = rate_1_leg3 + minus_rate_2_leg3;
-        let t585 = t500 + 1.0;
-        let t587 = minus_rate_1_leg4 + rate_2_leg4;
-        let t588 = t529 - t424;
-        let t590 = t543 - t436;
-        let t592 = t111 + t526;
-        let t604 = minus_rate_2_leg1 + rate_3_leg1;
-        let t605 = t76 - t455;
-        let t607 = t469 + t324;
-        let t610 = rate_3_leg1 - rate_2_leg2;
-        let t611 = t76 - t478;
-        let t613 = t492 + t324;
-        let t616 = minus_rate_2_leg3 + rate_3_leg1;
-        let t617 = t76 - t503;
-        let t619 = t517 + t324;
-        let t621 = t100 + t500;
-        let t623 = rate_3_leg1 - rate_2_leg4;
-        let t624 = t76 - t529;
-        let t626 = t543 + t324;
-        let t628 = t100 - t526;
+        let t482 = g2_vx_leg2 * t338 - g2_vy_leg2 * t330 - minus_g2_wz_leg2 * t77;
+        let t487 = t16 * t400 + t41 * t402 + 0.0784 * t219;
+        let rate_dot_2_leg2 = t19 * (t487 + t213 * t221);
+        let t496 = g2_vx_leg2 * t365 - g2_vy_leg2 * t360 + minus_g2_wz_leg2 * t323;
+        let t504 = 2.0 * (minus_g2_vy_leg3 * t370 + minus_g2_vx_leg3 * t372);
+        let minus_g2_wz_leg3 = g1_wz_leg3 * t504;
+        let t507 = minus_g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t338
+            - minus_g2_wz_leg3 * t77;
+        let t512 = t46 * t414 + t33 * t416 + 0.0784 * t266;
+        let minus_rate_dot_2_leg3 = t36 * (t512 + t260 * t268);
+        let t521 = minus_g2_vy_leg3 * t360 - minus_g2_vx_leg3 * t365
+            + minus_g2_wz_leg3 * t323;
+        let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
+        let t531 = g2_vx_leg4 * t338 - g2_vy_leg4 * t330 + g2_wz_leg4 * t77;
+        let t536 = t107 * t414 + t99 * t416 + 0.0784 * t289;
+        let rate_dot_2_leg4 = t102 * (t536 + t283 * t291);
+        let t545 = g2_vx_leg4 * t365 - g2_vy_leg4 * t360 - g2_wz_leg4 * t323;
+        let t547 = g2_wz_leg4 * t325;
+        let t548 = 2.0 * t547;
+        let t551 = 3.5714285714285716 * t405;
+        let t555 = 3.5714285714285716 * t411;
+        let t560 = 3.5714285714285716 * t419;
+        let t566 = 3.5714285714285716 * t536;
+        let t568 = 3.5714285714285716 * t430;
+        let t578 = rate_1_leg1 + minus_rate_2_leg1;
+        let t579 = t459 - 1.0;
+        let t582 = minus_rate_1_leg2 + rate_2_leg2;
+        let t584 = t496 - 1.0;
+        let t586 = rate_1_leg3 + minus_rate_2_leg3;
+        let t589 = t504 + 1.0;
+        let t591 = minus_rate_1_leg4 + rate_2_leg4;
+        let t592 = t531 - t426;
+        let t594 = t545 - t438;
+        let t596 = t441 + t548;
+        let t608 = minus_rate_2_leg1 + rate_3_leg1;
+        let t609 = t77 - t459;
+        let t611 = t473 + t323;
+        let t614 = rate_3_leg1 - rate_2_leg2;
+        let t615 = t77 - t482;
+        let t617 = t496 + t323;
+        let t620 = minus_rate_2_leg3 + rate_3_leg1;
+        let t621 = t77 - t507;
+        let t623 = t521 + t323;
+        let t625 = t325 + t504;
+        let t627 = rate_3_leg1 - rate_2_leg4;
+        let t628 = t77 - t531;
+        let t630 = t545 + t323;
+        let t632 = t325 - t548;
         Ok([
             [
-                t76 * rate_dot_3_leg1, t330 * t333 - t338 * t341 + t76 * t354,
-                t338 * t333 + t330 * t341 - t76 * t380, t338 * t352 - t330 * t346, rate_dot_1_leg1,
-                0.0, 0.0, -(t424 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
-                -(t424 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
-                -::overact::math::signed(t424, minus_rate_1_leg4), 1.0, 0.0, 0.0, t424,
-                -(t455 * minus_rate_dot_2_leg1), t478 * rate_dot_2_leg2,
-                -(t503 * minus_rate_dot_2_leg3), t529 * rate_dot_2_leg4,
-                3.5714285714285716 * t460 - t455 * t547, -(t478 * t551), -(t503 * t556),
-                t424 * t562 - t529 * t564, -(t574 * t575), t478 * t578, -(t503 * t582), t587 * t588,
-                -::overact::math::signed(t575, t574), ::overact::math::signed(t478, t578),
-                -::overact::math::signed(t503, t582), ::overact::math::signed(t588, t587), t575,
-                t478, t503, t588, t604 * t605, t610 * t611, t616 * t617, t623 * t624,
-                ::overact::math::signed(t605, t604), ::overact::math::signed(t611, t610),
-                ::overact::math::signed(t617, t616), ::overact::math::signed(t624, t623), t605,
+                t77 * rate_dot_3_leg1, t330 * t333 - t338 * t341 + t77 * t354,
+                t338 * t333 + t330 * t341 - t77 * t382, t338 * t352 - t330 * t346, rate_dot_1_leg1,
+                0.0, 0.0, -(t426 * minus_rate_dot_1_leg4), rate_1_leg1, 0.0, 0.0,
+                -(t426 * minus_rate_1_leg4), ::overact::math::sign(rate_1_leg1), 0.0, 0.0,
+                -::overact::math::signed(t426, minus_rate_1_leg4), 1.0, 0.0, 0.0, t426,
+                -(t459 * minus_rate_dot_2_leg1), t482 * rate_dot_2_leg2,
+                -(t507 * minus_rate_dot_2_leg3), t531 * rate_dot_2_leg4,
+                3.5714285714285716 * t464 - t459 * t551, -(t482 * t555), -(t507 * t560),
+                t426 * t566 - t531 * t568, -(t578 * t579), t482 * t582, -(t507 * t586), t591 * t592,
+                -::overact::math::signed(t579, t578), ::overact::math::signed(t482, t582),
+                -::overact::math::signed(t507, t586), ::overact::math::signed(t592, t591), t579,
+                t482, t507, t592, t608 * t609, t614 * t615, t620 * t621, t627 * t628,
+                ::overact::math::signed(t609, t608), ::overact::math::signed(t615, t614),
+                ::overact::math::signed(t621, t620), ::overact::math::signed(t628, t627), t609,
             ],
             [
-                -(t324 * rate_dot_3_leg1), t360 * t333 - t365 * t341 - t324 * t354,
-                t365 * t333 + t360 * t341 + t324 * t380, t365 * t352 - t360 * t346, 0.0,
-                -minus_rate_dot_1_leg2, 0.0, -(t436 * minus_rate_dot_1_leg4), 0.0,
-                -minus_rate_1_leg2, 0.0, -(t436 * minus_rate_1_leg4), 0.0,
+                -(t323 * rate_dot_3_leg1), t360 * t333 - t365 * t341 - t323 * t354,
+                t365 * t333 + t360 * t341 + t323 * t382, t365 * t352 - t360 * t346, 0.0,
+                -minus_rate_dot_1_leg2, 0.0, -(t438 * minus_rate_dot_1_leg4), 0.0,
+                -minus_rate_1_leg2, 0.0, -(t438 * minus_rate_1_leg4), 0.0,
                 -::overact::math::sign(minus_rate_1_leg2), 0.0,
-                -::overact::math::signed(t436, minus_rate_1_leg4), 0.0, 1.0, 0.0, t436,
-                -(t469 * minus_rate_dot_2_leg1), t492 * rate_dot_2_leg2,
-                -(t517 * minus_rate_dot_2_leg3), t543 * rate_dot_2_leg4, -(t469 * t547),
-                3.5714285714285716 * t483 - t492 * t551, -(t517 * t556), t436 * t562 - t543 * t564,
-                -(t469 * t574), t578 * t580, -(t517 * t582), t587 * t590,
-                -::overact::math::signed(t469, t574), ::overact::math::signed(t580, t578),
-                -::overact::math::signed(t517, t582), ::overact::math::signed(t590, t587), t469,
-                t580, t517, t590, -(t604 * t607), -(t610 * t613), -(t616 * t619), -(t623 * t626),
-                -::overact::math::signed(t607, t604), -::overact::math::signed(t613, t610),
-                -::overact::math::signed(t619, t616), -::overact::math::signed(t626, t623), -t607,
+                -::overact::math::signed(t438, minus_rate_1_leg4), 0.0, 1.0, 0.0, t438,
+                -(t473 * minus_rate_dot_2_leg1), t496 * rate_dot_2_leg2,
+                -(t521 * minus_rate_dot_2_leg3), t545 * rate_dot_2_leg4, -(t473 * t551),
+                3.5714285714285716 * t487 - t496 * t555, -(t521 * t560), t438 * t566 - t545 * t568,
+                -(t473 * t578), t582 * t584, -(t521 * t586), t591 * t594,
+                -::overact::math::signed(t473, t578), ::overact::math::signed(t584, t582),
+                -::overact::math::signed(t521, t586), ::overact::math::signed(t594, t591), t473,
+                t584, t521, t594, -(t608 * t611), -(t614 * t617), -(t620 * t623), -(t627 * t630),
+                -::overact::math::signed(t611, t608), -::overact::math::signed(t617, t614),
+                -::overact::math::signed(t623, t620), -::overact::math::signed(t630, t627), -t611,
             ],
             [
-                t326, t100 * t354 - (t101 * t333 + t108 * t341), -(0.11 * t326 + t389), 0.11 * t389,
-                0.0, 0.0, rate_dot_1_leg3, t111 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
-                t111 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
-                ::overact::math::signed(t111, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t111, 0.0, 0.0,
-                t500 * minus_rate_dot_2_leg3, t526 * rate_dot_2_leg4, 0.0, 0.0,
-                3.5714285714285716 * t508 + t556 * t500,
-                -(7.142857142857143 * (t110 * t534 + t525 * t428)), 0.0, 0.0, t582 * t585,
-                t587 * t592, 0.0, 0.0, ::overact::math::signed(t585, t582),
-                ::overact::math::signed(t592, t587), 0.0, 0.0, -t585, t592, t100 * t604,
-                t100 * t610, t616 * t621, t623 * t628, ::overact::math::signed(t100, t604),
-                ::overact::math::signed(t100, t610), ::overact::math::signed(t621, t616),
-                ::overact::math::signed(t628, t623), t100,
+                t326, t325 * t354 - (t370 * t333 + t372 * t341), -(0.11 * t326 + t391), 0.11 * t391,
+                0.0, 0.0, rate_dot_1_leg3, t441 * minus_rate_dot_1_leg4, 0.0, 0.0, rate_1_leg3,
+                t441 * minus_rate_1_leg4, 0.0, 0.0, ::overact::math::sign(rate_1_leg3),
+                ::overact::math::signed(t441, minus_rate_1_leg4), 0.0, 0.0, 1.0, -t441, 0.0, 0.0,
+                t504 * minus_rate_dot_2_leg3, t548 * rate_dot_2_leg4, 0.0, 0.0,
+                3.5714285714285716 * t512 + t560 * t504,
+                -(7.142857142857143 * (t440 * t536 + t547 * t430)), 0.0, 0.0, t586 * t589,
+                t591 * t596, 0.0, 0.0, ::overact::math::signed(t589, t586),
+                ::overact::math::signed(t596, t591), 0.0, 0.0, -t589, t596, t325 * t608,
+                t325 * t614, t620 * t625, t627 * t632, ::overact::math::signed(t325, t608),
+                ::overact::math::signed(t325, t614), ::overact::math::signed(t625, t620),
+                ::overact::math::signed(t632, t627), t325,
             ],
         ])
     }
@@ -5344,7 +5342,7 @@ impl DualV {
     ///
     /// Output: 3.
     ///
-    /// 134 operations (46 additions, 79 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 137 intermediates.
+    /// 136 operations (47 additions, 80 multiplications, 9 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 139 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5417,10 +5415,8 @@ impl DualV {
             * ((g1_wz_leg2 * g1_vx_leg3 + minus_g1_vx_leg2 * g1_wz_leg3) * t91)
             - minus_g1_vx_leg4
                 * ((g1_wz_leg2 * g1_vy_leg3 + minus_g1_vy_leg2 * g1_wz_leg3) * t91);
-        let t109 = 2.0
-            * (minus_g1_vy_leg4 * (t88 * t91) - minus_g1_vx_leg4 * (t84 * t91));
-        let minus_minus_g1_wz_leg4 = g1_wz_leg3 * t109;
-        let t129 = minus_g1_vy_leg4
+        let minus_g1_wz_leg4 = t6 * minus_g1_vy_leg4 + t2 * minus_g1_vx_leg4;
+        let t125 = minus_g1_vy_leg4
             * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t91)
             - minus_g1_vx_leg4
                 * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t91);
@@ -5428,16 +5424,20 @@ impl DualV {
             torques[0]
                 + torques[3]
                     * (t103
-                        + minus_minus_g1_wz_leg4
+                        - minus_g1_wz_leg4
                             * ((minus_g1_vx_leg2 * g1_vy_leg3
                                 - minus_g1_vy_leg2 * g1_vx_leg3) * t91)),
             torques[1]
                 + torques[3]
-                    * (t129
-                        - minus_minus_g1_wz_leg4
+                    * (t125
+                        + minus_g1_wz_leg4
                             * ((g1_vy_leg1 * g1_vx_leg3 - g1_vx_leg1 * g1_vy_leg3)
                                 * t91)),
-            torques[2] + torques[3] * t109,
+            torques[2]
+                + torques[3]
+                    * (2.0
+                        * (minus_g1_vy_leg4 * (t88 * t91)
+                            - minus_g1_vx_leg4 * (t84 * t91))),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).

@@ -982,7 +982,7 @@ impl FiveBar {
     /// Output: 2 x 25.
     /// Columns: `PARAMETERS`.
     ///
-    /// 203 operations (63 additions, 120 multiplications, 20 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 167 intermediates.
+    /// 202 operations (63 additions, 118 multiplications, 21 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 166 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -996,129 +996,128 @@ impl FiveBar {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
-        let t4 = 1.0 / t3;
-        let t6 = 0.5 - 0.01125 * t4;
-        let t10 = 0.04 * t4 - t6 * t6;
-        ::overact::guard::reach(t10, "left")?;
-        let t11 = ::overact::math::sqrt(t10);
-        let t13 = t0 * t6 - pose[1] * t11;
-        let t14 = t3 * t11;
-        ::overact::guard::leg(t14, 0.04998437255783052, "left")?;
-        let g2_vx_left = t13 / t14;
-        let t16 = t0 / t14;
-        let minus_g1_vx_left = t16 - g2_vx_left;
-        let t18 = minus_g1_vx_left * actuator_accelerations[0];
-        let t21 = pose[1] * t6 + t0 * t11;
-        let g2_vy_left = t21 / t14;
-        let t23 = pose[1] / t14;
-        let minus_g1_vy_left = t23 - g2_vy_left;
-        let t25 = minus_g1_vy_left * actuator_accelerations[0];
-        let t26 = 49.05 * t13;
-        let t29 = 49.05 * t21;
-        let t32 = minus_g1_vx_left * actuator_velocities[0];
-        let t33 = minus_g1_vy_left * actuator_velocities[0];
-        let t36 = pose[0] - 0.1;
-        let t38 = t36 * t36 + t2;
-        let t40 = 0.5 - 0.01125 / t38;
-        let t44 = 0.04 / t38 - t40 * t40;
-        ::overact::guard::reach(t44, "right")?;
-        let t45 = ::overact::math::sqrt(t44);
-        let t47 = t36 * t40 + pose[1] * t45;
-        let t48 = t38 * t45;
-        ::overact::guard::leg(t48, 0.04998437255783052, "right")?;
-        let minus_g2_vx_right = t47 / t48;
-        let t50 = t36 / t48;
-        let g1_vx_right = t50 - minus_g2_vx_right;
-        let t52 = g1_vx_right * actuator_velocities[1];
-        let t53 = t52 - t32;
-        let t56 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
-        ::overact::guard::platform(t56, 35.707722858788905, "actuators")?;
-        ::overact::guard::platform(t56, 35.707722858788905, "actuators")?;
-        let t61 = pose[1] * t40 - t36 * t45;
-        let minus_g2_vy_right = t61 / t48;
-        let t63 = pose[1] / t48;
-        let g1_vy_right = t63 - minus_g2_vy_right;
-        let t66 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
-        let t67 = t66 / t56;
-        let t68 = g1_vy_right * actuator_velocities[1];
-        let t76 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
-            - t66 * t67;
-        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
-        ::overact::guard::platform(t76, 14.323546684675748, "actuators")?;
-        let t77 = (t68 - t33 - t53 * t67) / t76;
-        let t79 = t53 / t56 - t67 * t77;
-        let minus_rate_2_right = minus_g2_vx_right * t79 + minus_g2_vy_right * t77;
-        let t83 = minus_rate_2_right * minus_rate_2_right;
-        let t85 = actuator_velocities[1] * actuator_velocities[1];
-        let t86 = t38 - 0.1025;
-        let t87 = 0.5 * t86;
-        let rate_dot_1_right = (0.0625 * t83 + t85 * t87) / t48;
-        let t91 = actuator_accelerations[1] - rate_dot_1_right;
-        let rate_2_left = g2_vx_left * t79 + g2_vy_left * t77;
-        let t96 = rate_2_left * rate_2_left;
-        let t98 = actuator_velocities[0] * actuator_velocities[0];
-        let t99 = t3 - 0.1025;
-        let t100 = 0.5 * t99;
-        let minus_rate_dot_1_left = (0.0625 * t96 + t98 * t100) / t14;
-        let t104 = actuator_accelerations[0] + minus_rate_dot_1_left;
-        let t106 = g1_vx_right * t91 - minus_g1_vx_left * t104;
-        let t113 = (g1_vy_right * t91 - minus_g1_vy_left * t104 - t67 * t106) / t76;
-        let t115 = t106 / t56 - t67 * t113;
-        let t120 = t13 * t115 + t21 * t113 + 0.04 * t98;
-        let rate_dot_2_left = (t120 + t96 * t100) / t14;
-        let t124 = g2_vx_left * rate_dot_2_left;
-        let t125 = g2_vy_left * rate_dot_2_left;
-        let t126 = 4.0 * t115;
-        let t129 = t26 + 0.2 * actuator_accelerations[0];
-        let t130 = 0.2 * t129;
-        let t131 = minus_g1_vx_left * t130;
-        let t136 = t113 + 9.81;
-        let t137 = 4.0 * t136;
-        let t139 = minus_g1_vy_left * t130;
-        let t144 = 4.0 * t120;
-        let c2_left = 10.0 * t99;
-        let minus_s2_left = 20.0 * t14;
-        let t152 = c2_left * (t29 - 0.2 * t98) - minus_s2_left * t129;
-        let t158 = rate_2_left - actuator_velocities[0];
-        let t161 = g1_vx_right * actuator_accelerations[1];
-        let t162 = g1_vy_right * actuator_accelerations[1];
-        let t163 = 49.05 * t47;
-        let t166 = 49.05 * t61;
-        let t175 = t47 * t115 + t61 * t113 + 0.04 * t85;
-        let minus_rate_dot_2_right = (t175 + t83 * t87) / t48;
-        let t179 = minus_g2_vx_right * minus_rate_dot_2_right;
-        let t180 = minus_g2_vy_right * minus_rate_dot_2_right;
-        let t182 = t163 + 0.2 * actuator_accelerations[1];
-        let t183 = 0.2 * t182;
-        let t184 = g1_vx_right * t183;
-        let t190 = g1_vy_right * t183;
-        let t196 = 4.0 * t175;
-        let c2_right = 10.0 * t86;
-        let s2_right = 20.0 * t48;
-        let t204 = c2_right * (t166 - 0.2 * t85) + s2_right * t182;
-        let t210 = actuator_velocities[1] + minus_rate_2_right;
+        let t5 = 0.5 - 0.01125 / t3;
+        let t9 = 0.04 / t3 - t5 * t5;
+        ::overact::guard::reach(t9, "left")?;
+        let t10 = ::overact::math::sqrt(t9);
+        let t12 = t0 * t5 - pose[1] * t10;
+        let t13 = t3 * t10;
+        ::overact::guard::leg(t13, 0.04998437255783052, "left")?;
+        let g2_vx_left = t12 / t13;
+        let t15 = t0 / t13;
+        let minus_g1_vx_left = t15 - g2_vx_left;
+        let t17 = minus_g1_vx_left * actuator_accelerations[0];
+        let t20 = pose[1] * t5 + t0 * t10;
+        let g2_vy_left = t20 / t13;
+        let t22 = pose[1] / t13;
+        let minus_g1_vy_left = t22 - g2_vy_left;
+        let t24 = minus_g1_vy_left * actuator_accelerations[0];
+        let t25 = 49.05 * t12;
+        let t28 = 49.05 * t20;
+        let t31 = minus_g1_vx_left * actuator_velocities[0];
+        let t32 = minus_g1_vy_left * actuator_velocities[0];
+        let t35 = pose[0] - 0.1;
+        let t37 = t35 * t35 + t2;
+        let t39 = 0.5 - 0.01125 / t37;
+        let t43 = 0.04 / t37 - t39 * t39;
+        ::overact::guard::reach(t43, "right")?;
+        let t44 = ::overact::math::sqrt(t43);
+        let t46 = t35 * t39 + pose[1] * t44;
+        let t47 = t37 * t44;
+        ::overact::guard::leg(t47, 0.04998437255783052, "right")?;
+        let minus_g2_vx_right = t46 / t47;
+        let t49 = t35 / t47;
+        let g1_vx_right = t49 - minus_g2_vx_right;
+        let t51 = g1_vx_right * actuator_velocities[1];
+        let t52 = t51 - t31;
+        let t55 = minus_g1_vx_left * minus_g1_vx_left + g1_vx_right * g1_vx_right;
+        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
+        ::overact::guard::platform(t55, 35.707722858788905, "actuators")?;
+        let t60 = pose[1] * t39 - t35 * t44;
+        let minus_g2_vy_right = t60 / t47;
+        let t62 = pose[1] / t47;
+        let g1_vy_right = t62 - minus_g2_vy_right;
+        let t65 = minus_g1_vx_left * minus_g1_vy_left + g1_vx_right * g1_vy_right;
+        let t66 = t65 / t55;
+        let t67 = g1_vy_right * actuator_velocities[1];
+        let t75 = minus_g1_vy_left * minus_g1_vy_left + g1_vy_right * g1_vy_right
+            - t65 * t66;
+        ::overact::guard::platform(t75, 14.323546684675748, "actuators")?;
+        ::overact::guard::platform(t75, 14.323546684675748, "actuators")?;
+        let t76 = (t67 - t32 - t52 * t66) / t75;
+        let t78 = t52 / t55 - t66 * t76;
+        let minus_rate_2_right = minus_g2_vx_right * t78 + minus_g2_vy_right * t76;
+        let t82 = minus_rate_2_right * minus_rate_2_right;
+        let t84 = actuator_velocities[1] * actuator_velocities[1];
+        let t85 = t37 - 0.1025;
+        let t86 = 0.5 * t85;
+        let rate_dot_1_right = (0.0625 * t82 + t84 * t86) / t47;
+        let t90 = actuator_accelerations[1] - rate_dot_1_right;
+        let rate_2_left = g2_vx_left * t78 + g2_vy_left * t76;
+        let t95 = rate_2_left * rate_2_left;
+        let t97 = actuator_velocities[0] * actuator_velocities[0];
+        let t98 = t3 - 0.1025;
+        let t99 = 0.5 * t98;
+        let minus_rate_dot_1_left = (0.0625 * t95 + t97 * t99) / t13;
+        let t103 = actuator_accelerations[0] + minus_rate_dot_1_left;
+        let t105 = g1_vx_right * t90 - minus_g1_vx_left * t103;
+        let t112 = (g1_vy_right * t90 - minus_g1_vy_left * t103 - t66 * t105) / t75;
+        let t114 = t105 / t55 - t66 * t112;
+        let t119 = t12 * t114 + t20 * t112 + 0.04 * t97;
+        let rate_dot_2_left = (t119 + t95 * t99) / t13;
+        let t123 = g2_vx_left * rate_dot_2_left;
+        let t124 = g2_vy_left * rate_dot_2_left;
+        let t125 = 4.0 * t114;
+        let t128 = t25 + 0.2 * actuator_accelerations[0];
+        let t129 = 0.2 * t128;
+        let t130 = minus_g1_vx_left * t129;
+        let t135 = t112 + 9.81;
+        let t136 = 4.0 * t135;
+        let t138 = minus_g1_vy_left * t129;
+        let t143 = 4.0 * t119;
+        let c2_left = 10.0 * t98;
+        let minus_s2_left = 20.0 * t13;
+        let t151 = c2_left * (t28 - 0.2 * t97) - minus_s2_left * t128;
+        let t157 = rate_2_left - actuator_velocities[0];
+        let t160 = g1_vx_right * actuator_accelerations[1];
+        let t161 = g1_vy_right * actuator_accelerations[1];
+        let t162 = 49.05 * t46;
+        let t165 = 49.05 * t60;
+        let t174 = t46 * t114 + t60 * t112 + 0.04 * t84;
+        let minus_rate_dot_2_right = (t174 + t82 * t86) / t47;
+        let t178 = minus_g2_vx_right * minus_rate_dot_2_right;
+        let t179 = minus_g2_vy_right * minus_rate_dot_2_right;
+        let t181 = t162 + 0.2 * actuator_accelerations[1];
+        let t182 = 0.2 * t181;
+        let t183 = g1_vx_right * t182;
+        let t189 = g1_vy_right * t182;
+        let t195 = 4.0 * t174;
+        let c2_right = 10.0 * t85;
+        let s2_right = 20.0 * t47;
+        let t203 = c2_right * (t165 - 0.2 * t84) + s2_right * t181;
+        let t209 = actuator_velocities[1] + minus_rate_2_right;
         Ok([
             [
-                -t18, -(minus_g1_vx_left * t26), minus_g1_vx_left * t29, -t18, -t32,
+                -t17, -(minus_g1_vx_left * t25), minus_g1_vx_left * t28, -t17, -t31,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
-                -minus_g1_vx_left, t124, t126 - 0.16 * (1.5625 * t124 - 25.0 * t131),
-                -(minus_g1_vx_left * t144 + g2_vx_left * t152), -t131,
-                ::overact::math::signed(t16, t158), t161, g1_vx_right * t163, -(g1_vx_right * t166),
-                t161, t52, ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
-                g1_vx_right, t179, t126 - 0.16 * (25.0 * t184 + 1.5625 * t179),
-                g1_vx_right * t196 + minus_g2_vx_right * t204, t184,
-                ::overact::math::signed(t50, t210), t115,
+                -minus_g1_vx_left, t123, t125 - 0.16 * (1.5625 * t123 - 25.0 * t130),
+                -(minus_g1_vx_left * t143 + g2_vx_left * t151), -t130,
+                ::overact::math::signed(t15, t157), t160, g1_vx_right * t162, -(g1_vx_right * t165),
+                t160, t51, ::overact::math::signed(g1_vx_right, actuator_velocities[1]),
+                g1_vx_right, t178, t125 - 0.16 * (25.0 * t183 + 1.5625 * t178),
+                g1_vx_right * t195 + minus_g2_vx_right * t203, t183,
+                ::overact::math::signed(t49, t209), t114,
             ],
             [
-                -t25, -(minus_g1_vy_left * t26), minus_g1_vy_left * t29, -t25, -t33,
+                -t24, -(minus_g1_vy_left * t25), minus_g1_vy_left * t28, -t24, -t32,
                 -::overact::math::signed(minus_g1_vy_left, actuator_velocities[0]),
-                -minus_g1_vy_left, t125, t137 - 0.16 * (1.5625 * t125 - 25.0 * t139),
-                -(minus_g1_vy_left * t144 + g2_vy_left * t152), -t139,
-                ::overact::math::signed(t23, t158), t162, g1_vy_right * t163, -(g1_vy_right * t166),
-                t162, t68, ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
-                g1_vy_right, t180, t137 - 0.16 * (25.0 * t190 + 1.5625 * t180),
-                g1_vy_right * t196 + minus_g2_vy_right * t204, t190,
-                ::overact::math::signed(t63, t210), t136,
+                -minus_g1_vy_left, t124, t136 - 0.16 * (1.5625 * t124 - 25.0 * t138),
+                -(minus_g1_vy_left * t143 + g2_vy_left * t151), -t138,
+                ::overact::math::signed(t22, t157), t161, g1_vy_right * t162, -(g1_vy_right * t165),
+                t161, t67, ::overact::math::signed(g1_vy_right, actuator_velocities[1]),
+                g1_vy_right, t179, t136 - 0.16 * (25.0 * t189 + 1.5625 * t179),
+                g1_vy_right * t195 + minus_g2_vy_right * t203, t189,
+                ::overact::math::signed(t62, t209), t135,
             ],
         ])
     }
@@ -1522,7 +1521,7 @@ impl FiveBar {
     /// Output: 2 x 19.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 159 operations (51 additions, 97 multiplications, 11 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 132 intermediates.
+    /// 160 operations (51 additions, 103 multiplications, 6 divisions), 2 square roots, 0 trigonometric pairs, 8 signs, 133 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1542,21 +1541,22 @@ impl FiveBar {
         let t14 = t1 - t13;
         let t15 = t4 * t11;
         ::overact::guard::leg(t15, 0.04998437255783052, "left")?;
-        let minus_g1_vx_left = t14 / t15;
-        let t20 = pose[1] * t6 + t1 * t11;
-        let t21 = pose[1] - t20;
-        let t24 = t1 / t15;
-        let g2_vx_left = t24 - minus_g1_vx_left;
-        let g2_vy_left = t20 / t15;
+        let t16 = 1.0 / t15;
+        let minus_g1_vx_left = t14 * t16;
+        let t21 = pose[1] * t6 + t1 * t11;
+        let t22 = pose[1] - t21;
+        let g2_vx_left = t13 * t16;
+        let g2_vy_left = t21 * t16;
         let rate_2_left = g2_vx_left * twist[0] + g2_vy_left * twist[1];
         let t30 = rate_2_left * rate_2_left;
-        let minus_g1_vy_left = t21 / t15;
+        let minus_g1_vy_left = t22 * t16;
         let minus_rate_1_left = minus_g1_vx_left * twist[0]
             + minus_g1_vy_left * twist[1];
         let t37 = minus_rate_1_left * minus_rate_1_left;
-        let t39 = 0.5 * (t4 - 0.1025);
-        let minus_rate_dot_1_left = (t14 * acceleration[0] + t21 * acceleration[1]
-            + 0.0625 * t30 + t37 * t39) / t15;
+        let t38 = t4 - 0.1025;
+        let t39 = 0.5 * t38;
+        let minus_rate_dot_1_left = t16
+            * (t14 * acceleration[0] + t22 * acceleration[1] + 0.0625 * t30 + t37 * t39);
         let t45 = pose[0] - 0.1;
         let t47 = t45 * t45 + t3;
         let t49 = 0.5 - 0.01125 / t47;
@@ -1579,29 +1579,30 @@ impl FiveBar {
         let g1_vy_right = t65 * t59;
         let rate_1_right = g1_vx_right * twist[0] + g1_vy_right * twist[1];
         let t80 = rate_1_right * rate_1_right;
-        let t82 = 0.5 * (t47 - 0.1025);
+        let t81 = t47 - 0.1025;
+        let t82 = 0.5 * t81;
         let rate_dot_1_right = t59
             * (t57 * acceleration[0] + t65 * acceleration[1] + 0.0625 * t73 + t80 * t82);
         let t88 = 49.05 * t13;
         let t91 = 49.05 * t56;
-        let t94 = 49.05 * t20;
+        let t94 = 49.05 * t21;
         let t97 = 49.05 * t64;
-        let t112 = t13 * acceleration[0] + t20 * acceleration[1] + 0.04 * t37;
-        let rate_dot_2_left = (t112 + t30 * t39) / t15;
+        let t112 = t13 * acceleration[0] + t21 * acceleration[1] + 0.04 * t37;
+        let rate_dot_2_left = t16 * (t112 + t30 * t39);
         let t122 = t56 * acceleration[0] + t64 * acceleration[1] + 0.04 * t80;
         let minus_rate_dot_2_right = t59 * (t122 + t73 * t82);
         let t128 = 4.0 * t112;
-        let c2_left = t39 * 20.0;
+        let c2_left = 10.0 * t38;
         let minus_s2_left = 20.0 * t15;
         let t138 = c2_left * (t94 - 0.2 * t37)
             - minus_s2_left * (t88 - 0.2 * minus_rate_dot_1_left);
         let t144 = 4.0 * t122;
-        let c2_right = t82 * 20.0;
+        let c2_right = 10.0 * t81;
         let s2_right = 20.0 * t58;
         let t154 = c2_right * (t97 - 0.2 * t80)
             + s2_right * (t91 + 0.2 * rate_dot_1_right);
-        let t160 = minus_rate_1_left + rate_2_left;
-        let t165 = rate_1_right + minus_rate_2_right;
+        let t161 = minus_rate_1_left + rate_2_left;
+        let t166 = rate_1_right + minus_rate_2_right;
         Ok([
             [
                 acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
@@ -1612,8 +1613,9 @@ impl FiveBar {
                 ::overact::math::signed(g1_vx_right, rate_1_right), -minus_g1_vx_left, g1_vx_right,
                 g2_vx_left * rate_dot_2_left, minus_g2_vx_right * minus_rate_dot_2_right,
                 -(minus_g1_vx_left * t128 + g2_vx_left * t138),
-                g1_vx_right * t144 + minus_g2_vx_right * t154, ::overact::math::signed(t24, t160),
-                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t165),
+                g1_vx_right * t144 + minus_g2_vx_right * t154,
+                ::overact::math::signed(minus_g1_vx_left + g2_vx_left, t161),
+                ::overact::math::signed(g1_vx_right + minus_g2_vx_right, t166),
             ],
             [
                 acceleration[1] + 9.81, minus_g1_vy_left * minus_rate_dot_1_left,
@@ -1625,8 +1627,8 @@ impl FiveBar {
                 g2_vy_left * rate_dot_2_left, minus_g2_vy_right * minus_rate_dot_2_right,
                 -(minus_g1_vy_left * t128 + g2_vy_left * t138),
                 g1_vy_right * t144 + minus_g2_vy_right * t154,
-                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t160),
-                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t165),
+                ::overact::math::signed(minus_g1_vy_left + g2_vy_left, t161),
+                ::overact::math::signed(g1_vy_right + minus_g2_vy_right, t166),
             ],
         ])
     }

@@ -3513,7 +3513,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 2655 operations (948 additions, 1659 multiplications, 48 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2060 intermediates.
+    /// 2658 operations (950 additions, 1654 multiplications, 54 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2063 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3790,249 +3790,251 @@ impl Hexapod {
         let t550 = ::overact::math::sqrt(t549);
         ::overact::guard::leg(t550, 0.5619721604570214, "leg2")?;
         let c_cylinder_leg2 = t544 / t550;
-        let t553 = 1.0 / t544;
-        let minus_s_cross_leg2 = t536 * t553;
-        let t555 = 0.9781476007338057 * minus_s_cross_leg2;
+        let minus_s_cross_leg2 = t536 / t544;
+        let t554 = 0.9781476007338057 * minus_s_cross_leg2;
         let s_cylinder_leg2 = t547 / t550;
-        let t558 = 0.20791169081775931 * c_cylinder_leg2 - t555 * s_cylinder_leg2;
-        let t559 = 1.0 / t550;
-        let gcylinder_vx_leg2 = t558 * t559;
-        let c_cross_leg2 = t541 * t553;
-        let t562 = 0.9781476007338057 * c_cross_leg2;
-        let t565 = t538 * twist[4] - t530 * twist[5];
-        let t568 = t539 * twist[4] - t531 * twist[5];
-        let t570 = twist[0] - (t565 + t568);
-        let t572 = 0.20791169081775931 * c_cross_leg2;
-        let t575 = t524 * twist[5] - t538 * twist[3];
-        let t578 = t525 * twist[5] - t539 * twist[3];
-        let t580 = twist[1] - (t575 + t578);
-        let t585 = t530 * twist[3] - t524 * twist[4];
-        let t588 = t531 * twist[3] - t525 * twist[4];
-        let t590 = twist[2] - (t585 + t588);
-        let t592 = t562 * t570 + t572 * t580 - minus_s_cross_leg2 * t590;
-        let minus_rate_cross_leg2 = t553 * t592;
-        let t594 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t595 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t596 = t594 * t595;
-        let t597 = gcylinder_vx_leg2 * t596;
-        let minus_gcross_vx_leg2 = t553 * t562;
-        let t599 = t77 - t76;
-        let t600 = t68 - t74;
-        let t602 = acceleration[0] - (t599 + t600);
-        let t604 = t102 - t101;
-        let t605 = t93 - t99;
-        let t607 = acceleration[1] - (t604 + t605);
-        let t610 = t126 - t125;
-        let t611 = t117 - t123;
-        let t612 = t610 + t611;
-        let t613 = acceleration[2] - t612;
-        let t615 = t562 * t602 + t572 * t607 - minus_s_cross_leg2 * t613;
-        let minus_minus_grod_vy_leg2 = t534 * t559;
-        let grod_vx_leg2 = t528 * t559;
+        let t557 = 0.20791169081775931 * c_cylinder_leg2 - t554 * s_cylinder_leg2;
+        let t558 = 1.0 / t550;
+        let gcylinder_vx_leg2 = t557 * t558;
+        let c_cross_leg2 = t541 / t544;
+        let t561 = 0.9781476007338057 * c_cross_leg2;
+        let t564 = t538 * twist[4] - t530 * twist[5];
+        let t567 = t539 * twist[4] - t531 * twist[5];
+        let t569 = twist[0] - (t564 + t567);
+        let t571 = 0.20791169081775931 * c_cross_leg2;
+        let t574 = t524 * twist[5] - t538 * twist[3];
+        let t577 = t525 * twist[5] - t539 * twist[3];
+        let t579 = twist[1] - (t574 + t577);
+        let t584 = t530 * twist[3] - t524 * twist[4];
+        let t587 = t531 * twist[3] - t525 * twist[4];
+        let t589 = twist[2] - (t584 + t587);
+        let t591 = t561 * t569 + t571 * t579 - minus_s_cross_leg2 * t589;
+        let minus_rate_cross_leg2 = t591 / t544;
+        let t593 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t594 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t595 = t593 * t594;
+        let t596 = gcylinder_vx_leg2 * t595;
+        let minus_gcross_vx_leg2 = t561 / t544;
+        let t598 = t77 - t76;
+        let t599 = t68 - t74;
+        let t601 = acceleration[0] - (t598 + t599);
+        let t603 = t102 - t101;
+        let t604 = t93 - t99;
+        let t606 = acceleration[1] - (t603 + t604);
+        let t609 = t126 - t125;
+        let t610 = t117 - t123;
+        let t611 = t609 + t610;
+        let t612 = acceleration[2] - t611;
+        let t614 = t561 * t601 + t571 * t606 - minus_s_cross_leg2 * t612;
+        let minus_minus_grod_vy_leg2 = t534 * t558;
+        let grod_vx_leg2 = t528 * t558;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t580
-            + grod_vx_leg2 * t570 + grod_vz_leg2 * t590;
-        let t624 = 2.0 * minus_minus_rate_rod_leg2;
-        let t626 = t615 - t594 * t624;
-        let t628 = 0.20791169081775931 * minus_s_cross_leg2;
-        let t631 = t628 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
-        let t634 = c_cross_leg2 * s_cylinder_leg2;
-        let t636 = t558 * t570 - t631 * t580 - t634 * t590;
-        let minus_rate_dot_cross_leg2 = t553 * (t626 + 2.0 * (t595 * t636));
-        let rate_cylinder_leg2 = t559 * t636;
-        let t642 = rate_cylinder_leg2 * t594;
-        let t643 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t645 = t642 + t643 + t642;
-        let t646 = s_cylinder_leg2 * t645;
-        let t647 = t646 - minus_rate_dot_cross_leg2;
-        let t649 = t597 - minus_gcross_vx_leg2 * t647;
-        let minus_gcross_vy_leg2 = t553 * t572;
-        let minus_gcylinder_vy_leg2 = t631 * t559;
-        let t653 = minus_gcylinder_vy_leg2 * t596;
-        let t654 = minus_gcross_vy_leg2 * t647 + t653;
-        let gcross_vz_leg2 = t553 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t634 * t559;
-        let t658 = minus_gcylinder_vz_leg2 * t596;
-        let t659 = gcross_vz_leg2 * t647 - t658;
+        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t579
+            + grod_vx_leg2 * t569 + grod_vz_leg2 * t589;
+        let t623 = 2.0 * minus_minus_rate_rod_leg2;
+        let t625 = t614 - t593 * t623;
+        let t626 = t625 / t550;
+        let t627 = c_cylinder_leg2 * t626;
+        let t629 = t596 + minus_gcross_vx_leg2 * t627;
+        let minus_gcross_vy_leg2 = t571 / t544;
+        let t632 = 0.20791169081775931 * minus_s_cross_leg2;
+        let t635 = t632 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
+        let minus_gcylinder_vy_leg2 = t635 * t558;
+        let t637 = minus_gcylinder_vy_leg2 * t595;
+        let t638 = t637 - minus_gcross_vy_leg2 * t627;
+        let gcross_vz_leg2 = minus_s_cross_leg2 / t544;
+        let t641 = c_cross_leg2 * s_cylinder_leg2;
+        let minus_gcylinder_vz_leg2 = t641 * t558;
+        let t643 = minus_gcylinder_vz_leg2 * t595;
+        let t644 = gcross_vz_leg2 * t627 + t643;
         let minus_gcross_wx_leg2 = t532 * gcross_vz_leg2 + t540 * minus_gcross_vy_leg2;
         let gcylinder_wx_leg2 = t532 * minus_gcylinder_vz_leg2
             - t540 * minus_gcylinder_vy_leg2;
-        let t667 = gcylinder_wx_leg2 * t596;
-        let t668 = t667 - minus_gcross_wx_leg2 * t647;
+        let t652 = gcylinder_wx_leg2 * t595;
+        let t653 = minus_gcross_wx_leg2 * t627 + t652;
         let minus_gcylinder_wy_leg2 = t540 * gcylinder_vx_leg2
             + t526 * minus_gcylinder_vz_leg2;
-        let t672 = minus_gcylinder_wy_leg2 * t596;
+        let t657 = minus_gcylinder_wy_leg2 * t595;
         let minus_minus_gcross_wy_leg2 = t540 * minus_gcross_vx_leg2
             + t526 * gcross_vz_leg2;
-        let t677 = minus_minus_gcross_wy_leg2 * t647 - t672;
+        let t662 = t657 + minus_minus_gcross_wy_leg2 * t627;
         let gcross_wz_leg2 = t526 * minus_gcross_vy_leg2 - t532 * minus_gcross_vx_leg2;
         let minus_minus_gcylinder_wz_leg2 = t526 * minus_gcylinder_vy_leg2
             + t532 * gcylinder_vx_leg2;
-        let t685 = minus_minus_gcylinder_wz_leg2 * t596;
-        let t686 = gcross_wz_leg2 * t647 + t685;
-        let t687 = t594 * t594;
-        let t688 = t595 * t595;
-        let t689 = t687 - t688;
-        let t694 = c_cylinder_leg2 * t645 + s_cylinder_leg2 * (t626 / t550);
-        let t696 = gcylinder_vx_leg2 * t689 - minus_gcross_vx_leg2 * t694;
-        let t699 = minus_gcross_vy_leg2 * t694 + minus_gcylinder_vy_leg2 * t689;
-        let t702 = gcross_vz_leg2 * t694 - minus_gcylinder_vz_leg2 * t689;
-        let t705 = gcylinder_wx_leg2 * t689 - minus_gcross_wx_leg2 * t694;
-        let t708 = minus_minus_gcross_wy_leg2 * t694 - minus_gcylinder_wy_leg2 * t689;
-        let t711 = gcross_wz_leg2 * t694 + minus_minus_gcylinder_wz_leg2 * t689;
-        let t716 = t558 * t602 - t631 * t607 - t634 * t613;
-        let t718 = t716 - rate_cylinder_leg2 * t624;
-        let t719 = t718 / t550;
-        let rate_dot_cylinder_leg2 = t719 - t596;
-        let t721 = rate_dot_cylinder_leg2 - t596;
-        let t723 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t726 = c_cylinder_leg2 * t721 - s_cylinder_leg2 * (t723 - t687);
-        let t728 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t730 = minus_gcross_vx_leg2 * t726 + gcylinder_vx_leg2 * t728;
-        let t733 = minus_gcylinder_vy_leg2 * t728 - minus_gcross_vy_leg2 * t726;
-        let t736 = gcross_vz_leg2 * t726 + minus_gcylinder_vz_leg2 * t728;
-        let t739 = minus_gcross_wx_leg2 * t726 + gcylinder_wx_leg2 * t728;
-        let t742 = minus_minus_gcross_wy_leg2 * t726 + minus_gcylinder_wy_leg2 * t728;
-        let t745 = gcross_wz_leg2 * t726 - minus_minus_gcylinder_wz_leg2 * t728;
-        let t747 = minus_gcross_vx_leg2 * t646 - t597;
-        let t749 = minus_gcross_vy_leg2 * t646 + t653;
-        let t751 = t658 - gcross_vz_leg2 * t646;
-        let t753 = t667 - minus_gcross_wx_leg2 * t646;
-        let t755 = t672 - minus_minus_gcross_wy_leg2 * t646;
-        let t757 = t685 + gcross_wz_leg2 * t646;
-        let t762 = c_cylinder_leg2 * (t688 - t723) - s_cylinder_leg2 * t719;
-        let t764 = gcylinder_vx_leg2 * t643 - minus_gcross_vx_leg2 * t762;
-        let t767 = minus_gcross_vy_leg2 * t762 + minus_gcylinder_vy_leg2 * t643;
-        let t770 = gcross_vz_leg2 * t762 - minus_gcylinder_vz_leg2 * t643;
-        let t773 = gcylinder_wx_leg2 * t643 - minus_gcross_wx_leg2 * t762;
-        let t776 = minus_minus_gcross_wy_leg2 * t762 - minus_gcylinder_wy_leg2 * t643;
-        let t779 = gcross_wz_leg2 * t762 + minus_minus_gcylinder_wz_leg2 * t643;
-        let t780 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t781 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t782 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t783 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t784 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t785 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t786 = 9.81 * minus_s_cross_leg2;
-        let t787 = s_cylinder_leg2 * t786;
-        let t789 = 9.81 * grod_vz_leg2;
-        let t807 = t559 * t789;
-        let t810 = c_cylinder_leg2 * t786;
-        let t812 = 9.81 * t634;
+        let t670 = minus_minus_gcylinder_wz_leg2 * t595;
+        let t671 = t670 - gcross_wz_leg2 * t627;
+        let t672 = t593 * t593;
+        let t673 = t594 * t594;
+        let t674 = t672 - t673;
+        let t680 = t557 * t569 - t635 * t579 - t641 * t589;
+        let rate_cylinder_leg2 = t558 * t680;
+        let t682 = rate_cylinder_leg2 * t593;
+        let t683 = t594 * t680;
+        let minus_rate_dot_cross_leg2 = (t625 + t683 + t683) / t544;
+        let t687 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t689 = t682 + t687 + t682;
+        let t692 = c_cylinder_leg2 * t689 + s_cylinder_leg2 * t626;
+        let t694 = gcylinder_vx_leg2 * t674 - minus_gcross_vx_leg2 * t692;
+        let t697 = minus_gcross_vy_leg2 * t692 + minus_gcylinder_vy_leg2 * t674;
+        let t700 = gcross_vz_leg2 * t692 - minus_gcylinder_vz_leg2 * t674;
+        let t703 = gcylinder_wx_leg2 * t674 - minus_gcross_wx_leg2 * t692;
+        let t706 = minus_minus_gcross_wy_leg2 * t692 - minus_gcylinder_wy_leg2 * t674;
+        let t709 = gcross_wz_leg2 * t692 + minus_minus_gcylinder_wz_leg2 * t674;
+        let t714 = t557 * t601 - t635 * t606 - t641 * t612;
+        let t716 = t714 - rate_cylinder_leg2 * t623;
+        let t717 = t716 / t550;
+        let rate_dot_cylinder_leg2 = t717 - t595;
+        let t719 = rate_dot_cylinder_leg2 - t595;
+        let t721 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t724 = c_cylinder_leg2 * t719 - s_cylinder_leg2 * (t721 - t672);
+        let t726 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t728 = minus_gcross_vx_leg2 * t724 + gcylinder_vx_leg2 * t726;
+        let t731 = minus_gcylinder_vy_leg2 * t726 - minus_gcross_vy_leg2 * t724;
+        let t734 = gcross_vz_leg2 * t724 + minus_gcylinder_vz_leg2 * t726;
+        let t737 = minus_gcross_wx_leg2 * t724 + gcylinder_wx_leg2 * t726;
+        let t740 = minus_minus_gcross_wy_leg2 * t724 + minus_gcylinder_wy_leg2 * t726;
+        let t743 = gcross_wz_leg2 * t724 - minus_minus_gcylinder_wz_leg2 * t726;
+        let t744 = s_cylinder_leg2 * t689;
+        let t746 = minus_gcross_vx_leg2 * t744 - t596;
+        let t748 = minus_gcross_vy_leg2 * t744 + t637;
+        let t750 = t643 - gcross_vz_leg2 * t744;
+        let t752 = t652 - minus_gcross_wx_leg2 * t744;
+        let t754 = t657 - minus_minus_gcross_wy_leg2 * t744;
+        let t756 = t670 + gcross_wz_leg2 * t744;
+        let t761 = c_cylinder_leg2 * (t673 - t721) - s_cylinder_leg2 * t717;
+        let t763 = gcylinder_vx_leg2 * t687 - minus_gcross_vx_leg2 * t761;
+        let t766 = minus_gcross_vy_leg2 * t761 + minus_gcylinder_vy_leg2 * t687;
+        let t769 = gcross_vz_leg2 * t761 - minus_gcylinder_vz_leg2 * t687;
+        let t772 = gcylinder_wx_leg2 * t687 - minus_gcross_wx_leg2 * t761;
+        let t775 = minus_minus_gcross_wy_leg2 * t761 - minus_gcylinder_wy_leg2 * t687;
+        let t778 = gcross_wz_leg2 * t761 + minus_minus_gcylinder_wz_leg2 * t687;
+        let t779 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t780 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t781 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t782 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t783 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t784 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t785 = 9.81 * minus_s_cross_leg2;
+        let t786 = s_cylinder_leg2 * t785;
+        let t788 = 9.81 * grod_vz_leg2;
+        let t806 = t788 / t550;
+        let t809 = c_cylinder_leg2 * t785;
+        let t811 = 9.81 * t641;
         let minus_grod_wz_leg2 = t526 * minus_minus_grod_vy_leg2 - t532 * grod_vx_leg2;
-        let t825 = 9.81 * c_cross_leg2;
-        let t836 = minus_minus_grod_vy_leg2 * t607 + grod_vx_leg2 * t602
-            + grod_vz_leg2 * t613;
-        let t837 = t789 + t836;
-        let t840 = t837 + t550 * (t688 + t723);
-        let t843 = t786 - t615;
-        let t845 = t544 * t645 - s_cylinder_leg2 * t843;
-        let t849 = gcylinder_vx_leg2 * t840 + minus_gcross_vx_leg2 * t845
-            + grod_vx_leg2 * t721;
-        let t854 = minus_minus_grod_vy_leg2 * t721 + minus_gcross_vy_leg2 * t845
-            - minus_gcylinder_vy_leg2 * t840;
-        let t859 = gcross_vz_leg2 * t845 + minus_gcylinder_vz_leg2 * t840
-            - grod_vz_leg2 * t721;
-        let t871 = t716 - t812;
-        let t874 = t592 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t871 - c_cylinder_leg2 * t837);
-        let t877 = minus_gcross_vx_leg2 * t874 + t555 * minus_rate_dot_cross_leg2;
-        let t880 = minus_gcross_vy_leg2 * t874 + t628 * minus_rate_dot_cross_leg2;
-        let t883 = gcross_vz_leg2 * t874 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t893 = t718 + t871;
-        let t896 = c_cylinder_leg2 * (t843 - t626);
-        let t899 = t687 + t723;
-        let t901 = gcylinder_vx_leg2 * t893 - minus_gcross_vx_leg2 * t896
-            - grod_vx_leg2 * t899;
-        let t906 = minus_minus_grod_vy_leg2 * t899 + minus_gcross_vy_leg2 * t896
-            + minus_gcylinder_vy_leg2 * t893;
-        let t911 = gcross_vz_leg2 * t896 - minus_gcylinder_vz_leg2 * t893
-            - grod_vz_leg2 * t899;
-        let t921 = t486 - t612;
-        let minus_minus_rate_dot_rod_leg2 = t550 * t899 + t836;
+        let t824 = 9.81 * c_cross_leg2;
+        let t835 = minus_minus_grod_vy_leg2 * t606 + grod_vx_leg2 * t601
+            + grod_vz_leg2 * t612;
+        let t836 = t788 + t835;
+        let t839 = t836 + t550 * (t673 + t721);
+        let t842 = t785 - t614;
+        let t844 = t544 * t689 - s_cylinder_leg2 * t842;
+        let t848 = gcylinder_vx_leg2 * t839 + minus_gcross_vx_leg2 * t844
+            + grod_vx_leg2 * t719;
+        let t853 = minus_minus_grod_vy_leg2 * t719 + minus_gcross_vy_leg2 * t844
+            - minus_gcylinder_vy_leg2 * t839;
+        let t858 = gcross_vz_leg2 * t844 + minus_gcylinder_vz_leg2 * t839
+            - grod_vz_leg2 * t719;
+        let t870 = t714 - t811;
+        let t873 = t591 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t870 - c_cylinder_leg2 * t836);
+        let t876 = minus_gcross_vx_leg2 * t873 + t554 * minus_rate_dot_cross_leg2;
+        let t879 = minus_gcross_vy_leg2 * t873 + t632 * minus_rate_dot_cross_leg2;
+        let t882 = gcross_vz_leg2 * t873 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t892 = t716 + t870;
+        let t895 = c_cylinder_leg2 * (t842 - t625);
+        let t898 = t672 + t721;
+        let t900 = gcylinder_vx_leg2 * t892 - minus_gcross_vx_leg2 * t895
+            - grod_vx_leg2 * t898;
+        let t905 = minus_minus_grod_vy_leg2 * t898 + minus_gcross_vy_leg2 * t895
+            + minus_gcylinder_vy_leg2 * t892;
+        let t910 = gcross_vz_leg2 * t895 - minus_gcylinder_vz_leg2 * t892
+            - grod_vz_leg2 * t898;
+        let t920 = t486 - t611;
+        let minus_minus_rate_dot_rod_leg2 = t550 * t898 + t835;
         let grod_wx_leg2 = t540 * minus_minus_grod_vy_leg2 - t532 * grod_vz_leg2;
         let grod_wy_leg2 = t526 * grod_vz_leg2 - t540 * grod_vx_leg2;
-        let t951 = -minus_minus_rate_rod_leg2;
-        let t959 = pose[1] + t40 - 0.3804226065180615;
-        let t962 = pose[0] + t26 + 0.12360679774997894;
-        let t964 = 0.9510565162951536 * t959 - 0.30901699437494734 * t962;
-        let t966 = pose[2] + t10;
-        let t968 = t964 * t964 + t966 * t966;
-        let t969 = ::overact::math::sqrt(t968);
-        ::overact::guard::leg(t969, 0.5513142860385972, "leg3")?;
-        let t970 = 1.0 / t969;
-        let c_cross_leg3 = t966 * t970;
-        let t972 = 0.30901699437494734 * c_cross_leg3;
-        let gcross_vx_leg3 = t970 * t972;
-        let t976 = 0.9510565162951536 * t962 + 0.30901699437494734 * t959;
-        let t978 = t968 + t976 * t976;
-        ::overact::guard::reach(t978, "leg3")?;
-        let t979 = ::overact::math::sqrt(t978);
-        ::overact::guard::leg(t979, 0.5619721604570214, "leg3")?;
-        let c_cylinder_leg3 = t969 / t979;
-        let t981 = 1.0 / t979;
-        let t982 = 0.9510565162951536 * c_cross_leg3;
-        let t983 = acceleration[1] + t100;
-        let t985 = acceleration[0] + t75;
-        let minus_s_cross_leg3 = t964 * t970;
-        let t989 = acceleration[2] + t124;
-        let t991 = t982 * t983 - t972 * t985 - minus_s_cross_leg3 * t989;
-        let t992 = twist[1] + t159;
-        let t994 = twist[0] + t146;
-        let t997 = twist[2] + t170;
-        let t999 = t982 * t992 - t972 * t994 - minus_s_cross_leg3 * t997;
-        let minus_rate_cross_leg3 = t970 * t999;
-        let t1001 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_minus_grod_vx_leg3 = t962 * t981;
-        let grod_vy_leg3 = t959 / t979;
+        let t950 = -minus_minus_rate_rod_leg2;
+        let t958 = pose[1] + t40 - 0.3804226065180615;
+        let t961 = pose[0] + t26 + 0.12360679774997894;
+        let t963 = 0.9510565162951536 * t958 - 0.30901699437494734 * t961;
+        let t965 = pose[2] + t10;
+        let t967 = t963 * t963 + t965 * t965;
+        let t968 = ::overact::math::sqrt(t967);
+        ::overact::guard::leg(t968, 0.5513142860385972, "leg3")?;
+        let t969 = 1.0 / t968;
+        let c_cross_leg3 = t965 * t969;
+        let t971 = 0.30901699437494734 * c_cross_leg3;
+        let gcross_vx_leg3 = t969 * t971;
+        let t973 = 0.9510565162951536 * c_cross_leg3;
+        let t974 = acceleration[1] + t100;
+        let t976 = acceleration[0] + t75;
+        let minus_s_cross_leg3 = t963 * t969;
+        let t980 = acceleration[2] + t124;
+        let t982 = t973 * t974 - t971 * t976 - minus_s_cross_leg3 * t980;
+        let t985 = 0.9510565162951536 * t961 + 0.30901699437494734 * t958;
+        let t987 = t967 + t985 * t985;
+        ::overact::guard::reach(t987, "leg3")?;
+        let t988 = ::overact::math::sqrt(t987);
+        ::overact::guard::leg(t988, 0.5619721604570214, "leg3")?;
+        let c_cylinder_leg3 = t968 / t988;
+        let t990 = twist[1] + t159;
+        let t992 = twist[0] + t146;
+        let t995 = twist[2] + t170;
+        let t997 = t973 * t990 - t971 * t992 - minus_s_cross_leg3 * t995;
+        let minus_rate_cross_leg3 = t969 * t997;
+        let t999 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1000 = 1.0 / t988;
+        let minus_minus_grod_vx_leg3 = t961 * t1000;
+        let grod_vy_leg3 = t958 / t988;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t994
-            + grod_vy_leg3 * t992 + grod_vz_leg3 * t997;
-        let t1010 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
-        let t1012 = t991 - t1001 * t1010;
-        let t1013 = t981 * t1012;
-        let t1014 = c_cylinder_leg3 * t1013;
-        let t1016 = 0.30901699437494734 * minus_s_cross_leg3;
-        let s_cylinder_leg3 = t976 / t979;
-        let t1020 = t1016 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
-        let gcylinder_vx_leg3 = t1020 * t981;
-        let t1022 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1023 = t1001 * t1022;
-        let t1024 = gcylinder_vx_leg3 * t1023;
-        let t1025 = t1024 - gcross_vx_leg3 * t1014;
-        let t1027 = 0.9510565162951536 * minus_s_cross_leg3;
-        let t1029 = 0.30901699437494734 * c_cylinder_leg3 - t1027 * s_cylinder_leg3;
-        let gcylinder_vy_leg3 = t1029 * t981;
-        let t1031 = gcylinder_vy_leg3 * t1023;
-        let minus_gcross_vy_leg3 = t970 * t982;
-        let t1034 = t1031 + minus_gcross_vy_leg3 * t1014;
-        let gcross_vz_leg3 = t970 * minus_s_cross_leg3;
-        let t1037 = c_cross_leg3 * s_cylinder_leg3;
-        let minus_gcylinder_vz_leg3 = t1037 * t981;
-        let t1039 = minus_gcylinder_vz_leg3 * t1023;
-        let t1040 = gcross_vz_leg3 * t1014 + t1039;
+        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t992
+            + grod_vy_leg3 * t990 + grod_vz_leg3 * t995;
+        let t1009 = 2.0 * minus_minus_rate_rod_leg3;
+        let t1011 = t982 - t999 * t1009;
+        let t1012 = 0.30901699437494734 * minus_s_cross_leg3;
+        let s_cylinder_leg3 = t985 / t988;
+        let t1016 = t1012 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
+        let t1019 = 0.9510565162951536 * minus_s_cross_leg3;
+        let t1021 = 0.30901699437494734 * c_cylinder_leg3 - t1019 * s_cylinder_leg3;
+        let t1024 = c_cross_leg3 * s_cylinder_leg3;
+        let t1026 = t1016 * t992 + t1021 * t990 - t1024 * t995;
+        let t1027 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1028 = t1026 * t1027;
+        let minus_rate_dot_cross_leg3 = t969 * (t1011 + t1028 + t1028);
+        let rate_cylinder_leg3 = t1000 * t1026;
+        let t1033 = rate_cylinder_leg3 * t999;
+        let t1034 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1036 = t1033 + t1034 + t1033;
+        let t1037 = s_cylinder_leg3 * t1036;
+        let t1038 = t1037 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t1016 * t1000;
+        let t1041 = t999 * t1027;
+        let t1042 = gcylinder_vx_leg3 * t1041;
+        let t1043 = gcross_vx_leg3 * t1038 + t1042;
+        let gcylinder_vy_leg3 = t1021 * t1000;
+        let t1045 = gcylinder_vy_leg3 * t1041;
+        let minus_gcross_vy_leg3 = t969 * t973;
+        let t1048 = t1045 - minus_gcross_vy_leg3 * t1038;
+        let gcross_vz_leg3 = t969 * minus_s_cross_leg3;
+        let minus_gcylinder_vz_leg3 = t1024 * t1000;
+        let t1052 = minus_gcylinder_vz_leg3 * t1041;
+        let t1053 = gcross_vz_leg3 * t1038 - t1052;
         let gcross_wx_leg3 = t40 * gcross_vz_leg3 + t10 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t40 * minus_gcylinder_vz_leg3
             + t10 * gcylinder_vy_leg3;
-        let t1048 = minus_gcylinder_wx_leg3 * t1023;
-        let t1049 = gcross_wx_leg3 * t1014 + t1048;
+        let t1061 = minus_gcylinder_wx_leg3 * t1041;
+        let t1062 = gcross_wx_leg3 * t1038 - t1061;
         let gcross_wy_leg3 = t10 * gcross_vx_leg3 - t26 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t10 * gcylinder_vx_leg3 + t26 * minus_gcylinder_vz_leg3;
-        let t1057 = gcylinder_wy_leg3 * t1023;
-        let t1058 = t1057 - gcross_wy_leg3 * t1014;
+        let t1070 = gcylinder_wy_leg3 * t1041;
+        let t1071 = gcross_wy_leg3 * t1038 + t1070;
         let gcylinder_wz_leg3 = t26 * gcylinder_vy_leg3 - t40 * gcylinder_vx_leg3;
-        let t1062 = gcylinder_wz_leg3 * t1023;
+        let t1075 = gcylinder_wz_leg3 * t1041;
         let minus_gcross_wz_leg3 = t26 * minus_gcross_vy_leg3 + t40 * gcross_vx_leg3;
-        let t1067 = t1062 + minus_gcross_wz_leg3 * t1014;
-        let t1072 = t1020 * t994 + t1029 * t992 - t1037 * t997;
-        let rate_cylinder_leg3 = t981 * t1072;
-        let t1074 = rate_cylinder_leg3 * t1001;
-        let minus_rate_dot_cross_leg3 = t970 * (t1012 + 2.0 * (t1072 * t1022));
-        let t1079 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1081 = t1074 + t1079 + t1074;
-        let t1084 = c_cylinder_leg3 * t1081 + s_cylinder_leg3 * t1013;
-        let t1086 = t1001 * t1001;
-        let t1087 = t1022 * t1022;
+        let t1080 = t1075 - minus_gcross_wz_leg3 * t1038;
+        let t1084 = c_cylinder_leg3 * t1036 + s_cylinder_leg3 * (t1000 * t1011);
+        let t1086 = t999 * t999;
+        let t1087 = t1027 * t1027;
         let t1088 = t1086 - t1087;
         let t1090 = gcross_vx_leg3 * t1084 + gcylinder_vx_leg3 * t1088;
         let t1093 = gcylinder_vy_leg3 * t1088 - minus_gcross_vy_leg3 * t1084;
@@ -4040,11 +4042,11 @@ impl Hexapod {
         let t1099 = gcross_wx_leg3 * t1084 - minus_gcylinder_wx_leg3 * t1088;
         let t1102 = gcross_wy_leg3 * t1084 + gcylinder_wy_leg3 * t1088;
         let t1105 = gcylinder_wz_leg3 * t1088 - minus_gcross_wz_leg3 * t1084;
-        let t1110 = t1020 * t985 + t1029 * t983 - t1037 * t989;
-        let t1112 = t1110 - rate_cylinder_leg3 * t1010;
-        let t1113 = t981 * t1112;
-        let rate_dot_cylinder_leg3 = t1113 - t1023;
-        let t1115 = rate_dot_cylinder_leg3 - t1023;
+        let t1110 = t1016 * t976 + t1021 * t974 - t1024 * t980;
+        let t1112 = t1110 - rate_cylinder_leg3 * t1009;
+        let t1113 = t1112 / t988;
+        let rate_dot_cylinder_leg3 = t1113 - t1041;
+        let t1115 = rate_dot_cylinder_leg3 - t1041;
         let t1117 = rate_cylinder_leg3 * rate_cylinder_leg3;
         let t1120 = c_cylinder_leg3 * t1115 - s_cylinder_leg3 * (t1117 - t1086);
         let t1122 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
@@ -4054,289 +4056,289 @@ impl Hexapod {
         let t1133 = gcross_wx_leg3 * t1120 + minus_gcylinder_wx_leg3 * t1122;
         let t1136 = gcross_wy_leg3 * t1120 - gcylinder_wy_leg3 * t1122;
         let t1139 = minus_gcross_wz_leg3 * t1120 + gcylinder_wz_leg3 * t1122;
-        let t1140 = minus_rate_dot_cross_leg3 - t1014;
-        let t1142 = gcross_vx_leg3 * t1140 + t1024;
-        let t1144 = minus_gcross_vy_leg3 * t1140 - t1031;
-        let t1146 = t1039 - gcross_vz_leg3 * t1140;
-        let t1148 = t1048 - gcross_wx_leg3 * t1140;
-        let t1150 = gcross_wy_leg3 * t1140 + t1057;
-        let t1152 = minus_gcross_wz_leg3 * t1140 - t1062;
-        let t1156 = c_cylinder_leg3 * (t1087 - t1117) - s_cylinder_leg3 * t1113;
-        let t1159 = gcross_vx_leg3 * t1156 + gcylinder_vx_leg3 * t1079;
-        let t1162 = gcylinder_vy_leg3 * t1079 - minus_gcross_vy_leg3 * t1156;
-        let t1165 = gcross_vz_leg3 * t1156 - minus_gcylinder_vz_leg3 * t1079;
-        let t1168 = gcross_wx_leg3 * t1156 - minus_gcylinder_wx_leg3 * t1079;
-        let t1171 = gcross_wy_leg3 * t1156 + gcylinder_wy_leg3 * t1079;
-        let t1174 = gcylinder_wz_leg3 * t1079 - minus_gcross_wz_leg3 * t1156;
-        let t1175 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t1176 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t1177 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t1178 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t1179 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t1180 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t1181 = 9.81 * minus_s_cross_leg3;
-        let t1182 = s_cylinder_leg3 * t1181;
-        let t1184 = 9.81 * grod_vz_leg3;
-        let t1202 = t1184 / t979;
-        let t1205 = c_cylinder_leg3 * t1181;
-        let t1207 = 9.81 * t1037;
+        let t1141 = gcross_vx_leg3 * t1037 + t1042;
+        let t1143 = minus_gcross_vy_leg3 * t1037 - t1045;
+        let t1145 = t1052 - gcross_vz_leg3 * t1037;
+        let t1147 = t1061 - gcross_wx_leg3 * t1037;
+        let t1149 = gcross_wy_leg3 * t1037 + t1070;
+        let t1151 = minus_gcross_wz_leg3 * t1037 - t1075;
+        let t1155 = c_cylinder_leg3 * (t1087 - t1117) - s_cylinder_leg3 * t1113;
+        let t1158 = gcross_vx_leg3 * t1155 + gcylinder_vx_leg3 * t1034;
+        let t1161 = gcylinder_vy_leg3 * t1034 - minus_gcross_vy_leg3 * t1155;
+        let t1164 = gcross_vz_leg3 * t1155 - minus_gcylinder_vz_leg3 * t1034;
+        let t1167 = gcross_wx_leg3 * t1155 - minus_gcylinder_wx_leg3 * t1034;
+        let t1170 = gcross_wy_leg3 * t1155 + gcylinder_wy_leg3 * t1034;
+        let t1173 = gcylinder_wz_leg3 * t1034 - minus_gcross_wz_leg3 * t1155;
+        let t1174 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t1175 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t1176 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t1177 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t1178 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t1179 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t1180 = 9.81 * minus_s_cross_leg3;
+        let t1181 = s_cylinder_leg3 * t1180;
+        let t1183 = 9.81 * grod_vz_leg3;
+        let t1201 = t1000 * t1183;
+        let t1204 = c_cylinder_leg3 * t1180;
+        let t1206 = 9.81 * t1024;
         let grod_wz_leg3 = t26 * grod_vy_leg3 - t40 * minus_minus_grod_vx_leg3;
-        let t1220 = 9.81 * c_cross_leg3;
-        let t1228 = t1181 - t991;
-        let t1230 = t969 * t1081 - s_cylinder_leg3 * t1228;
-        let t1236 = minus_minus_grod_vx_leg3 * t985 + grod_vy_leg3 * t983
-            + grod_vz_leg3 * t989;
-        let t1237 = t1184 + t1236;
-        let t1240 = t1237 + t979 * (t1087 + t1117);
-        let t1244 = gcross_vx_leg3 * t1230 - gcylinder_vx_leg3 * t1240
+        let t1219 = 9.81 * c_cross_leg3;
+        let t1227 = t1180 - t982;
+        let t1229 = t968 * t1036 - s_cylinder_leg3 * t1227;
+        let t1235 = minus_minus_grod_vx_leg3 * t976 + grod_vy_leg3 * t974
+            + grod_vz_leg3 * t980;
+        let t1236 = t1183 + t1235;
+        let t1239 = t1236 + t988 * (t1087 + t1117);
+        let t1243 = gcross_vx_leg3 * t1229 - gcylinder_vx_leg3 * t1239
             - minus_minus_grod_vx_leg3 * t1115;
-        let t1249 = gcylinder_vy_leg3 * t1240 + minus_gcross_vy_leg3 * t1230
+        let t1248 = gcylinder_vy_leg3 * t1239 + minus_gcross_vy_leg3 * t1229
             + grod_vy_leg3 * t1115;
-        let t1254 = gcross_vz_leg3 * t1230 + minus_gcylinder_vz_leg3 * t1240
+        let t1253 = gcross_vz_leg3 * t1229 + minus_gcylinder_vz_leg3 * t1239
             - grod_vz_leg3 * t1115;
-        let t1266 = t1110 - t1207;
-        let t1269 = t999 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1266 - c_cylinder_leg3 * t1237);
-        let t1272 = gcross_vx_leg3 * t1269 + t1016 * minus_rate_dot_cross_leg3;
-        let t1275 = minus_gcross_vy_leg3 * t1269 + t1027 * minus_rate_dot_cross_leg3;
-        let t1278 = gcross_vz_leg3 * t1269 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t1289 = c_cylinder_leg3 * (t1228 - t1012);
-        let t1291 = t1112 + t1266;
-        let t1294 = t1086 + t1117;
-        let t1296 = gcross_vx_leg3 * t1289 + gcylinder_vx_leg3 * t1291
-            - minus_minus_grod_vx_leg3 * t1294;
-        let t1301 = gcylinder_vy_leg3 * t1291 - minus_gcross_vy_leg3 * t1289
-            - grod_vy_leg3 * t1294;
-        let t1306 = gcross_vz_leg3 * t1289 - minus_gcylinder_vz_leg3 * t1291
-            - grod_vz_leg3 * t1294;
-        let t1316 = t124 + t486;
-        let minus_minus_rate_dot_rod_leg3 = t979 * t1294 + t1236;
+        let t1265 = t1110 - t1206;
+        let t1268 = t997 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1265 - c_cylinder_leg3 * t1236);
+        let t1271 = gcross_vx_leg3 * t1268 + t1012 * minus_rate_dot_cross_leg3;
+        let t1274 = minus_gcross_vy_leg3 * t1268 + t1019 * minus_rate_dot_cross_leg3;
+        let t1277 = gcross_vz_leg3 * t1268 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t1288 = c_cylinder_leg3 * (t1227 - t1011);
+        let t1290 = t1112 + t1265;
+        let t1293 = t1086 + t1117;
+        let t1295 = gcross_vx_leg3 * t1288 + gcylinder_vx_leg3 * t1290
+            - minus_minus_grod_vx_leg3 * t1293;
+        let t1300 = gcylinder_vy_leg3 * t1290 - minus_gcross_vy_leg3 * t1288
+            - grod_vy_leg3 * t1293;
+        let t1305 = gcross_vz_leg3 * t1288 - minus_gcylinder_vz_leg3 * t1290
+            - grod_vz_leg3 * t1293;
+        let t1315 = t124 + t486;
+        let minus_minus_rate_dot_rod_leg3 = t988 * t1293 + t1235;
         let grod_wx_leg3 = t40 * grod_vz_leg3 - t10 * grod_vy_leg3;
         let minus_grod_wy_leg3 = t26 * grod_vz_leg3 - t10 * minus_minus_grod_vx_leg3;
-        let t1346 = -minus_minus_rate_rod_leg3;
-        let t1354 = pose[1] + t530 - 0.2972579301909578;
-        let t1357 = pose[0] + t524 + 0.2676522425435432;
-        let t1359 = 0.7431448254773945 * t1354 - 0.6691306063588579 * t1357;
-        let t1361 = pose[2] + t538;
-        let t1363 = t1359 * t1359 + t1361 * t1361;
-        let t1364 = ::overact::math::sqrt(t1363);
-        ::overact::guard::leg(t1364, 0.5513142860385972, "leg4")?;
-        let t1365 = 1.0 / t1364;
-        let c_cross_leg4 = t1361 * t1365;
-        let t1367 = 0.6691306063588579 * c_cross_leg4;
-        let gcross_vx_leg4 = t1365 * t1367;
-        let t1369 = 0.7431448254773945 * c_cross_leg4;
-        let t1370 = acceleration[1] + t604;
-        let t1372 = acceleration[0] + t599;
-        let minus_s_cross_leg4 = t1359 * t1365;
-        let t1376 = acceleration[2] + t610;
-        let t1378 = t1369 * t1370 - t1367 * t1372 - minus_s_cross_leg4 * t1376;
-        let t1381 = 0.7431448254773945 * t1357 + 0.6691306063588579 * t1354;
-        let t1383 = t1363 + t1381 * t1381;
-        ::overact::guard::reach(t1383, "leg4")?;
-        let t1384 = ::overact::math::sqrt(t1383);
-        ::overact::guard::leg(t1384, 0.5619721604570214, "leg4")?;
-        let c_cylinder_leg4 = t1364 / t1384;
-        let t1386 = twist[1] + t575;
-        let t1388 = twist[0] + t565;
-        let t1391 = twist[2] + t585;
-        let t1393 = t1369 * t1386 - t1367 * t1388 - minus_s_cross_leg4 * t1391;
-        let minus_rate_cross_leg4 = t1365 * t1393;
-        let t1395 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_minus_grod_vx_leg4 = t1357 / t1384;
-        let grod_vy_leg4 = t1354 / t1384;
+        let t1345 = -minus_minus_rate_rod_leg3;
+        let t1353 = pose[1] + t530 - 0.2972579301909578;
+        let t1356 = pose[0] + t524 + 0.2676522425435432;
+        let t1358 = 0.7431448254773945 * t1353 - 0.6691306063588579 * t1356;
+        let t1360 = pose[2] + t538;
+        let t1362 = t1358 * t1358 + t1360 * t1360;
+        let t1363 = ::overact::math::sqrt(t1362);
+        ::overact::guard::leg(t1363, 0.5513142860385972, "leg4")?;
+        let t1364 = 1.0 / t1363;
+        let c_cross_leg4 = t1360 * t1364;
+        let t1366 = 0.6691306063588579 * c_cross_leg4;
+        let gcross_vx_leg4 = t1364 * t1366;
+        let t1370 = 0.7431448254773945 * t1356 + 0.6691306063588579 * t1353;
+        let t1372 = t1362 + t1370 * t1370;
+        ::overact::guard::reach(t1372, "leg4")?;
+        let t1373 = ::overact::math::sqrt(t1372);
+        ::overact::guard::leg(t1373, 0.5619721604570214, "leg4")?;
+        let c_cylinder_leg4 = t1363 / t1373;
+        let t1375 = 0.7431448254773945 * c_cross_leg4;
+        let t1376 = acceleration[1] + t603;
+        let t1378 = acceleration[0] + t598;
+        let minus_s_cross_leg4 = t1358 * t1364;
+        let t1382 = acceleration[2] + t609;
+        let t1384 = t1375 * t1376 - t1366 * t1378 - minus_s_cross_leg4 * t1382;
+        let t1385 = twist[1] + t574;
+        let t1387 = twist[0] + t564;
+        let t1390 = twist[2] + t584;
+        let t1392 = t1375 * t1385 - t1366 * t1387 - minus_s_cross_leg4 * t1390;
+        let minus_rate_cross_leg4 = t1364 * t1392;
+        let t1394 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_minus_grod_vx_leg4 = t1356 / t1373;
+        let grod_vy_leg4 = t1353 / t1373;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t1388
-            + grod_vy_leg4 * t1386 + grod_vz_leg4 * t1391;
-        let t1404 = 2.0 * minus_minus_rate_rod_leg4;
-        let t1406 = t1378 - t1395 * t1404;
-        let t1407 = 0.6691306063588579 * minus_s_cross_leg4;
-        let s_cylinder_leg4 = t1381 / t1384;
-        let t1411 = t1407 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
-        let t1414 = 0.7431448254773945 * minus_s_cross_leg4;
-        let t1416 = 0.6691306063588579 * c_cylinder_leg4 - t1414 * s_cylinder_leg4;
-        let t1419 = c_cross_leg4 * s_cylinder_leg4;
-        let t1421 = t1411 * t1388 + t1416 * t1386 - t1419 * t1391;
-        let t1422 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_rate_dot_cross_leg4 = t1365 * (t1406 + 2.0 * (t1421 * t1422));
-        let t1427 = 1.0 / t1384;
-        let rate_cylinder_leg4 = t1427 * t1421;
-        let t1429 = rate_cylinder_leg4 * t1395;
-        let t1430 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1432 = t1429 + t1430 + t1429;
-        let t1433 = s_cylinder_leg4 * t1432;
-        let t1434 = t1433 - minus_rate_dot_cross_leg4;
-        let gcylinder_vx_leg4 = t1411 * t1427;
-        let t1437 = t1395 * t1422;
-        let t1438 = gcylinder_vx_leg4 * t1437;
-        let t1439 = gcross_vx_leg4 * t1434 + t1438;
-        let gcylinder_vy_leg4 = t1416 * t1427;
-        let t1441 = gcylinder_vy_leg4 * t1437;
-        let minus_gcross_vy_leg4 = t1365 * t1369;
-        let t1444 = t1441 - minus_gcross_vy_leg4 * t1434;
-        let gcross_vz_leg4 = t1365 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t1419 * t1427;
-        let t1448 = minus_gcylinder_vz_leg4 * t1437;
-        let t1449 = gcross_vz_leg4 * t1434 - t1448;
+        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t1387
+            + grod_vy_leg4 * t1385 + grod_vz_leg4 * t1390;
+        let t1403 = minus_minus_rate_rod_leg4 + minus_minus_rate_rod_leg4;
+        let t1405 = t1384 - t1394 * t1403;
+        let t1406 = t1405 / t1373;
+        let t1407 = c_cylinder_leg4 * t1406;
+        let t1409 = 0.6691306063588579 * minus_s_cross_leg4;
+        let s_cylinder_leg4 = t1370 / t1373;
+        let t1413 = t1409 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
+        let t1414 = 1.0 / t1373;
+        let gcylinder_vx_leg4 = t1413 * t1414;
+        let t1416 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t1417 = t1394 * t1416;
+        let t1418 = gcylinder_vx_leg4 * t1417;
+        let t1419 = t1418 - gcross_vx_leg4 * t1407;
+        let t1421 = 0.7431448254773945 * minus_s_cross_leg4;
+        let t1423 = 0.6691306063588579 * c_cylinder_leg4 - t1421 * s_cylinder_leg4;
+        let gcylinder_vy_leg4 = t1423 * t1414;
+        let t1425 = gcylinder_vy_leg4 * t1417;
+        let minus_gcross_vy_leg4 = t1364 * t1375;
+        let t1428 = t1425 + minus_gcross_vy_leg4 * t1407;
+        let gcross_vz_leg4 = t1364 * minus_s_cross_leg4;
+        let t1431 = c_cross_leg4 * s_cylinder_leg4;
+        let minus_gcylinder_vz_leg4 = t1431 * t1414;
+        let t1433 = minus_gcylinder_vz_leg4 * t1417;
+        let t1434 = gcross_vz_leg4 * t1407 + t1433;
         let gcross_wx_leg4 = t530 * gcross_vz_leg4 + t538 * minus_gcross_vy_leg4;
         let minus_gcylinder_wx_leg4 = t530 * minus_gcylinder_vz_leg4
             + t538 * gcylinder_vy_leg4;
-        let t1457 = minus_gcylinder_wx_leg4 * t1437;
-        let t1458 = gcross_wx_leg4 * t1434 - t1457;
+        let t1442 = minus_gcylinder_wx_leg4 * t1417;
+        let t1443 = gcross_wx_leg4 * t1407 + t1442;
         let gcross_wy_leg4 = t538 * gcross_vx_leg4 - t524 * gcross_vz_leg4;
         let gcylinder_wy_leg4 = t538 * gcylinder_vx_leg4
             + t524 * minus_gcylinder_vz_leg4;
-        let t1466 = gcylinder_wy_leg4 * t1437;
-        let t1467 = gcross_wy_leg4 * t1434 + t1466;
+        let t1451 = gcylinder_wy_leg4 * t1417;
+        let t1452 = t1451 - gcross_wy_leg4 * t1407;
         let gcylinder_wz_leg4 = t524 * gcylinder_vy_leg4 - t530 * gcylinder_vx_leg4;
-        let t1471 = gcylinder_wz_leg4 * t1437;
+        let t1456 = gcylinder_wz_leg4 * t1417;
         let minus_gcross_wz_leg4 = t524 * minus_gcross_vy_leg4 + t530 * gcross_vx_leg4;
-        let t1476 = t1471 - minus_gcross_wz_leg4 * t1434;
-        let t1480 = c_cylinder_leg4 * t1432 + s_cylinder_leg4 * (t1406 / t1384);
-        let t1482 = t1395 * t1395;
-        let t1483 = t1422 * t1422;
-        let t1484 = t1482 - t1483;
-        let t1486 = gcross_vx_leg4 * t1480 + gcylinder_vx_leg4 * t1484;
-        let t1489 = gcylinder_vy_leg4 * t1484 - minus_gcross_vy_leg4 * t1480;
-        let t1492 = gcross_vz_leg4 * t1480 - minus_gcylinder_vz_leg4 * t1484;
-        let t1495 = gcross_wx_leg4 * t1480 - minus_gcylinder_wx_leg4 * t1484;
-        let t1498 = gcross_wy_leg4 * t1480 + gcylinder_wy_leg4 * t1484;
-        let t1501 = gcylinder_wz_leg4 * t1484 - minus_gcross_wz_leg4 * t1480;
-        let t1506 = t1411 * t1372 + t1416 * t1370 - t1419 * t1376;
-        let t1508 = t1506 - rate_cylinder_leg4 * t1404;
-        let t1509 = t1427 * t1508;
-        let rate_dot_cylinder_leg4 = t1509 - t1437;
-        let t1511 = rate_dot_cylinder_leg4 - t1437;
-        let t1513 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1516 = c_cylinder_leg4 * t1511 - s_cylinder_leg4 * (t1513 - t1482);
-        let t1518 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1520 = gcross_vx_leg4 * t1516 - gcylinder_vx_leg4 * t1518;
-        let t1523 = minus_gcross_vy_leg4 * t1516 + gcylinder_vy_leg4 * t1518;
-        let t1526 = gcross_vz_leg4 * t1516 + minus_gcylinder_vz_leg4 * t1518;
-        let t1529 = gcross_wx_leg4 * t1516 + minus_gcylinder_wx_leg4 * t1518;
-        let t1532 = gcross_wy_leg4 * t1516 - gcylinder_wy_leg4 * t1518;
-        let t1535 = minus_gcross_wz_leg4 * t1516 + gcylinder_wz_leg4 * t1518;
-        let t1537 = gcross_vx_leg4 * t1433 + t1438;
-        let t1539 = minus_gcross_vy_leg4 * t1433 - t1441;
-        let t1541 = t1448 - gcross_vz_leg4 * t1433;
-        let t1543 = t1457 - gcross_wx_leg4 * t1433;
-        let t1545 = gcross_wy_leg4 * t1433 + t1466;
-        let t1547 = minus_gcross_wz_leg4 * t1433 - t1471;
-        let t1551 = c_cylinder_leg4 * (t1483 - t1513) - s_cylinder_leg4 * t1509;
-        let t1554 = gcross_vx_leg4 * t1551 + gcylinder_vx_leg4 * t1430;
-        let t1557 = gcylinder_vy_leg4 * t1430 - minus_gcross_vy_leg4 * t1551;
-        let t1560 = gcross_vz_leg4 * t1551 - minus_gcylinder_vz_leg4 * t1430;
-        let t1563 = gcross_wx_leg4 * t1551 - minus_gcylinder_wx_leg4 * t1430;
-        let t1566 = gcross_wy_leg4 * t1551 + gcylinder_wy_leg4 * t1430;
-        let t1569 = gcylinder_wz_leg4 * t1430 - minus_gcross_wz_leg4 * t1551;
-        let t1570 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t1571 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t1572 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t1573 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t1574 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t1575 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t1576 = 9.81 * minus_s_cross_leg4;
-        let t1577 = s_cylinder_leg4 * t1576;
-        let t1579 = 9.81 * grod_vz_leg4;
-        let t1597 = t1579 / t1384;
-        let t1600 = c_cylinder_leg4 * t1576;
-        let t1602 = 9.81 * t1419;
+        let t1461 = t1456 + minus_gcross_wz_leg4 * t1407;
+        let t1466 = t1413 * t1387 + t1423 * t1385 - t1431 * t1390;
+        let rate_cylinder_leg4 = t1414 * t1466;
+        let t1468 = rate_cylinder_leg4 * t1394;
+        let minus_rate_dot_cross_leg4 = t1364 * (t1405 + 2.0 * (t1466 * t1416));
+        let t1473 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1475 = t1468 + t1473 + t1468;
+        let t1478 = c_cylinder_leg4 * t1475 + s_cylinder_leg4 * t1406;
+        let t1480 = t1394 * t1394;
+        let t1481 = t1416 * t1416;
+        let t1482 = t1480 - t1481;
+        let t1484 = gcross_vx_leg4 * t1478 + gcylinder_vx_leg4 * t1482;
+        let t1487 = gcylinder_vy_leg4 * t1482 - minus_gcross_vy_leg4 * t1478;
+        let t1490 = gcross_vz_leg4 * t1478 - minus_gcylinder_vz_leg4 * t1482;
+        let t1493 = gcross_wx_leg4 * t1478 - minus_gcylinder_wx_leg4 * t1482;
+        let t1496 = gcross_wy_leg4 * t1478 + gcylinder_wy_leg4 * t1482;
+        let t1499 = gcylinder_wz_leg4 * t1482 - minus_gcross_wz_leg4 * t1478;
+        let t1504 = t1413 * t1378 + t1423 * t1376 - t1431 * t1382;
+        let t1506 = t1504 - rate_cylinder_leg4 * t1403;
+        let t1507 = t1506 / t1373;
+        let rate_dot_cylinder_leg4 = t1507 - t1417;
+        let t1509 = rate_dot_cylinder_leg4 - t1417;
+        let t1511 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1514 = c_cylinder_leg4 * t1509 - s_cylinder_leg4 * (t1511 - t1480);
+        let t1516 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1518 = gcross_vx_leg4 * t1514 - gcylinder_vx_leg4 * t1516;
+        let t1521 = minus_gcross_vy_leg4 * t1514 + gcylinder_vy_leg4 * t1516;
+        let t1524 = gcross_vz_leg4 * t1514 + minus_gcylinder_vz_leg4 * t1516;
+        let t1527 = gcross_wx_leg4 * t1514 + minus_gcylinder_wx_leg4 * t1516;
+        let t1530 = gcross_wy_leg4 * t1514 - gcylinder_wy_leg4 * t1516;
+        let t1533 = minus_gcross_wz_leg4 * t1514 + gcylinder_wz_leg4 * t1516;
+        let t1534 = s_cylinder_leg4 * t1475;
+        let t1536 = gcross_vx_leg4 * t1534 + t1418;
+        let t1538 = minus_gcross_vy_leg4 * t1534 - t1425;
+        let t1540 = t1433 - gcross_vz_leg4 * t1534;
+        let t1542 = t1442 - gcross_wx_leg4 * t1534;
+        let t1544 = gcross_wy_leg4 * t1534 + t1451;
+        let t1546 = minus_gcross_wz_leg4 * t1534 - t1456;
+        let t1550 = c_cylinder_leg4 * (t1481 - t1511) - s_cylinder_leg4 * t1507;
+        let t1553 = gcross_vx_leg4 * t1550 + gcylinder_vx_leg4 * t1473;
+        let t1556 = gcylinder_vy_leg4 * t1473 - minus_gcross_vy_leg4 * t1550;
+        let t1559 = gcross_vz_leg4 * t1550 - minus_gcylinder_vz_leg4 * t1473;
+        let t1562 = gcross_wx_leg4 * t1550 - minus_gcylinder_wx_leg4 * t1473;
+        let t1565 = gcross_wy_leg4 * t1550 + gcylinder_wy_leg4 * t1473;
+        let t1568 = gcylinder_wz_leg4 * t1473 - minus_gcross_wz_leg4 * t1550;
+        let t1569 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t1570 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t1571 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t1572 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t1573 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t1574 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t1575 = 9.81 * minus_s_cross_leg4;
+        let t1576 = s_cylinder_leg4 * t1575;
+        let t1578 = 9.81 * grod_vz_leg4;
+        let t1596 = t1414 * t1578;
+        let t1599 = c_cylinder_leg4 * t1575;
+        let t1601 = 9.81 * t1431;
         let grod_wz_leg4 = t524 * grod_vy_leg4 - t530 * minus_minus_grod_vx_leg4;
-        let t1615 = 9.81 * c_cross_leg4;
-        let t1623 = t1576 - t1378;
-        let t1625 = t1364 * t1432 - s_cylinder_leg4 * t1623;
-        let t1631 = minus_minus_grod_vx_leg4 * t1372 + grod_vy_leg4 * t1370
-            + grod_vz_leg4 * t1376;
-        let t1632 = t1579 + t1631;
-        let t1635 = t1632 + t1384 * (t1483 + t1513);
-        let t1639 = gcross_vx_leg4 * t1625 - gcylinder_vx_leg4 * t1635
-            - minus_minus_grod_vx_leg4 * t1511;
-        let t1644 = gcylinder_vy_leg4 * t1635 + minus_gcross_vy_leg4 * t1625
-            + grod_vy_leg4 * t1511;
-        let t1649 = gcross_vz_leg4 * t1625 + minus_gcylinder_vz_leg4 * t1635
-            - grod_vz_leg4 * t1511;
-        let t1661 = t1506 - t1602;
-        let t1664 = t1393 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t1661 - c_cylinder_leg4 * t1632);
-        let t1667 = gcross_vx_leg4 * t1664 + t1407 * minus_rate_dot_cross_leg4;
-        let t1670 = minus_gcross_vy_leg4 * t1664 + t1414 * minus_rate_dot_cross_leg4;
-        let t1673 = gcross_vz_leg4 * t1664 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t1684 = c_cylinder_leg4 * (t1623 - t1406);
-        let t1686 = t1508 + t1661;
-        let t1689 = t1482 + t1513;
-        let t1691 = gcross_vx_leg4 * t1684 + gcylinder_vx_leg4 * t1686
-            - minus_minus_grod_vx_leg4 * t1689;
-        let t1696 = gcylinder_vy_leg4 * t1686 - minus_gcross_vy_leg4 * t1684
-            - grod_vy_leg4 * t1689;
-        let t1701 = gcross_vz_leg4 * t1684 - minus_gcylinder_vz_leg4 * t1686
-            - grod_vz_leg4 * t1689;
-        let t1711 = t610 + t486;
-        let minus_minus_rate_dot_rod_leg4 = t1384 * t1689 + t1631;
+        let t1614 = 9.81 * c_cross_leg4;
+        let t1622 = t1575 - t1384;
+        let t1624 = t1363 * t1475 - s_cylinder_leg4 * t1622;
+        let t1630 = minus_minus_grod_vx_leg4 * t1378 + grod_vy_leg4 * t1376
+            + grod_vz_leg4 * t1382;
+        let t1631 = t1578 + t1630;
+        let t1634 = t1631 + t1373 * (t1481 + t1511);
+        let t1638 = gcross_vx_leg4 * t1624 - gcylinder_vx_leg4 * t1634
+            - minus_minus_grod_vx_leg4 * t1509;
+        let t1643 = gcylinder_vy_leg4 * t1634 + minus_gcross_vy_leg4 * t1624
+            + grod_vy_leg4 * t1509;
+        let t1648 = gcross_vz_leg4 * t1624 + minus_gcylinder_vz_leg4 * t1634
+            - grod_vz_leg4 * t1509;
+        let t1660 = t1504 - t1601;
+        let t1663 = t1392 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1660 - c_cylinder_leg4 * t1631);
+        let t1666 = gcross_vx_leg4 * t1663 + t1409 * minus_rate_dot_cross_leg4;
+        let t1669 = minus_gcross_vy_leg4 * t1663 + t1421 * minus_rate_dot_cross_leg4;
+        let t1672 = gcross_vz_leg4 * t1663 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t1683 = c_cylinder_leg4 * (t1622 - t1405);
+        let t1685 = t1506 + t1660;
+        let t1688 = t1480 + t1511;
+        let t1690 = gcross_vx_leg4 * t1683 + gcylinder_vx_leg4 * t1685
+            - minus_minus_grod_vx_leg4 * t1688;
+        let t1695 = gcylinder_vy_leg4 * t1685 - minus_gcross_vy_leg4 * t1683
+            - grod_vy_leg4 * t1688;
+        let t1700 = gcross_vz_leg4 * t1683 - minus_gcylinder_vz_leg4 * t1685
+            - grod_vz_leg4 * t1688;
+        let t1710 = t609 + t486;
+        let minus_minus_rate_dot_rod_leg4 = t1373 * t1688 + t1630;
         let grod_wx_leg4 = t530 * grod_vz_leg4 - t538 * grod_vy_leg4;
         let minus_grod_wy_leg4 = t524 * grod_vz_leg4 - t538 * minus_minus_grod_vx_leg4;
-        let t1741 = -minus_minus_rate_rod_leg4;
-        let t1749 = pose[0] - t29 + 0.2676522425435432;
-        let t1752 = pose[1] - t43 + 0.2972579301909578;
-        let t1754 = 0.6691306063588579 * t1749 + 0.7431448254773945 * t1752;
-        let t1756 = pose[2] - t13;
-        let t1758 = t1754 * t1754 + t1756 * t1756;
-        let t1759 = ::overact::math::sqrt(t1758);
-        ::overact::guard::leg(t1759, 0.5513142860385972, "leg5")?;
-        let t1760 = 1.0 / t1759;
-        let c_cross_leg5 = t1756 * t1760;
-        let t1762 = 0.6691306063588579 * c_cross_leg5;
-        let gcross_vx_leg5 = t1760 * t1762;
-        let s_cross_leg5 = t1754 * t1760;
-        let t1765 = acceleration[2] - t127;
-        let t1767 = acceleration[0] - t78;
-        let t1769 = 0.7431448254773945 * c_cross_leg5;
-        let t1770 = acceleration[1] - t103;
-        let t1773 = s_cross_leg5 * t1765 - (t1762 * t1767 + t1769 * t1770);
-        let t1776 = 0.6691306063588579 * t1752 - 0.7431448254773945 * t1749;
-        let t1778 = t1758 + t1776 * t1776;
-        ::overact::guard::reach(t1778, "leg5")?;
-        let t1779 = ::overact::math::sqrt(t1778);
-        ::overact::guard::leg(t1779, 0.5619721604570214, "leg5")?;
-        let t1780 = 1.0 / t1779;
-        let c_cylinder_leg5 = t1759 * t1780;
-        let t1783 = 0.7431448254773945 * s_cross_leg5;
-        let s_cylinder_leg5 = t1776 / t1779;
-        let t1786 = 0.6691306063588579 * c_cylinder_leg5 - t1783 * s_cylinder_leg5;
-        let t1787 = twist[1] + t162;
-        let t1789 = 0.6691306063588579 * s_cross_leg5;
-        let t1792 = t1789 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
-        let t1793 = twist[0] + t149;
-        let t1796 = c_cross_leg5 * s_cylinder_leg5;
-        let t1797 = twist[2] + t173;
-        let t1799 = t1786 * t1787 - t1792 * t1793 - t1796 * t1797;
-        let t1804 = s_cross_leg5 * t1797 - (t1762 * t1793 + t1769 * t1787);
-        let minus_rate_cross_leg5 = t1760 * t1804;
-        let t1806 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1807 = t1799 * t1806;
-        let t1810 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_minus_grod_vx_leg5 = t1749 * t1780;
-        let grod_vy_leg5 = t1752 * t1780;
+        let t1740 = -minus_minus_rate_rod_leg4;
+        let t1748 = pose[0] - t29 + 0.2676522425435432;
+        let t1751 = pose[1] - t43 + 0.2972579301909578;
+        let t1753 = 0.6691306063588579 * t1748 + 0.7431448254773945 * t1751;
+        let t1755 = pose[2] - t13;
+        let t1757 = t1753 * t1753 + t1755 * t1755;
+        let t1758 = ::overact::math::sqrt(t1757);
+        ::overact::guard::leg(t1758, 0.5513142860385972, "leg5")?;
+        let t1759 = 1.0 / t1758;
+        let c_cross_leg5 = t1755 * t1759;
+        let t1761 = 0.6691306063588579 * c_cross_leg5;
+        let gcross_vx_leg5 = t1759 * t1761;
+        let s_cross_leg5 = t1753 * t1759;
+        let t1764 = acceleration[2] - t127;
+        let t1766 = acceleration[0] - t78;
+        let t1768 = 0.7431448254773945 * c_cross_leg5;
+        let t1769 = acceleration[1] - t103;
+        let t1772 = s_cross_leg5 * t1764 - (t1761 * t1766 + t1768 * t1769);
+        let t1775 = 0.6691306063588579 * t1751 - 0.7431448254773945 * t1748;
+        let t1777 = t1757 + t1775 * t1775;
+        ::overact::guard::reach(t1777, "leg5")?;
+        let t1778 = ::overact::math::sqrt(t1777);
+        ::overact::guard::leg(t1778, 0.5619721604570214, "leg5")?;
+        let c_cylinder_leg5 = t1758 / t1778;
+        let t1781 = 0.7431448254773945 * s_cross_leg5;
+        let s_cylinder_leg5 = t1775 / t1778;
+        let t1784 = 0.6691306063588579 * c_cylinder_leg5 - t1781 * s_cylinder_leg5;
+        let t1785 = twist[1] + t162;
+        let t1787 = 0.6691306063588579 * s_cross_leg5;
+        let t1790 = t1787 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
+        let t1791 = twist[0] + t149;
+        let t1794 = c_cross_leg5 * s_cylinder_leg5;
+        let t1795 = twist[2] + t173;
+        let t1797 = t1784 * t1785 - t1790 * t1791 - t1794 * t1795;
+        let t1802 = s_cross_leg5 * t1795 - (t1761 * t1791 + t1768 * t1785);
+        let minus_rate_cross_leg5 = t1759 * t1802;
+        let t1804 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1805 = t1797 * t1804;
+        let t1808 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_minus_grod_vx_leg5 = t1748 / t1778;
+        let t1811 = 1.0 / t1778;
+        let grod_vy_leg5 = t1751 * t1811;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t1793
-            + grod_vy_leg5 * t1787 + grod_vz_leg5 * t1797;
-        let t1819 = 2.0 * minus_minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t1760 * (t1773 + t1807 + t1807 - t1810 * t1819);
-        let rate_cylinder_leg5 = t1780 * t1799;
-        let t1824 = rate_cylinder_leg5 * t1810;
-        let t1825 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1827 = t1824 + t1825 + t1824;
-        let t1828 = s_cylinder_leg5 * t1827;
-        let t1829 = t1828 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t1792 * t1780;
-        let t1832 = t1810 * t1806;
+        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t1791
+            + grod_vy_leg5 * t1785 + grod_vz_leg5 * t1795;
+        let t1818 = minus_minus_rate_rod_leg5 + minus_minus_rate_rod_leg5;
+        let minus_rate_dot_cross_leg5 = t1759 * (t1772 + t1805 + t1805 - t1808 * t1818);
+        let t1822 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let rate_cylinder_leg5 = t1811 * t1797;
+        let t1824 = rate_cylinder_leg5 * t1808;
+        let t1825 = t1822 + t1824;
+        let t1829 = s_cylinder_leg5 * t1825 - minus_rate_dot_cross_leg5
+            + s_cylinder_leg5 * t1824;
+        let minus_gcylinder_vx_leg5 = t1790 * t1811;
+        let t1832 = t1808 * t1804;
         let t1833 = minus_gcylinder_vx_leg5 * t1832;
         let t1834 = gcross_vx_leg5 * t1829 - t1833;
-        let gcross_vy_leg5 = t1760 * t1769;
-        let gcylinder_vy_leg5 = t1786 * t1780;
+        let gcross_vy_leg5 = t1759 * t1768;
+        let gcylinder_vy_leg5 = t1784 * t1811;
         let t1838 = gcylinder_vy_leg5 * t1832;
         let t1839 = gcross_vy_leg5 * t1829 + t1838;
-        let minus_gcross_vz_leg5 = t1760 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t1796 * t1780;
+        let minus_gcross_vz_leg5 = t1759 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t1794 * t1811;
         let t1843 = minus_gcylinder_vz_leg5 * t1832;
         let t1844 = minus_gcross_vz_leg5 * t1829 + t1843;
         let gcross_wx_leg5 = t43 * minus_gcross_vz_leg5 + t13 * gcross_vy_leg5;
@@ -4353,288 +4355,292 @@ impl Hexapod {
             + t43 * minus_gcylinder_vx_leg5;
         let t1870 = minus_gcylinder_wz_leg5 * t1832;
         let t1871 = gcross_wz_leg5 * t1829 - t1870;
-        let t1873 = t1779 * t1829;
-        let t1876 = c_cylinder_leg5 * t1827 - s_cylinder_leg5 * (t1760 * t1873);
-        let t1878 = t1810 * t1810;
-        let t1879 = t1806 * t1806;
-        let t1880 = t1878 - t1879;
-        let t1882 = gcross_vx_leg5 * t1876 - minus_gcylinder_vx_leg5 * t1880;
-        let t1885 = gcross_vy_leg5 * t1876 + gcylinder_vy_leg5 * t1880;
-        let t1888 = minus_gcross_vz_leg5 * t1876 + minus_gcylinder_vz_leg5 * t1880;
-        let t1891 = gcross_wx_leg5 * t1876 + gcylinder_wx_leg5 * t1880;
-        let t1894 = gcylinder_wy_leg5 * t1880 - minus_gcross_wy_leg5 * t1876;
-        let t1897 = gcross_wz_leg5 * t1876 - minus_gcylinder_wz_leg5 * t1880;
-        let t1902 = t1786 * t1770 - t1792 * t1767 - t1796 * t1765;
-        let t1904 = t1902 - rate_cylinder_leg5 * t1819;
-        let t1905 = t1780 * t1904;
-        let rate_dot_cylinder_leg5 = t1905 - t1832;
-        let t1907 = rate_dot_cylinder_leg5 - t1832;
-        let t1909 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1912 = c_cylinder_leg5 * t1907 - s_cylinder_leg5 * (t1909 - t1878);
-        let t1914 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1916 = gcross_vx_leg5 * t1912 + minus_gcylinder_vx_leg5 * t1914;
-        let t1919 = gcross_vy_leg5 * t1912 - gcylinder_vy_leg5 * t1914;
-        let t1922 = minus_gcylinder_vz_leg5 * t1914 - minus_gcross_vz_leg5 * t1912;
-        let t1925 = gcross_wx_leg5 * t1912 - gcylinder_wx_leg5 * t1914;
-        let t1928 = minus_gcross_wy_leg5 * t1912 + gcylinder_wy_leg5 * t1914;
-        let t1931 = gcross_wz_leg5 * t1912 + minus_gcylinder_wz_leg5 * t1914;
-        let t1933 = t1833 - gcross_vx_leg5 * t1828;
-        let t1935 = gcross_vy_leg5 * t1828 + t1838;
-        let t1937 = minus_gcross_vz_leg5 * t1828 + t1843;
-        let t1939 = gcross_wx_leg5 * t1828 + t1852;
-        let t1941 = minus_gcross_wy_leg5 * t1828 - t1857;
-        let t1943 = t1870 - gcross_wz_leg5 * t1828;
-        let t1947 = c_cylinder_leg5 * (t1879 - t1909) - s_cylinder_leg5 * t1905;
-        let t1950 = gcross_vx_leg5 * t1947 - minus_gcylinder_vx_leg5 * t1825;
-        let t1953 = gcross_vy_leg5 * t1947 + gcylinder_vy_leg5 * t1825;
-        let t1956 = minus_gcross_vz_leg5 * t1947 + minus_gcylinder_vz_leg5 * t1825;
-        let t1959 = gcross_wx_leg5 * t1947 + gcylinder_wx_leg5 * t1825;
-        let t1962 = gcylinder_wy_leg5 * t1825 - minus_gcross_wy_leg5 * t1947;
-        let t1965 = gcross_wz_leg5 * t1947 - minus_gcylinder_wz_leg5 * t1825;
-        let t1966 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t1967 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t1968 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t1969 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t1970 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t1971 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t1972 = 9.81 * s_cross_leg5;
-        let t1973 = s_cylinder_leg5 * t1972;
-        let t1975 = 9.81 * grod_vz_leg5;
-        let t1993 = t1780 * t1975;
-        let t1996 = c_cylinder_leg5 * t1972;
-        let t1998 = 9.81 * t1796;
+        let t1872 = t1824 + t1825;
+        let t1874 = t1778 * t1829;
+        let t1877 = c_cylinder_leg5 * t1872 - s_cylinder_leg5 * (t1874 / t1758);
+        let t1879 = t1808 * t1808;
+        let t1880 = t1804 * t1804;
+        let t1881 = t1879 - t1880;
+        let t1883 = gcross_vx_leg5 * t1877 - minus_gcylinder_vx_leg5 * t1881;
+        let t1886 = gcross_vy_leg5 * t1877 + gcylinder_vy_leg5 * t1881;
+        let t1889 = minus_gcross_vz_leg5 * t1877 + minus_gcylinder_vz_leg5 * t1881;
+        let t1892 = gcross_wx_leg5 * t1877 + gcylinder_wx_leg5 * t1881;
+        let t1895 = gcylinder_wy_leg5 * t1881 - minus_gcross_wy_leg5 * t1877;
+        let t1898 = gcross_wz_leg5 * t1877 - minus_gcylinder_wz_leg5 * t1881;
+        let t1903 = t1784 * t1769 - t1790 * t1766 - t1794 * t1764;
+        let t1905 = t1903 - rate_cylinder_leg5 * t1818;
+        let t1906 = t1905 / t1778;
+        let rate_dot_cylinder_leg5 = t1906 - t1832;
+        let t1908 = rate_dot_cylinder_leg5 - t1832;
+        let t1910 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1913 = c_cylinder_leg5 * t1908 - s_cylinder_leg5 * (t1910 - t1879);
+        let t1915 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1917 = gcross_vx_leg5 * t1913 + minus_gcylinder_vx_leg5 * t1915;
+        let t1920 = gcross_vy_leg5 * t1913 - gcylinder_vy_leg5 * t1915;
+        let t1923 = minus_gcylinder_vz_leg5 * t1915 - minus_gcross_vz_leg5 * t1913;
+        let t1926 = gcross_wx_leg5 * t1913 - gcylinder_wx_leg5 * t1915;
+        let t1929 = minus_gcross_wy_leg5 * t1913 + gcylinder_wy_leg5 * t1915;
+        let t1932 = gcross_wz_leg5 * t1913 + minus_gcylinder_wz_leg5 * t1915;
+        let t1933 = s_cylinder_leg5 * t1872;
+        let t1935 = t1833 - gcross_vx_leg5 * t1933;
+        let t1937 = gcross_vy_leg5 * t1933 + t1838;
+        let t1939 = minus_gcross_vz_leg5 * t1933 + t1843;
+        let t1941 = gcross_wx_leg5 * t1933 + t1852;
+        let t1943 = minus_gcross_wy_leg5 * t1933 - t1857;
+        let t1945 = t1870 - gcross_wz_leg5 * t1933;
+        let t1949 = c_cylinder_leg5 * (t1880 - t1910) - s_cylinder_leg5 * t1906;
+        let t1952 = gcross_vx_leg5 * t1949 - minus_gcylinder_vx_leg5 * t1822;
+        let t1955 = gcross_vy_leg5 * t1949 + gcylinder_vy_leg5 * t1822;
+        let t1958 = minus_gcross_vz_leg5 * t1949 + minus_gcylinder_vz_leg5 * t1822;
+        let t1961 = gcross_wx_leg5 * t1949 + gcylinder_wx_leg5 * t1822;
+        let t1964 = gcylinder_wy_leg5 * t1822 - minus_gcross_wy_leg5 * t1949;
+        let t1967 = gcross_wz_leg5 * t1949 - minus_gcylinder_wz_leg5 * t1822;
+        let t1968 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t1969 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t1970 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t1971 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t1972 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t1973 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t1974 = 9.81 * s_cross_leg5;
+        let t1975 = s_cylinder_leg5 * t1974;
+        let t1977 = 9.81 * grod_vz_leg5;
+        let t1995 = t1811 * t1977;
+        let t1998 = c_cylinder_leg5 * t1974;
+        let t2000 = 9.81 * t1794;
         let minus_grod_wz_leg5 = t29 * grod_vy_leg5 - t43 * minus_minus_grod_vx_leg5;
-        let t2011 = 9.81 * c_cross_leg5;
-        let t2019 = t1773 + t1972;
-        let t2021 = t1759 * t1827 + s_cylinder_leg5 * t2019;
-        let t2027 = minus_minus_grod_vx_leg5 * t1767 + grod_vy_leg5 * t1770
-            + grod_vz_leg5 * t1765;
-        let t2028 = t1975 + t2027;
-        let t2031 = t2028 + t1779 * (t1879 + t1909);
-        let t2035 = gcross_vx_leg5 * t2021 + minus_gcylinder_vx_leg5 * t2031
-            - minus_minus_grod_vx_leg5 * t1907;
-        let t2040 = gcross_vy_leg5 * t2021 - gcylinder_vy_leg5 * t2031
-            - grod_vy_leg5 * t1907;
-        let t2045 = minus_gcross_vz_leg5 * t2021 - minus_gcylinder_vz_leg5 * t2031
-            + grod_vz_leg5 * t1907;
-        let t2057 = t1902 - t1998;
-        let t2060 = t1804 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2057 - c_cylinder_leg5 * t2028);
-        let t2063 = gcross_vx_leg5 * t2060 - t1789 * minus_rate_dot_cross_leg5;
-        let t2066 = gcross_vy_leg5 * t2060 - t1783 * minus_rate_dot_cross_leg5;
-        let t2069 = minus_gcross_vz_leg5 * t2060
+        let t2013 = 9.81 * c_cross_leg5;
+        let t2021 = t1772 + t1974;
+        let t2023 = t1758 * t1872 + s_cylinder_leg5 * t2021;
+        let t2029 = minus_minus_grod_vx_leg5 * t1766 + grod_vy_leg5 * t1769
+            + grod_vz_leg5 * t1764;
+        let t2030 = t1977 + t2029;
+        let t2033 = t2030 + t1778 * (t1880 + t1910);
+        let t2037 = gcross_vx_leg5 * t2023 + minus_gcylinder_vx_leg5 * t2033
+            - minus_minus_grod_vx_leg5 * t1908;
+        let t2042 = gcross_vy_leg5 * t2023 - gcylinder_vy_leg5 * t2033
+            - grod_vy_leg5 * t1908;
+        let t2047 = minus_gcross_vz_leg5 * t2023 - minus_gcylinder_vz_leg5 * t2033
+            + grod_vz_leg5 * t1908;
+        let t2059 = t1903 - t2000;
+        let t2062 = t1802 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2059 - c_cylinder_leg5 * t2030);
+        let t2065 = gcross_vx_leg5 * t2062 - t1787 * minus_rate_dot_cross_leg5;
+        let t2068 = gcross_vy_leg5 * t2062 - t1781 * minus_rate_dot_cross_leg5;
+        let t2071 = minus_gcross_vz_leg5 * t2062
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2080 = t1873 - c_cylinder_leg5 * t2019;
-        let t2082 = t1904 + t2057;
-        let t2085 = t1878 + t1909;
-        let t2087 = gcross_vx_leg5 * t2080 - minus_gcylinder_vx_leg5 * t2082
-            - minus_minus_grod_vx_leg5 * t2085;
-        let t2092 = gcross_vy_leg5 * t2080 + gcylinder_vy_leg5 * t2082
-            - grod_vy_leg5 * t2085;
-        let t2097 = minus_gcross_vz_leg5 * t2080 + minus_gcylinder_vz_leg5 * t2082
-            + grod_vz_leg5 * t2085;
-        let t2107 = t486 - t127;
-        let minus_minus_rate_dot_rod_leg5 = t1779 * t2085 + t2027;
+        let t2082 = t1874 - c_cylinder_leg5 * t2021;
+        let t2084 = t1905 + t2059;
+        let t2087 = t1879 + t1910;
+        let t2089 = gcross_vx_leg5 * t2082 - minus_gcylinder_vx_leg5 * t2084
+            - minus_minus_grod_vx_leg5 * t2087;
+        let t2094 = gcross_vy_leg5 * t2082 + gcylinder_vy_leg5 * t2084
+            - grod_vy_leg5 * t2087;
+        let t2099 = minus_gcross_vz_leg5 * t2082 + minus_gcylinder_vz_leg5 * t2084
+            + grod_vz_leg5 * t2087;
+        let t2109 = t486 - t127;
+        let minus_minus_rate_dot_rod_leg5 = t1778 * t2087 + t2029;
         let grod_wx_leg5 = t13 * grod_vy_leg5 - t43 * grod_vz_leg5;
         let grod_wy_leg5 = t29 * grod_vz_leg5 - t13 * minus_minus_grod_vx_leg5;
-        let t2137 = -minus_minus_rate_rod_leg5;
-        let t2144 = pose[2] + t539;
-        let t2146 = pose[0] + t525 + 0.12360679774997894;
-        let t2149 = pose[1] + t531 + 0.3804226065180615;
-        let t2151 = 0.30901699437494734 * t2146 + 0.9510565162951536 * t2149;
-        let t2154 = t2151 * t2151 + t2144 * t2144;
-        let t2155 = ::overact::math::sqrt(t2154);
-        ::overact::guard::leg(t2155, 0.5513142860385972, "leg6")?;
-        let c_cross_leg6 = t2144 / t2155;
-        let t2157 = 0.30901699437494734 * c_cross_leg6;
-        let gcross_vx_leg6 = t2157 / t2155;
-        let t2161 = 0.30901699437494734 * t2149 - 0.9510565162951536 * t2146;
-        let t2163 = t2154 + t2161 * t2161;
-        ::overact::guard::reach(t2163, "leg6")?;
-        let t2164 = ::overact::math::sqrt(t2163);
-        ::overact::guard::leg(t2164, 0.5619721604570214, "leg6")?;
-        let c_cylinder_leg6 = t2155 / t2164;
-        let s_cross_leg6 = t2151 / t2155;
-        let t2167 = acceleration[2] + t611;
-        let t2169 = acceleration[0] + t600;
-        let t2171 = 0.9510565162951536 * c_cross_leg6;
-        let t2172 = acceleration[1] + t605;
-        let t2175 = s_cross_leg6 * t2167 - (t2157 * t2169 + t2171 * t2172);
-        let t2176 = twist[2] + t588;
-        let t2178 = twist[0] + t568;
-        let t2180 = twist[1] + t578;
-        let t2183 = s_cross_leg6 * t2176 - (t2157 * t2178 + t2171 * t2180);
-        let minus_rate_cross_leg6 = t2183 / t2155;
-        let t2185 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2186 = 1.0 / t2164;
-        let minus_minus_grod_vx_leg6 = t2146 * t2186;
-        let grod_vy_leg6 = t2149 * t2186;
+        let t2139 = -minus_minus_rate_rod_leg5;
+        let t2147 = pose[0] + t525 + 0.12360679774997894;
+        let t2150 = pose[1] + t531 + 0.3804226065180615;
+        let t2152 = 0.30901699437494734 * t2147 + 0.9510565162951536 * t2150;
+        let t2154 = pose[2] + t539;
+        let t2156 = t2152 * t2152 + t2154 * t2154;
+        let t2157 = ::overact::math::sqrt(t2156);
+        ::overact::guard::leg(t2157, 0.5513142860385972, "leg6")?;
+        let t2158 = 1.0 / t2157;
+        let c_cross_leg6 = t2154 * t2158;
+        let t2160 = 0.30901699437494734 * c_cross_leg6;
+        let gcross_vx_leg6 = t2158 * t2160;
+        let t2164 = 0.30901699437494734 * t2150 - 0.9510565162951536 * t2147;
+        let t2166 = t2156 + t2164 * t2164;
+        ::overact::guard::reach(t2166, "leg6")?;
+        let t2167 = ::overact::math::sqrt(t2166);
+        ::overact::guard::leg(t2167, 0.5619721604570214, "leg6")?;
+        let c_cylinder_leg6 = t2157 / t2167;
+        let t2169 = 1.0 / t2167;
+        let s_cross_leg6 = t2152 * t2158;
+        let t2171 = acceleration[2] + t610;
+        let t2173 = acceleration[0] + t599;
+        let t2175 = 0.9510565162951536 * c_cross_leg6;
+        let t2176 = acceleration[1] + t604;
+        let t2179 = s_cross_leg6 * t2171 - (t2160 * t2173 + t2175 * t2176);
+        let t2180 = twist[2] + t587;
+        let t2182 = twist[0] + t567;
+        let t2184 = twist[1] + t577;
+        let t2187 = s_cross_leg6 * t2180 - (t2160 * t2182 + t2175 * t2184);
+        let minus_rate_cross_leg6 = t2158 * t2187;
+        let t2189 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let minus_minus_grod_vx_leg6 = t2147 / t2167;
+        let grod_vy_leg6 = t2150 * t2169;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t2178
-            + grod_vy_leg6 * t2180 + grod_vz_leg6 * t2176;
-        let t2195 = minus_minus_rate_rod_leg6 + minus_minus_rate_rod_leg6;
-        let t2197 = t2175 - t2185 * t2195;
-        let t2198 = t2197 / t2164;
-        let t2199 = c_cylinder_leg6 * t2198;
-        let t2201 = 0.30901699437494734 * s_cross_leg6;
-        let s_cylinder_leg6 = t2161 / t2164;
-        let t2205 = t2201 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
-        let minus_gcylinder_vx_leg6 = t2205 * t2186;
-        let t2207 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2208 = t2185 * t2207;
-        let t2209 = minus_gcylinder_vx_leg6 * t2208;
-        let t2210 = gcross_vx_leg6 * t2199 + t2209;
-        let gcross_vy_leg6 = t2171 / t2155;
-        let t2214 = 0.9510565162951536 * s_cross_leg6;
-        let t2216 = 0.30901699437494734 * c_cylinder_leg6 - t2214 * s_cylinder_leg6;
-        let gcylinder_vy_leg6 = t2216 * t2186;
-        let t2218 = gcylinder_vy_leg6 * t2208;
-        let t2219 = t2218 - gcross_vy_leg6 * t2199;
-        let minus_gcross_vz_leg6 = s_cross_leg6 / t2155;
-        let t2222 = c_cross_leg6 * s_cylinder_leg6;
-        let minus_gcylinder_vz_leg6 = t2222 * t2186;
-        let t2224 = minus_gcylinder_vz_leg6 * t2208;
-        let t2225 = t2224 - minus_gcross_vz_leg6 * t2199;
+        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t2182
+            + grod_vy_leg6 * t2184 + grod_vz_leg6 * t2180;
+        let t2198 = 2.0 * minus_minus_rate_rod_leg6;
+        let t2200 = t2179 - t2189 * t2198;
+        let t2201 = t2169 * t2200;
+        let t2202 = c_cylinder_leg6 * t2201;
+        let t2204 = 0.30901699437494734 * s_cross_leg6;
+        let s_cylinder_leg6 = t2164 / t2167;
+        let t2208 = t2204 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
+        let minus_gcylinder_vx_leg6 = t2208 * t2169;
+        let t2210 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2211 = t2189 * t2210;
+        let t2212 = minus_gcylinder_vx_leg6 * t2211;
+        let t2213 = gcross_vx_leg6 * t2202 + t2212;
+        let gcross_vy_leg6 = t2158 * t2175;
+        let t2217 = 0.9510565162951536 * s_cross_leg6;
+        let t2219 = 0.30901699437494734 * c_cylinder_leg6 - t2217 * s_cylinder_leg6;
+        let gcylinder_vy_leg6 = t2219 * t2169;
+        let t2221 = gcylinder_vy_leg6 * t2211;
+        let t2222 = t2221 - gcross_vy_leg6 * t2202;
+        let minus_gcross_vz_leg6 = t2158 * s_cross_leg6;
+        let t2225 = c_cross_leg6 * s_cylinder_leg6;
+        let minus_gcylinder_vz_leg6 = t2225 * t2169;
+        let t2227 = minus_gcylinder_vz_leg6 * t2211;
+        let t2228 = t2227 - minus_gcross_vz_leg6 * t2202;
         let minus_gcross_wx_leg6 = t531 * minus_gcross_vz_leg6 + t539 * gcross_vy_leg6;
         let minus_gcylinder_wx_leg6 = t531 * minus_gcylinder_vz_leg6
             + t539 * gcylinder_vy_leg6;
-        let t2233 = minus_gcylinder_wx_leg6 * t2208;
-        let t2234 = t2233 - minus_gcross_wx_leg6 * t2199;
+        let t2236 = minus_gcylinder_wx_leg6 * t2211;
+        let t2237 = t2236 - minus_gcross_wx_leg6 * t2202;
         let gcross_wy_leg6 = t539 * gcross_vx_leg6 + t525 * minus_gcross_vz_leg6;
         let gcylinder_wy_leg6 = t525 * minus_gcylinder_vz_leg6
             - t539 * minus_gcylinder_vx_leg6;
-        let t2242 = gcylinder_wy_leg6 * t2208;
-        let t2243 = t2242 - gcross_wy_leg6 * t2199;
+        let t2245 = gcylinder_wy_leg6 * t2211;
+        let t2246 = t2245 - gcross_wy_leg6 * t2202;
         let gcross_wz_leg6 = t525 * gcross_vy_leg6 - t531 * gcross_vx_leg6;
         let gcylinder_wz_leg6 = t525 * gcylinder_vy_leg6
             + t531 * minus_gcylinder_vx_leg6;
-        let t2251 = gcylinder_wz_leg6 * t2208;
-        let t2252 = t2251 - gcross_wz_leg6 * t2199;
-        let t2257 = t2216 * t2180 - t2205 * t2178 - t2222 * t2176;
-        let rate_cylinder_leg6 = t2186 * t2257;
-        let t2259 = rate_cylinder_leg6 * t2185;
-        let minus_rate_dot_cross_leg6 = (t2197 + 2.0 * (t2257 * t2207)) / t2155;
-        let t2264 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2266 = t2259 + t2264 + t2259;
-        let t2269 = c_cylinder_leg6 * t2266 + s_cylinder_leg6 * t2198;
-        let t2271 = t2185 * t2185;
-        let t2272 = t2207 * t2207;
-        let t2273 = t2271 - t2272;
-        let t2275 = gcross_vx_leg6 * t2269 - minus_gcylinder_vx_leg6 * t2273;
-        let t2278 = gcross_vy_leg6 * t2269 + gcylinder_vy_leg6 * t2273;
-        let t2281 = minus_gcross_vz_leg6 * t2269 + minus_gcylinder_vz_leg6 * t2273;
-        let t2284 = minus_gcross_wx_leg6 * t2269 + minus_gcylinder_wx_leg6 * t2273;
-        let t2287 = gcross_wy_leg6 * t2269 + gcylinder_wy_leg6 * t2273;
-        let t2290 = gcross_wz_leg6 * t2269 + gcylinder_wz_leg6 * t2273;
-        let t2295 = t2216 * t2172 - t2205 * t2169 - t2222 * t2167;
-        let t2297 = t2295 - rate_cylinder_leg6 * t2195;
-        let t2298 = t2186 * t2297;
-        let rate_dot_cylinder_leg6 = t2298 - t2208;
-        let t2300 = rate_dot_cylinder_leg6 - t2208;
-        let t2302 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t2305 = c_cylinder_leg6 * t2300 - s_cylinder_leg6 * (t2302 - t2271);
-        let t2307 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2309 = gcross_vx_leg6 * t2305 + minus_gcylinder_vx_leg6 * t2307;
-        let t2312 = gcross_vy_leg6 * t2305 - gcylinder_vy_leg6 * t2307;
-        let t2315 = minus_gcylinder_vz_leg6 * t2307 - minus_gcross_vz_leg6 * t2305;
-        let t2318 = minus_gcylinder_wx_leg6 * t2307 - minus_gcross_wx_leg6 * t2305;
-        let t2321 = gcross_wy_leg6 * t2305 - gcylinder_wy_leg6 * t2307;
-        let t2324 = gcross_wz_leg6 * t2305 - gcylinder_wz_leg6 * t2307;
-        let t2325 = s_cylinder_leg6 * t2266;
-        let t2327 = t2209 - gcross_vx_leg6 * t2325;
-        let t2329 = gcross_vy_leg6 * t2325 + t2218;
-        let t2331 = minus_gcross_vz_leg6 * t2325 + t2224;
-        let t2333 = minus_gcross_wx_leg6 * t2325 + t2233;
-        let t2335 = gcross_wy_leg6 * t2325 + t2242;
-        let t2337 = gcross_wz_leg6 * t2325 + t2251;
-        let t2341 = c_cylinder_leg6 * (t2272 - t2302) - s_cylinder_leg6 * t2298;
-        let t2344 = gcross_vx_leg6 * t2341 - minus_gcylinder_vx_leg6 * t2264;
-        let t2347 = gcross_vy_leg6 * t2341 + gcylinder_vy_leg6 * t2264;
-        let t2350 = minus_gcross_vz_leg6 * t2341 + minus_gcylinder_vz_leg6 * t2264;
-        let t2353 = minus_gcross_wx_leg6 * t2341 + minus_gcylinder_wx_leg6 * t2264;
-        let t2356 = gcross_wy_leg6 * t2341 + gcylinder_wy_leg6 * t2264;
-        let t2359 = gcross_wz_leg6 * t2341 + gcylinder_wz_leg6 * t2264;
-        let t2360 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
-        let t2361 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
-        let t2362 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
-        let t2363 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
-        let t2364 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
-        let t2365 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
-        let t2366 = 9.81 * s_cross_leg6;
-        let t2367 = s_cylinder_leg6 * t2366;
-        let t2369 = 9.81 * grod_vz_leg6;
-        let t2387 = t2186 * t2369;
-        let t2390 = c_cylinder_leg6 * t2366;
-        let t2392 = 9.81 * t2222;
+        let t2254 = gcylinder_wz_leg6 * t2211;
+        let t2255 = t2254 - gcross_wz_leg6 * t2202;
+        let t2260 = t2219 * t2184 - t2208 * t2182 - t2225 * t2180;
+        let rate_cylinder_leg6 = t2169 * t2260;
+        let t2262 = rate_cylinder_leg6 * t2189;
+        let t2263 = t2260 * t2210;
+        let minus_rate_dot_cross_leg6 = t2158 * (t2200 + t2263 + t2263);
+        let t2267 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2269 = t2262 + t2267 + t2262;
+        let t2272 = c_cylinder_leg6 * t2269 + s_cylinder_leg6 * t2201;
+        let t2274 = t2189 * t2189;
+        let t2275 = t2210 * t2210;
+        let t2276 = t2274 - t2275;
+        let t2278 = gcross_vx_leg6 * t2272 - minus_gcylinder_vx_leg6 * t2276;
+        let t2281 = gcross_vy_leg6 * t2272 + gcylinder_vy_leg6 * t2276;
+        let t2284 = minus_gcross_vz_leg6 * t2272 + minus_gcylinder_vz_leg6 * t2276;
+        let t2287 = minus_gcross_wx_leg6 * t2272 + minus_gcylinder_wx_leg6 * t2276;
+        let t2290 = gcross_wy_leg6 * t2272 + gcylinder_wy_leg6 * t2276;
+        let t2293 = gcross_wz_leg6 * t2272 + gcylinder_wz_leg6 * t2276;
+        let t2298 = t2219 * t2176 - t2208 * t2173 - t2225 * t2171;
+        let t2300 = t2298 - rate_cylinder_leg6 * t2198;
+        let t2301 = t2169 * t2300;
+        let rate_dot_cylinder_leg6 = t2301 - t2211;
+        let t2303 = rate_dot_cylinder_leg6 - t2211;
+        let t2305 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t2308 = c_cylinder_leg6 * t2303 - s_cylinder_leg6 * (t2305 - t2274);
+        let t2310 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2312 = gcross_vx_leg6 * t2308 + minus_gcylinder_vx_leg6 * t2310;
+        let t2315 = gcross_vy_leg6 * t2308 - gcylinder_vy_leg6 * t2310;
+        let t2318 = minus_gcylinder_vz_leg6 * t2310 - minus_gcross_vz_leg6 * t2308;
+        let t2321 = minus_gcylinder_wx_leg6 * t2310 - minus_gcross_wx_leg6 * t2308;
+        let t2324 = gcross_wy_leg6 * t2308 - gcylinder_wy_leg6 * t2310;
+        let t2327 = gcross_wz_leg6 * t2308 - gcylinder_wz_leg6 * t2310;
+        let t2328 = s_cylinder_leg6 * t2269;
+        let t2330 = t2212 - gcross_vx_leg6 * t2328;
+        let t2332 = gcross_vy_leg6 * t2328 + t2221;
+        let t2334 = minus_gcross_vz_leg6 * t2328 + t2227;
+        let t2336 = minus_gcross_wx_leg6 * t2328 + t2236;
+        let t2338 = gcross_wy_leg6 * t2328 + t2245;
+        let t2340 = gcross_wz_leg6 * t2328 + t2254;
+        let t2344 = c_cylinder_leg6 * (t2275 - t2305) - s_cylinder_leg6 * t2301;
+        let t2347 = gcross_vx_leg6 * t2344 - minus_gcylinder_vx_leg6 * t2267;
+        let t2350 = gcross_vy_leg6 * t2344 + gcylinder_vy_leg6 * t2267;
+        let t2353 = minus_gcross_vz_leg6 * t2344 + minus_gcylinder_vz_leg6 * t2267;
+        let t2356 = minus_gcross_wx_leg6 * t2344 + minus_gcylinder_wx_leg6 * t2267;
+        let t2359 = gcross_wy_leg6 * t2344 + gcylinder_wy_leg6 * t2267;
+        let t2362 = gcross_wz_leg6 * t2344 + gcylinder_wz_leg6 * t2267;
+        let t2363 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
+        let t2364 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
+        let t2365 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
+        let t2366 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
+        let t2367 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
+        let t2368 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
+        let t2369 = 9.81 * s_cross_leg6;
+        let t2370 = s_cylinder_leg6 * t2369;
+        let t2372 = 9.81 * grod_vz_leg6;
+        let t2390 = t2372 / t2167;
+        let t2393 = c_cylinder_leg6 * t2369;
+        let t2395 = 9.81 * t2225;
         let grod_wz_leg6 = t525 * grod_vy_leg6 - t531 * minus_minus_grod_vx_leg6;
-        let t2405 = 9.81 * c_cross_leg6;
-        let t2413 = t2175 + t2366;
-        let t2415 = t2155 * t2266 + s_cylinder_leg6 * t2413;
-        let t2421 = minus_minus_grod_vx_leg6 * t2169 + grod_vy_leg6 * t2172
-            + grod_vz_leg6 * t2167;
-        let t2422 = t2369 + t2421;
-        let t2425 = t2422 + t2164 * (t2272 + t2302);
-        let t2429 = gcross_vx_leg6 * t2415 + minus_gcylinder_vx_leg6 * t2425
-            - minus_minus_grod_vx_leg6 * t2300;
-        let t2434 = gcross_vy_leg6 * t2415 - gcylinder_vy_leg6 * t2425
-            - grod_vy_leg6 * t2300;
-        let t2439 = minus_gcross_vz_leg6 * t2415 - minus_gcylinder_vz_leg6 * t2425
-            + grod_vz_leg6 * t2300;
-        let t2451 = t2295 - t2392;
-        let t2454 = t2183 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2451 - c_cylinder_leg6 * t2422);
-        let t2457 = gcross_vx_leg6 * t2454 - t2201 * minus_rate_dot_cross_leg6;
-        let t2460 = gcross_vy_leg6 * t2454 - t2214 * minus_rate_dot_cross_leg6;
-        let t2463 = minus_gcross_vz_leg6 * t2454
+        let t2408 = 9.81 * c_cross_leg6;
+        let t2416 = t2179 + t2369;
+        let t2418 = t2157 * t2269 + s_cylinder_leg6 * t2416;
+        let t2424 = minus_minus_grod_vx_leg6 * t2173 + grod_vy_leg6 * t2176
+            + grod_vz_leg6 * t2171;
+        let t2425 = t2372 + t2424;
+        let t2428 = t2425 + t2167 * (t2275 + t2305);
+        let t2432 = gcross_vx_leg6 * t2418 + minus_gcylinder_vx_leg6 * t2428
+            - minus_minus_grod_vx_leg6 * t2303;
+        let t2437 = gcross_vy_leg6 * t2418 - gcylinder_vy_leg6 * t2428
+            - grod_vy_leg6 * t2303;
+        let t2442 = minus_gcross_vz_leg6 * t2418 - minus_gcylinder_vz_leg6 * t2428
+            + grod_vz_leg6 * t2303;
+        let t2454 = t2298 - t2395;
+        let t2457 = t2187 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2454 - c_cylinder_leg6 * t2425);
+        let t2460 = gcross_vx_leg6 * t2457 - t2204 * minus_rate_dot_cross_leg6;
+        let t2463 = gcross_vy_leg6 * t2457 - t2217 * minus_rate_dot_cross_leg6;
+        let t2466 = minus_gcross_vz_leg6 * t2457
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2474 = c_cylinder_leg6 * (t2413 + t2197);
-        let t2476 = t2297 + t2451;
-        let t2479 = t2271 + t2302;
-        let t2481 = gcross_vx_leg6 * t2474 + minus_gcylinder_vx_leg6 * t2476
-            + minus_minus_grod_vx_leg6 * t2479;
-        let t2486 = gcylinder_vy_leg6 * t2476 - gcross_vy_leg6 * t2474
-            - grod_vy_leg6 * t2479;
-        let t2491 = minus_gcylinder_vz_leg6 * t2476 - minus_gcross_vz_leg6 * t2474
-            + grod_vz_leg6 * t2479;
-        let t2501 = t611 + t486;
-        let minus_minus_rate_dot_rod_leg6 = t2164 * t2479 + t2421;
+        let t2477 = c_cylinder_leg6 * (t2416 + t2200);
+        let t2479 = t2300 + t2454;
+        let t2482 = t2274 + t2305;
+        let t2484 = gcross_vx_leg6 * t2477 + minus_gcylinder_vx_leg6 * t2479
+            + minus_minus_grod_vx_leg6 * t2482;
+        let t2489 = gcylinder_vy_leg6 * t2479 - gcross_vy_leg6 * t2477
+            - grod_vy_leg6 * t2482;
+        let t2494 = minus_gcylinder_vz_leg6 * t2479 - minus_gcross_vz_leg6 * t2477
+            + grod_vz_leg6 * t2482;
+        let t2504 = 9.81 + t2171;
+        let minus_minus_rate_dot_rod_leg6 = t2167 * t2482 + t2424;
         let grod_wx_leg6 = t531 * grod_vz_leg6 - t539 * grod_vy_leg6;
         let minus_grod_wy_leg6 = t525 * grod_vz_leg6 - t539 * minus_minus_grod_vx_leg6;
-        let t2531 = -minus_minus_rate_rod_leg6;
-        let t2542 = t20 * acceleration[3] + t34 * acceleration[4] + t4 * acceleration[5];
-        let t2548 = t20 * twist[3] + t34 * twist[4] + t4 * twist[5];
-        let t2549 = t1 + t3;
-        let t2551 = t6 - t7;
-        let t2554 = t37 - t16;
-        let t2556 = t2549 * twist[3] + t2551 * twist[4] + t2554 * twist[5];
-        let t2557 = t2548 * t2556;
-        let t2558 = t24 * t2557;
-        let t2564 = t24 * twist[3] + t38 * twist[4] + t8 * twist[5];
-        let t2565 = t2548 * t2564;
-        let t2566 = t2549 * t2565;
-        let t2569 = t38 * t2557;
-        let t2571 = t2551 * t2565;
-        let t2574 = t8 * t2557;
-        let t2576 = t2554 * t2565;
-        let t2582 = t24 * acceleration[3] + t38 * acceleration[4] + t8 * acceleration[5];
-        let t2583 = t2582 - t2557;
-        let t2585 = t2564 * t2556;
-        let t2586 = t2542 + t2585;
-        let t2589 = t2548 * t2548;
-        let t2590 = t2564 * t2564;
-        let t2591 = t2589 - t2590;
-        let t2608 = t2549 * acceleration[3] + t2551 * acceleration[4]
-            + t2554 * acceleration[5];
-        let t2609 = t2608 + t2565;
-        let t2611 = t2556 * t2556;
-        let t2612 = t2611 - t2589;
-        let t2615 = t2542 - t2585;
-        let t2629 = t20 * t2585;
-        let t2633 = t34 * t2585;
-        let t2637 = t4 * t2585;
-        let t2640 = t2590 - t2611;
-        let t2642 = t2608 - t2565;
-        let t2645 = t2582 + t2557;
+        let t2534 = -minus_minus_rate_rod_leg6;
+        let t2545 = t20 * acceleration[3] + t34 * acceleration[4] + t4 * acceleration[5];
+        let t2551 = t20 * twist[3] + t34 * twist[4] + t4 * twist[5];
+        let t2552 = t1 + t3;
+        let t2554 = t6 - t7;
+        let t2557 = t37 - t16;
+        let t2559 = t2552 * twist[3] + t2554 * twist[4] + t2557 * twist[5];
+        let t2560 = t2551 * t2559;
+        let t2561 = t24 * t2560;
+        let t2567 = t24 * twist[3] + t38 * twist[4] + t8 * twist[5];
+        let t2568 = t2551 * t2567;
+        let t2569 = t2552 * t2568;
+        let t2572 = t38 * t2560;
+        let t2574 = t2554 * t2568;
+        let t2577 = t8 * t2560;
+        let t2579 = t2557 * t2568;
+        let t2585 = t24 * acceleration[3] + t38 * acceleration[4] + t8 * acceleration[5];
+        let t2586 = t2585 - t2560;
+        let t2588 = t2567 * t2559;
+        let t2589 = t2545 + t2588;
+        let t2592 = t2551 * t2551;
+        let t2593 = t2567 * t2567;
+        let t2594 = t2592 - t2593;
+        let t2611 = t2552 * acceleration[3] + t2554 * acceleration[4]
+            + t2557 * acceleration[5];
+        let t2612 = t2611 + t2568;
+        let t2614 = t2559 * t2559;
+        let t2615 = t2614 - t2592;
+        let t2618 = t2545 - t2588;
+        let t2632 = t20 * t2588;
+        let t2636 = t34 * t2588;
+        let t2640 = t4 * t2588;
+        let t2643 = t2593 - t2614;
+        let t2645 = t2611 - t2568;
+        let t2648 = t2585 + t2560;
         Ok([
             [
                 t213, t261, -t295, t312, -t329, t345,
@@ -4642,40 +4648,40 @@ impl Hexapod {
                 -(minus_gcross_vx_leg1 * t390), t213, -t295, -t261, t345, t329, t312, -t414, -t442,
                 t466, t80, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vx_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_vx_leg1, t517), grod_vx_leg1, t649, t696, -t730, t747,
-                t764, t780, minus_gcross_vx_leg2 * t787 - gcylinder_vx_leg2 * t789,
-                grod_vx_leg2 * t807, -(minus_gcross_vx_leg2 * t825), t649, -t730, -t696, t780,
-                -t764, t747, -t849, -t877, t901, t602, grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
+                -::overact::math::signed(grod_vx_leg1, t517), grod_vx_leg1, t629, t694, -t728, t746,
+                t763, t779, minus_gcross_vx_leg2 * t786 - gcylinder_vx_leg2 * t788,
+                grod_vx_leg2 * t806, -(minus_gcross_vx_leg2 * t824), t629, -t728, -t694, t779,
+                -t763, t746, -t848, -t876, t900, t601, grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vx_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_vx_leg2, t951), grod_vx_leg2, t1025, t1090, t1124,
-                -t1142, t1159, t1175, -(gcross_vx_leg3 * t1182 + gcylinder_vx_leg3 * t1184),
-                minus_minus_grod_vx_leg3 * t1202, gcross_vx_leg3 * t1220, t1025, t1124, -t1090,
-                t1175, -t1159, -t1142, t1244, t1272, t1296, t985,
+                -::overact::math::signed(grod_vx_leg2, t950), grod_vx_leg2, t1043, t1090, t1124,
+                -t1141, t1158, t1174, -(gcross_vx_leg3 * t1181 + gcylinder_vx_leg3 * t1183),
+                minus_minus_grod_vx_leg3 * t1201, gcross_vx_leg3 * t1219, t1043, t1124, -t1090,
+                t1174, -t1158, -t1141, t1243, t1271, t1295, t976,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_dot_rod_leg3,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(minus_minus_grod_vx_leg3, t1346), minus_minus_grod_vx_leg3,
-                t1439, t1486, t1520, -t1537, t1554, t1570,
-                -(gcross_vx_leg4 * t1577 + gcylinder_vx_leg4 * t1579),
-                minus_minus_grod_vx_leg4 * t1597, gcross_vx_leg4 * t1615, t1439, t1520, -t1486,
-                t1570, -t1554, -t1537, t1639, t1667, t1691, t1372,
+                -::overact::math::signed(minus_minus_grod_vx_leg3, t1345), minus_minus_grod_vx_leg3,
+                t1419, t1484, t1518, -t1536, t1553, t1569,
+                -(gcross_vx_leg4 * t1576 + gcylinder_vx_leg4 * t1578),
+                minus_minus_grod_vx_leg4 * t1596, gcross_vx_leg4 * t1614, t1419, t1518, -t1484,
+                t1569, -t1553, -t1536, t1638, t1666, t1690, t1378,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_dot_rod_leg4,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(minus_minus_grod_vx_leg4, t1741), minus_minus_grod_vx_leg4,
-                t1834, t1882, t1916, t1933, t1950, -t1966,
-                gcross_vx_leg5 * t1973 + minus_gcylinder_vx_leg5 * t1975,
-                minus_minus_grod_vx_leg5 * t1993, gcross_vx_leg5 * t2011, t1834, t1916, -t1882,
-                -t1966, -t1950, t1933, t2035, t2063, t2087, t1767,
+                -::overact::math::signed(minus_minus_grod_vx_leg4, t1740), minus_minus_grod_vx_leg4,
+                t1834, t1883, t1917, t1935, t1952, -t1968,
+                gcross_vx_leg5 * t1975 + minus_gcylinder_vx_leg5 * t1977,
+                minus_minus_grod_vx_leg5 * t1995, gcross_vx_leg5 * t2013, t1834, t1917, -t1883,
+                -t1968, -t1952, t1935, t2037, t2065, t2089, t1766,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_dot_rod_leg5,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(minus_minus_grod_vx_leg5, t2137), minus_minus_grod_vx_leg5,
-                -t2210, t2275, t2309, t2327, t2344, -t2360,
-                gcross_vx_leg6 * t2367 + minus_gcylinder_vx_leg6 * t2369,
-                minus_minus_grod_vx_leg6 * t2387, gcross_vx_leg6 * t2405, -t2210, t2309, -t2275,
-                -t2360, -t2344, t2327, t2429, t2457, -t2481, t2169,
+                -::overact::math::signed(minus_minus_grod_vx_leg5, t2139), minus_minus_grod_vx_leg5,
+                -t2213, t2278, t2312, t2330, t2347, -t2363,
+                gcross_vx_leg6 * t2370 + minus_gcylinder_vx_leg6 * t2372,
+                minus_minus_grod_vx_leg6 * t2390, gcross_vx_leg6 * t2408, -t2213, t2312, -t2278,
+                -t2363, -t2347, t2330, t2432, t2460, -t2484, t2173,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_dot_rod_leg6,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(minus_minus_grod_vx_leg6, t2531), minus_minus_grod_vx_leg6,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t67, t73, t2551 * t57 - t2549 * t61 + t2554 * t65,
+                -::overact::math::signed(minus_minus_grod_vx_leg6, t2534), minus_minus_grod_vx_leg6,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t67, t73, t2554 * t57 - t2552 * t61 + t2557 * t65,
                 acceleration[0],
             ],
             [
@@ -4686,36 +4692,36 @@ impl Hexapod {
                 minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
                 minus_minus_grod_vy_leg1 * minus_minus_rate_rod_leg1,
                 -::overact::math::signed(minus_minus_grod_vy_leg1, t517), minus_minus_grod_vy_leg1,
-                -t654, -t699, t733, t749, -t767, -t781,
-                minus_gcross_vy_leg2 * t787 + minus_gcylinder_vy_leg2 * t789,
-                minus_minus_grod_vy_leg2 * t807, -(minus_gcross_vy_leg2 * t825), -t654, t733, t699,
-                -t781, t767, t749, -t854, -t880, -t906, t607,
+                -t638, -t697, t731, t748, -t766, -t780,
+                minus_gcross_vy_leg2 * t786 + minus_gcylinder_vy_leg2 * t788,
+                minus_minus_grod_vy_leg2 * t806, -(minus_gcross_vy_leg2 * t824), -t638, t731, t697,
+                -t780, t766, t748, -t853, -t879, -t905, t606,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_dot_rod_leg2,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(minus_minus_grod_vy_leg2, t951), minus_minus_grod_vy_leg2,
-                t1034, t1093, -t1127, t1144, t1162, t1176,
-                minus_gcross_vy_leg3 * t1182 - gcylinder_vy_leg3 * t1184, grod_vy_leg3 * t1202,
-                -(minus_gcross_vy_leg3 * t1220), t1034, -t1127, -t1093, t1176, -t1162, t1144,
-                -t1249, -t1275, t1301, t983, grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
+                -::overact::math::signed(minus_minus_grod_vy_leg2, t950), minus_minus_grod_vy_leg2,
+                t1048, t1093, -t1127, t1143, t1161, t1175,
+                minus_gcross_vy_leg3 * t1181 - gcylinder_vy_leg3 * t1183, grod_vy_leg3 * t1201,
+                -(minus_gcross_vy_leg3 * t1219), t1048, -t1127, -t1093, t1175, -t1161, t1143,
+                -t1248, -t1274, t1300, t974, grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vy_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_vy_leg3, t1346), grod_vy_leg3, t1444, t1489, -t1523,
-                t1539, t1557, t1571, minus_gcross_vy_leg4 * t1577 - gcylinder_vy_leg4 * t1579,
-                grod_vy_leg4 * t1597, -(minus_gcross_vy_leg4 * t1615), t1444, -t1523, -t1489, t1571,
-                -t1557, t1539, -t1644, -t1670, t1696, t1370,
+                -::overact::math::signed(grod_vy_leg3, t1345), grod_vy_leg3, t1428, t1487, -t1521,
+                t1538, t1556, t1570, minus_gcross_vy_leg4 * t1576 - gcylinder_vy_leg4 * t1578,
+                grod_vy_leg4 * t1596, -(minus_gcross_vy_leg4 * t1614), t1428, -t1521, -t1487, t1570,
+                -t1556, t1538, -t1643, -t1669, t1695, t1376,
                 grod_vy_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_vy_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_vy_leg4, t1741), grod_vy_leg4, t1839, t1885, t1919,
-                -t1935, t1953, t1967, gcross_vy_leg5 * t1973 - gcylinder_vy_leg5 * t1975,
-                grod_vy_leg5 * t1993, gcross_vy_leg5 * t2011, t1839, t1919, -t1885, t1967, -t1953,
-                -t1935, t2040, t2066, t2092, t1770, grod_vy_leg5 * minus_minus_rate_dot_rod_leg5,
+                -::overact::math::signed(grod_vy_leg4, t1740), grod_vy_leg4, t1839, t1886, t1920,
+                -t1937, t1955, t1969, gcross_vy_leg5 * t1975 - gcylinder_vy_leg5 * t1977,
+                grod_vy_leg5 * t1995, gcross_vy_leg5 * t2013, t1839, t1920, -t1886, t1969, -t1955,
+                -t1937, t2042, t2068, t2094, t1769, grod_vy_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_vy_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_vy_leg5, t2137), grod_vy_leg5, t2219, t2278, t2312,
-                -t2329, t2347, t2361, gcross_vy_leg6 * t2367 - gcylinder_vy_leg6 * t2369,
-                grod_vy_leg6 * t2387, gcross_vy_leg6 * t2405, t2219, t2312, -t2278, t2361, -t2347,
-                -t2329, t2434, t2460, t2486, t2172, grod_vy_leg6 * minus_minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_vy_leg5, t2139), grod_vy_leg5, t2222, t2281, t2315,
+                -t2332, t2350, t2364, gcross_vy_leg6 * t2370 - gcylinder_vy_leg6 * t2372,
+                grod_vy_leg6 * t2390, gcross_vy_leg6 * t2408, t2222, t2315, -t2281, t2364, -t2350,
+                -t2332, t2437, t2463, t2489, t2176, grod_vy_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_vy_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vy_leg6, t2531), grod_vy_leg6, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, t92, t98, t2549 * t83 - t2551 * t86 + t2554 * t90, acceleration[1],
+                -::overact::math::signed(grod_vy_leg6, t2534), grod_vy_leg6, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, t92, t98, t2552 * t83 - t2554 * t86 + t2557 * t90, acceleration[1],
             ],
             [
                 -t223, t267, t301, t316, t335, t347,
@@ -4724,40 +4730,40 @@ impl Hexapod {
                 t301, -t267, t347, -t335, t316, t424, t448, t476, t487,
                 grod_vz_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vz_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_vz_leg1, t517), grod_vz_leg1, t659, t702, t736, t751,
-                t770, -t782, minus_gcylinder_vz_leg2 * t789 - gcross_vz_leg2 * t787,
-                -(gcross_vz_leg2 * t810 + minus_gcylinder_vz_leg2 * t812), gcross_vz_leg2 * t825,
-                t659, t736, -t702, -t782, -t770, t751, t859, t883, t911, t921,
+                -::overact::math::signed(grod_vz_leg1, t517), grod_vz_leg1, -t644, t700, t734, t750,
+                t769, -t781, minus_gcylinder_vz_leg2 * t788 - gcross_vz_leg2 * t786,
+                -(gcross_vz_leg2 * t809 + minus_gcylinder_vz_leg2 * t811), gcross_vz_leg2 * t824,
+                -t644, t734, -t700, -t781, -t769, t750, t858, t882, t910, t920,
                 grod_vz_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vz_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_vz_leg2, t951), grod_vz_leg2, -t1040, t1096, t1130,
-                t1146, t1165, -t1177, minus_gcylinder_vz_leg3 * t1184 - gcross_vz_leg3 * t1182,
-                -(gcross_vz_leg3 * t1205 + minus_gcylinder_vz_leg3 * t1207), gcross_vz_leg3 * t1220,
-                -t1040, t1130, -t1096, -t1177, -t1165, t1146, t1254, t1278, t1306, t1316,
+                -::overact::math::signed(grod_vz_leg2, t950), grod_vz_leg2, t1053, t1096, t1130,
+                t1145, t1164, -t1176, minus_gcylinder_vz_leg3 * t1183 - gcross_vz_leg3 * t1181,
+                -(gcross_vz_leg3 * t1204 + minus_gcylinder_vz_leg3 * t1206), gcross_vz_leg3 * t1219,
+                t1053, t1130, -t1096, -t1176, -t1164, t1145, t1253, t1277, t1305, t1315,
                 grod_vz_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vz_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_vz_leg3, t1346), grod_vz_leg3, t1449, t1492, t1526,
-                t1541, t1560, -t1572, minus_gcylinder_vz_leg4 * t1579 - gcross_vz_leg4 * t1577,
-                -(gcross_vz_leg4 * t1600 + minus_gcylinder_vz_leg4 * t1602), gcross_vz_leg4 * t1615,
-                t1449, t1526, -t1492, -t1572, -t1560, t1541, t1649, t1673, t1701, t1711,
+                -::overact::math::signed(grod_vz_leg3, t1345), grod_vz_leg3, -t1434, t1490, t1524,
+                t1540, t1559, -t1571, minus_gcylinder_vz_leg4 * t1578 - gcross_vz_leg4 * t1576,
+                -(gcross_vz_leg4 * t1599 + minus_gcylinder_vz_leg4 * t1601), gcross_vz_leg4 * t1614,
+                -t1434, t1524, -t1490, -t1571, -t1559, t1540, t1648, t1672, t1700, t1710,
                 grod_vz_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_vz_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_vz_leg4, t1741), grod_vz_leg4, -t1844, -t1888, t1922,
-                t1937, -t1956, -t1968,
-                minus_gcylinder_vz_leg5 * t1975 - minus_gcross_vz_leg5 * t1973,
-                -(minus_gcross_vz_leg5 * t1996 + minus_gcylinder_vz_leg5 * t1998),
-                -(minus_gcross_vz_leg5 * t2011), -t1844, t1922, t1888, -t1968, t1956, t1937, -t2045,
-                -t2069, -t2097, t2107, grod_vz_leg5 * minus_minus_rate_dot_rod_leg5,
+                -::overact::math::signed(grod_vz_leg4, t1740), grod_vz_leg4, -t1844, -t1889, t1923,
+                t1939, -t1958, -t1970,
+                minus_gcylinder_vz_leg5 * t1977 - minus_gcross_vz_leg5 * t1975,
+                -(minus_gcross_vz_leg5 * t1998 + minus_gcylinder_vz_leg5 * t2000),
+                -(minus_gcross_vz_leg5 * t2013), -t1844, t1923, t1889, -t1970, t1958, t1939, -t2047,
+                -t2071, -t2099, t2109, grod_vz_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_vz_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_vz_leg5, t2137), grod_vz_leg5, -t2225, -t2281, t2315,
-                t2331, -t2350, -t2362,
-                minus_gcylinder_vz_leg6 * t2369 - minus_gcross_vz_leg6 * t2367,
-                -(minus_gcross_vz_leg6 * t2390 + minus_gcylinder_vz_leg6 * t2392),
-                -(minus_gcross_vz_leg6 * t2405), -t2225, t2315, t2281, -t2362, t2350, t2331, -t2439,
-                -t2463, -t2491, t2501, grod_vz_leg6 * minus_minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_vz_leg5, t2139), grod_vz_leg5, -t2228, -t2284, t2318,
+                t2334, -t2353, -t2365,
+                minus_gcylinder_vz_leg6 * t2372 - minus_gcross_vz_leg6 * t2370,
+                -(minus_gcross_vz_leg6 * t2393 + minus_gcylinder_vz_leg6 * t2395),
+                -(minus_gcross_vz_leg6 * t2408), -t2228, t2318, t2284, -t2365, t2353, t2334, -t2442,
+                -t2466, -t2494, t2504, grod_vz_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_vz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vz_leg6, t2531), grod_vz_leg6, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, t116, t122, t2549 * t109 + t2551 * t111 - t2554 * t114, t486,
+                -::overact::math::signed(grod_vz_leg6, t2534), grod_vz_leg6, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, t116, t122, t2552 * t109 + t2554 * t111 - t2557 * t114, t486,
             ],
             [
                 -t232, t270, t304, t318, t338, t348,
@@ -4767,50 +4773,50 @@ impl Hexapod {
                 t44 * t476 + t14 * t471, t44 * t487 - t14 * t105,
                 grod_wx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wx_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_wx_leg1, t517), grod_wx_leg1, t668, t705, -t739,
-                -t753, t773, t783, -(gcylinder_wx_leg2 * t789 - minus_gcross_wx_leg2 * t787),
-                gcylinder_wx_leg2 * t812 + minus_gcross_wx_leg2 * t810,
-                -(minus_gcross_wx_leg2 * t825), t668, -t739, -t705, t783, -t773, -t753,
-                -(t532 * t859 + t540 * t854), -(t532 * t883 + t540 * t880),
-                -(t532 * t911 + t540 * t906), t540 * t607 - t532 * t921,
+                -::overact::math::signed(grod_wx_leg1, t517), grod_wx_leg1, t653, t703, -t737,
+                -t752, t772, t782, -(gcylinder_wx_leg2 * t788 - minus_gcross_wx_leg2 * t786),
+                gcylinder_wx_leg2 * t811 + minus_gcross_wx_leg2 * t809,
+                -(minus_gcross_wx_leg2 * t824), t653, -t737, -t703, t782, -t772, -t752,
+                -(t532 * t858 + t540 * t853), -(t532 * t882 + t540 * t879),
+                -(t532 * t910 + t540 * t905), t540 * t606 - t532 * t920,
                 grod_wx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wx_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_wx_leg2, t951), grod_wx_leg2, -t1049, t1099, t1133,
-                t1148, t1168, -t1178, minus_gcylinder_wx_leg3 * t1184 - gcross_wx_leg3 * t1182,
-                -(gcross_wx_leg3 * t1205 + minus_gcylinder_wx_leg3 * t1207), gcross_wx_leg3 * t1220,
-                -t1049, t1133, -t1099, -t1178, -t1168, t1148, t40 * t1254 + t10 * t1249,
-                t40 * t1278 + t10 * t1275, t40 * t1306 - t10 * t1301, t40 * t1316 - t10 * t983,
+                -::overact::math::signed(grod_wx_leg2, t950), grod_wx_leg2, t1062, t1099, t1133,
+                t1147, t1167, -t1177, minus_gcylinder_wx_leg3 * t1183 - gcross_wx_leg3 * t1181,
+                -(gcross_wx_leg3 * t1204 + minus_gcylinder_wx_leg3 * t1206), gcross_wx_leg3 * t1219,
+                t1062, t1133, -t1099, -t1177, -t1167, t1147, t40 * t1253 + t10 * t1248,
+                t40 * t1277 + t10 * t1274, t40 * t1305 - t10 * t1300, t40 * t1315 - t10 * t974,
                 grod_wx_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_wx_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_wx_leg3, t1346), grod_wx_leg3, t1458, t1495, t1529,
-                t1543, t1563, -t1573, minus_gcylinder_wx_leg4 * t1579 - gcross_wx_leg4 * t1577,
-                -(gcross_wx_leg4 * t1600 + minus_gcylinder_wx_leg4 * t1602), gcross_wx_leg4 * t1615,
-                t1458, t1529, -t1495, -t1573, -t1563, t1543, t530 * t1649 + t538 * t1644,
-                t530 * t1673 + t538 * t1670, t530 * t1701 - t538 * t1696,
-                t530 * t1711 - t538 * t1370, grod_wx_leg4 * minus_minus_rate_dot_rod_leg4,
+                -::overact::math::signed(grod_wx_leg3, t1345), grod_wx_leg3, -t1443, t1493, t1527,
+                t1542, t1562, -t1572, minus_gcylinder_wx_leg4 * t1578 - gcross_wx_leg4 * t1576,
+                -(gcross_wx_leg4 * t1599 + minus_gcylinder_wx_leg4 * t1601), gcross_wx_leg4 * t1614,
+                -t1443, t1527, -t1493, -t1572, -t1562, t1542, t530 * t1648 + t538 * t1643,
+                t530 * t1672 + t538 * t1669, t530 * t1700 - t538 * t1695,
+                t530 * t1710 - t538 * t1376, grod_wx_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_wx_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_wx_leg4, t1741), grod_wx_leg4, t1853, t1891, t1925,
-                -t1939, t1959, t1969, gcross_wx_leg5 * t1973 - gcylinder_wx_leg5 * t1975,
-                gcross_wx_leg5 * t1996 + gcylinder_wx_leg5 * t1998, gcross_wx_leg5 * t2011, t1853,
-                t1925, -t1891, t1969, -t1959, -t1939, t43 * t2045 + t13 * t2040,
-                t43 * t2069 + t13 * t2066, t43 * t2097 + t13 * t2092, t13 * t1770 - t43 * t2107,
+                -::overact::math::signed(grod_wx_leg4, t1740), grod_wx_leg4, t1853, t1892, t1926,
+                -t1941, t1961, t1971, gcross_wx_leg5 * t1975 - gcylinder_wx_leg5 * t1977,
+                gcross_wx_leg5 * t1998 + gcylinder_wx_leg5 * t2000, gcross_wx_leg5 * t2013, t1853,
+                t1926, -t1892, t1971, -t1961, -t1941, t43 * t2047 + t13 * t2042,
+                t43 * t2071 + t13 * t2068, t43 * t2099 + t13 * t2094, t13 * t1769 - t43 * t2109,
                 grod_wx_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_wx_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_wx_leg5, t2137), grod_wx_leg5, -t2234, -t2284, t2318,
-                t2333, -t2353, -t2363,
-                minus_gcylinder_wx_leg6 * t2369 - minus_gcross_wx_leg6 * t2367,
-                -(minus_gcross_wx_leg6 * t2390 + minus_gcylinder_wx_leg6 * t2392),
-                -(minus_gcross_wx_leg6 * t2405), -t2234, t2318, t2284, -t2363, t2353, t2333,
-                -(t531 * t2439 + t539 * t2434), -(t531 * t2463 + t539 * t2460),
-                -(t531 * t2491 + t539 * t2486), t531 * t2501 - t539 * t2172,
+                -::overact::math::signed(grod_wx_leg5, t2139), grod_wx_leg5, -t2237, -t2287, t2321,
+                t2336, -t2356, -t2366,
+                minus_gcylinder_wx_leg6 * t2372 - minus_gcross_wx_leg6 * t2370,
+                -(minus_gcross_wx_leg6 * t2393 + minus_gcylinder_wx_leg6 * t2395),
+                -(minus_gcross_wx_leg6 * t2408), -t2237, t2321, t2287, -t2366, t2356, t2336,
+                -(t531 * t2442 + t539 * t2437), -(t531 * t2466 + t539 * t2463),
+                -(t531 * t2494 + t539 * t2489), t531 * t2504 - t539 * t2176,
                 grod_wx_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_wx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wx_leg6, t2531), grod_wx_leg6,
-                t20 * t2542 + t2558 - t2566, t20 * t2583 + t24 * t2586 + t2549 * t2591,
-                t20 * t2609 + t24 * t2612 + t2549 * t2615, t24 * t2582 - t2629 + t2566,
-                t20 * t2640 + t24 * t2642 + t2549 * t2645, t2629 - t2558 + t2549 * t2608,
+                -::overact::math::signed(grod_wx_leg6, t2534), grod_wx_leg6,
+                t20 * t2545 + t2561 - t2569, t20 * t2586 + t24 * t2589 + t2552 * t2594,
+                t20 * t2612 + t24 * t2615 + t2552 * t2618, t24 * t2585 - t2632 + t2569,
+                t20 * t2643 + t24 * t2645 + t2552 * t2648, t2632 - t2561 + t2552 * t2611,
                 t34 * t486 - t4 * acceleration[1], t38 * t486 - t8 * acceleration[1],
-                t2551 * t486 - t2554 * acceleration[1], 0.0,
+                t2554 * t486 - t2557 * acceleration[1], 0.0,
             ],
             [
                 t241, t273, -t307, t320, -t341, t349,
@@ -4820,50 +4826,50 @@ impl Hexapod {
                 -(t14 * t414 + t30 * t424), -(t14 * t442 + t30 * t448), t14 * t466 - t30 * t476,
                 t14 * t80 - t30 * t487, grod_wy_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wy_leg1 * minus_minus_rate_rod_leg1,
-                -::overact::math::signed(grod_wy_leg1, t517), grod_wy_leg1, t677, t708, t742, t755,
-                t776, -t784, minus_gcylinder_wy_leg2 * t789 - minus_minus_gcross_wy_leg2 * t787,
-                -(minus_minus_gcross_wy_leg2 * t810 + minus_gcylinder_wy_leg2 * t812),
-                minus_minus_gcross_wy_leg2 * t825, t677, t742, -t708, -t784, -t776, t755,
-                t540 * t849 + t526 * t859, t540 * t877 + t526 * t883, t526 * t911 - t540 * t901,
-                t526 * t921 - t540 * t602, grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
+                -::overact::math::signed(grod_wy_leg1, t517), grod_wy_leg1, -t662, t706, t740, t754,
+                t775, -t783, minus_gcylinder_wy_leg2 * t788 - minus_minus_gcross_wy_leg2 * t786,
+                -(minus_minus_gcross_wy_leg2 * t809 + minus_gcylinder_wy_leg2 * t811),
+                minus_minus_gcross_wy_leg2 * t824, -t662, t740, -t706, -t783, -t775, t754,
+                t540 * t848 + t526 * t858, t540 * t876 + t526 * t882, t526 * t910 - t540 * t900,
+                t526 * t920 - t540 * t601, grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wy_leg2 * minus_minus_rate_rod_leg2,
-                -::overact::math::signed(grod_wy_leg2, t951), grod_wy_leg2, t1058, t1102, t1136,
-                -t1150, t1171, t1179, -(gcross_wy_leg3 * t1182 + gcylinder_wy_leg3 * t1184),
-                gcylinder_wy_leg3 * t1207 - gcross_wy_leg3 * t1205, gcross_wy_leg3 * t1220, t1058,
-                t1136, -t1102, t1179, -t1171, -t1150, t10 * t1244 - t26 * t1254,
-                t10 * t1272 - t26 * t1278, t10 * t1296 - t26 * t1306, t10 * t985 - t26 * t1316,
+                -::overact::math::signed(grod_wy_leg2, t950), grod_wy_leg2, t1071, t1102, t1136,
+                -t1149, t1170, t1178, -(gcross_wy_leg3 * t1181 + gcylinder_wy_leg3 * t1183),
+                gcylinder_wy_leg3 * t1206 - gcross_wy_leg3 * t1204, gcross_wy_leg3 * t1219, t1071,
+                t1136, -t1102, t1178, -t1170, -t1149, t10 * t1243 - t26 * t1253,
+                t10 * t1271 - t26 * t1277, t10 * t1295 - t26 * t1305, t10 * t976 - t26 * t1315,
                 -(minus_grod_wy_leg3 * minus_minus_rate_dot_rod_leg3),
                 -(minus_grod_wy_leg3 * minus_minus_rate_rod_leg3),
-                ::overact::math::signed(minus_grod_wy_leg3, t1346), -minus_grod_wy_leg3, t1467,
-                t1498, t1532, -t1545, t1566, t1574,
-                -(gcross_wy_leg4 * t1577 + gcylinder_wy_leg4 * t1579),
-                gcylinder_wy_leg4 * t1602 - gcross_wy_leg4 * t1600, gcross_wy_leg4 * t1615, t1467,
-                t1532, -t1498, t1574, -t1566, -t1545, t538 * t1639 - t524 * t1649,
-                t538 * t1667 - t524 * t1673, t538 * t1691 - t524 * t1701,
-                t538 * t1372 - t524 * t1711, -(minus_grod_wy_leg4 * minus_minus_rate_dot_rod_leg4),
+                ::overact::math::signed(minus_grod_wy_leg3, t1345), -minus_grod_wy_leg3, t1452,
+                t1496, t1530, -t1544, t1565, t1573,
+                -(gcross_wy_leg4 * t1576 + gcylinder_wy_leg4 * t1578),
+                gcylinder_wy_leg4 * t1601 - gcross_wy_leg4 * t1599, gcross_wy_leg4 * t1614, t1452,
+                t1530, -t1496, t1573, -t1565, -t1544, t538 * t1638 - t524 * t1648,
+                t538 * t1666 - t524 * t1672, t538 * t1690 - t524 * t1700,
+                t538 * t1378 - t524 * t1710, -(minus_grod_wy_leg4 * minus_minus_rate_dot_rod_leg4),
                 -(minus_grod_wy_leg4 * minus_minus_rate_rod_leg4),
-                ::overact::math::signed(minus_grod_wy_leg4, t1741), -minus_grod_wy_leg4, t1862,
-                t1894, -t1928, t1941, t1962, t1970,
-                -(minus_gcross_wy_leg5 * t1973 + gcylinder_wy_leg5 * t1975),
-                gcylinder_wy_leg5 * t1998 - minus_gcross_wy_leg5 * t1996,
-                -(minus_gcross_wy_leg5 * t2011), t1862, -t1928, -t1894, t1970, -t1962, t1941,
-                -(t13 * t2035 + t29 * t2045), -(t13 * t2063 + t29 * t2069),
-                -(t13 * t2087 + t29 * t2097), t29 * t2107 - t13 * t1767,
+                ::overact::math::signed(minus_grod_wy_leg4, t1740), -minus_grod_wy_leg4, t1862,
+                t1895, -t1929, t1943, t1964, t1972,
+                -(minus_gcross_wy_leg5 * t1975 + gcylinder_wy_leg5 * t1977),
+                gcylinder_wy_leg5 * t2000 - minus_gcross_wy_leg5 * t1998,
+                -(minus_gcross_wy_leg5 * t2013), t1862, -t1929, -t1895, t1972, -t1964, t1943,
+                -(t13 * t2037 + t29 * t2047), -(t13 * t2065 + t29 * t2071),
+                -(t13 * t2089 + t29 * t2099), t29 * t2109 - t13 * t1766,
                 grod_wy_leg5 * minus_minus_rate_dot_rod_leg5,
                 grod_wy_leg5 * minus_minus_rate_rod_leg5,
-                -::overact::math::signed(grod_wy_leg5, t2137), grod_wy_leg5, t2243, t2287, t2321,
-                -t2335, t2356, t2364, gcross_wy_leg6 * t2367 - gcylinder_wy_leg6 * t2369,
-                gcross_wy_leg6 * t2390 + gcylinder_wy_leg6 * t2392, gcross_wy_leg6 * t2405, t2243,
-                t2321, -t2287, t2364, -t2356, -t2335, t539 * t2429 + t525 * t2439,
-                t539 * t2457 + t525 * t2463, t525 * t2491 - t539 * t2481,
-                t539 * t2169 - t525 * t2501, -(minus_grod_wy_leg6 * minus_minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_wy_leg5, t2139), grod_wy_leg5, t2246, t2290, t2324,
+                -t2338, t2359, t2367, gcross_wy_leg6 * t2370 - gcylinder_wy_leg6 * t2372,
+                gcross_wy_leg6 * t2393 + gcylinder_wy_leg6 * t2395, gcross_wy_leg6 * t2408, t2246,
+                t2324, -t2290, t2367, -t2359, -t2338, t539 * t2432 + t525 * t2442,
+                t539 * t2460 + t525 * t2466, t525 * t2494 - t539 * t2484,
+                t539 * t2173 - t525 * t2504, -(minus_grod_wy_leg6 * minus_minus_rate_dot_rod_leg6),
                 -(minus_grod_wy_leg6 * minus_minus_rate_rod_leg6),
-                ::overact::math::signed(minus_grod_wy_leg6, t2531), -minus_grod_wy_leg6,
-                t34 * t2542 + t2569 - t2571, t34 * t2583 + t38 * t2586 + t2551 * t2591,
-                t34 * t2609 + t38 * t2612 + t2551 * t2615, t38 * t2582 - t2633 + t2571,
-                t34 * t2640 + t38 * t2642 + t2551 * t2645, t2633 - t2569 + t2551 * t2608,
+                ::overact::math::signed(minus_grod_wy_leg6, t2534), -minus_grod_wy_leg6,
+                t34 * t2545 + t2572 - t2574, t34 * t2586 + t38 * t2589 + t2554 * t2594,
+                t34 * t2612 + t38 * t2615 + t2554 * t2618, t38 * t2585 - t2636 + t2574,
+                t34 * t2643 + t38 * t2645 + t2554 * t2648, t2636 - t2572 + t2554 * t2611,
                 t4 * acceleration[0] - t20 * t486, t8 * acceleration[0] - t24 * t486,
-                t2554 * acceleration[0] - t2549 * t486, 0.0,
+                t2557 * acceleration[0] - t2552 * t486, 0.0,
             ],
             [
                 t250, t276, t310, t322, t344, -t350,
@@ -4873,51 +4879,51 @@ impl Hexapod {
                 -(t30 * t471 + t44 * t466), t30 * t105 - t44 * t80,
                 -(minus_grod_wz_leg1 * minus_minus_rate_dot_rod_leg1),
                 -(minus_grod_wz_leg1 * minus_minus_rate_rod_leg1),
-                ::overact::math::signed(minus_grod_wz_leg1, t517), -minus_grod_wz_leg1, t686, t711,
-                t745, -t757, t779, t785,
-                -(minus_minus_gcylinder_wz_leg2 * t789 + gcross_wz_leg2 * t787),
-                -(minus_grod_wz_leg2 * t807), gcross_wz_leg2 * t825, t686, t745, -t711, t785, -t779,
-                -t757, t526 * t854 - t532 * t849, t526 * t880 - t532 * t877,
-                t526 * t906 + t532 * t901, t532 * t602 - t526 * t607,
+                ::overact::math::signed(minus_grod_wz_leg1, t517), -minus_grod_wz_leg1, t671, t709,
+                t743, -t756, t778, t784,
+                -(minus_minus_gcylinder_wz_leg2 * t788 + gcross_wz_leg2 * t786),
+                -(minus_grod_wz_leg2 * t806), gcross_wz_leg2 * t824, t671, t743, -t709, t784, -t778,
+                -t756, t526 * t853 - t532 * t848, t526 * t879 - t532 * t876,
+                t526 * t905 + t532 * t900, t532 * t601 - t526 * t606,
                 -(minus_grod_wz_leg2 * minus_minus_rate_dot_rod_leg2),
                 -(minus_grod_wz_leg2 * minus_minus_rate_rod_leg2),
-                ::overact::math::signed(minus_grod_wz_leg2, t951), -minus_grod_wz_leg2, t1067,
-                t1105, -t1139, t1152, t1174, t1180,
-                minus_gcross_wz_leg3 * t1182 - gcylinder_wz_leg3 * t1184, grod_wz_leg3 * t1202,
-                -(minus_gcross_wz_leg3 * t1220), t1067, -t1139, -t1105, t1180, -t1174, t1152,
-                -(t26 * t1249 + t40 * t1244), -(t26 * t1275 + t40 * t1272),
-                t26 * t1301 - t40 * t1296, t26 * t983 - t40 * t985,
+                ::overact::math::signed(minus_grod_wz_leg2, t950), -minus_grod_wz_leg2, t1080,
+                t1105, -t1139, t1151, t1173, t1179,
+                minus_gcross_wz_leg3 * t1181 - gcylinder_wz_leg3 * t1183, grod_wz_leg3 * t1201,
+                -(minus_gcross_wz_leg3 * t1219), t1080, -t1139, -t1105, t1179, -t1173, t1151,
+                -(t26 * t1248 + t40 * t1243), -(t26 * t1274 + t40 * t1271),
+                t26 * t1300 - t40 * t1295, t26 * t974 - t40 * t976,
                 grod_wz_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_wz_leg3 * minus_minus_rate_rod_leg3,
-                -::overact::math::signed(grod_wz_leg3, t1346), grod_wz_leg3, t1476, t1501, -t1535,
-                t1547, t1569, t1575, minus_gcross_wz_leg4 * t1577 - gcylinder_wz_leg4 * t1579,
-                grod_wz_leg4 * t1597, -(minus_gcross_wz_leg4 * t1615), t1476, -t1535, -t1501, t1575,
-                -t1569, t1547, -(t524 * t1644 + t530 * t1639), -(t524 * t1670 + t530 * t1667),
-                t524 * t1696 - t530 * t1691, t524 * t1370 - t530 * t1372,
+                -::overact::math::signed(grod_wz_leg3, t1345), grod_wz_leg3, t1461, t1499, -t1533,
+                t1546, t1568, t1574, minus_gcross_wz_leg4 * t1576 - gcylinder_wz_leg4 * t1578,
+                grod_wz_leg4 * t1596, -(minus_gcross_wz_leg4 * t1614), t1461, -t1533, -t1499, t1574,
+                -t1568, t1546, -(t524 * t1643 + t530 * t1638), -(t524 * t1669 + t530 * t1666),
+                t524 * t1695 - t530 * t1690, t524 * t1376 - t530 * t1378,
                 grod_wz_leg4 * minus_minus_rate_dot_rod_leg4,
                 grod_wz_leg4 * minus_minus_rate_rod_leg4,
-                -::overact::math::signed(grod_wz_leg4, t1741), grod_wz_leg4, t1871, t1897, t1931,
-                t1943, t1965, -t1971, gcross_wz_leg5 * t1973 + minus_gcylinder_wz_leg5 * t1975,
-                -(minus_grod_wz_leg5 * t1993), gcross_wz_leg5 * t2011, t1871, t1931, -t1897, -t1971,
-                -t1965, t1943, t43 * t2035 - t29 * t2040, t43 * t2063 - t29 * t2066,
-                t43 * t2087 - t29 * t2092, t43 * t1767 - t29 * t1770,
+                -::overact::math::signed(grod_wz_leg4, t1740), grod_wz_leg4, t1871, t1898, t1932,
+                t1945, t1967, -t1973, gcross_wz_leg5 * t1975 + minus_gcylinder_wz_leg5 * t1977,
+                -(minus_grod_wz_leg5 * t1995), gcross_wz_leg5 * t2013, t1871, t1932, -t1898, -t1973,
+                -t1967, t1945, t43 * t2037 - t29 * t2042, t43 * t2065 - t29 * t2068,
+                t43 * t2089 - t29 * t2094, t43 * t1766 - t29 * t1769,
                 -(minus_grod_wz_leg5 * minus_minus_rate_dot_rod_leg5),
                 -(minus_grod_wz_leg5 * minus_minus_rate_rod_leg5),
-                ::overact::math::signed(minus_grod_wz_leg5, t2137), -minus_grod_wz_leg5, t2252,
-                t2290, t2324, -t2337, t2359, t2365,
-                gcross_wz_leg6 * t2367 - gcylinder_wz_leg6 * t2369, grod_wz_leg6 * t2387,
-                gcross_wz_leg6 * t2405, t2252, t2324, -t2290, t2365, -t2359, -t2337,
-                t525 * t2434 - t531 * t2429, t525 * t2460 - t531 * t2457,
-                t525 * t2486 + t531 * t2481, t525 * t2172 - t531 * t2169,
+                ::overact::math::signed(minus_grod_wz_leg5, t2139), -minus_grod_wz_leg5, t2255,
+                t2293, t2327, -t2340, t2362, t2368,
+                gcross_wz_leg6 * t2370 - gcylinder_wz_leg6 * t2372, grod_wz_leg6 * t2390,
+                gcross_wz_leg6 * t2408, t2255, t2327, -t2293, t2368, -t2362, -t2340,
+                t525 * t2437 - t531 * t2432, t525 * t2463 - t531 * t2460,
+                t525 * t2489 + t531 * t2484, t525 * t2176 - t531 * t2173,
                 grod_wz_leg6 * minus_minus_rate_dot_rod_leg6,
                 grod_wz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wz_leg6, t2531), grod_wz_leg6,
-                t4 * t2542 + t2574 - t2576, t4 * t2583 + t8 * t2586 + t2554 * t2591,
-                t4 * t2609 + t8 * t2612 + t2554 * t2615, t8 * t2582 - t2637 + t2576,
-                t4 * t2640 + t8 * t2642 + t2554 * t2645, t2637 - t2574 + t2554 * t2608,
+                -::overact::math::signed(grod_wz_leg6, t2534), grod_wz_leg6,
+                t4 * t2545 + t2577 - t2579, t4 * t2586 + t8 * t2589 + t2557 * t2594,
+                t4 * t2612 + t8 * t2615 + t2557 * t2618, t8 * t2585 - t2640 + t2579,
+                t4 * t2643 + t8 * t2645 + t2557 * t2648, t2640 - t2577 + t2557 * t2611,
                 t20 * acceleration[1] - t34 * acceleration[0],
                 t24 * acceleration[1] - t38 * acceleration[0],
-                t2549 * acceleration[1] - t2551 * acceleration[0], 0.0,
+                t2552 * acceleration[1] - t2554 * acceleration[0], 0.0,
             ],
         ])
     }
@@ -4932,7 +4938,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 2563 operations (912 additions, 1609 multiplications, 42 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1974 intermediates.
+    /// 2583 operations (915 additions, 1641 multiplications, 27 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1994 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4943,1352 +4949,1355 @@ impl Hexapod {
         acceleration: &[f64; 6],
     ) -> Result<[[f64; 148]; 6], ::overact::Error> {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
-        (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
-        (minus_c_cross_leg2, s_cross_leg2), (minus_c_cross_leg3, s_cross_leg3),
+        (minus_c_cross_leg1, s_cross_leg1), (minus_c_cross_leg2, s_cross_leg2),
+        (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
         (minus_c_cylinder_leg3, s_cylinder_leg3), (minus_c_cross_leg4, s_cross_leg4),
         (minus_c_cylinder_leg4, s_cylinder_leg4), (minus_c_cross_leg5, s_cross_leg5),
         (minus_c_cylinder_leg5, s_cylinder_leg5), (minus_c_cross_leg6, s_cross_leg6),
         (minus_c_cylinder_leg6, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[4], joints[3], joints[6], joints[7], joints[9], joints[10],
+            joints[1], joints[0], joints[3], joints[4], joints[6], joints[7], joints[9], joints[10],
             joints[12], joints[13], joints[15], joints[16],
         ]);
         let t4 = 0.9781476007338057 * minus_c_cross_leg1;
         let t7 = minus_c_cylinder_leg1 * t4 - 0.20791169081775931 * s_cylinder_leg1;
-        let t8 = 1.0 / joints[2];
-        let gcylinder_vx_leg1 = t7 * t8;
-        let t10 = 0.9781476007338057 * s_cross_leg1;
-        let t11 = 2.0 * pose[4];
-        let t12 = pose[6] * t11;
-        let t13 = 2.0 * pose[5];
-        let t14 = pose[3] * t13;
-        let t15 = t12 - t14;
-        let t16 = 0.05176380902050415 * t15;
-        let t17 = pose[6] * t13;
-        let t18 = pose[3] * t11;
-        let t19 = t17 + t18;
-        let t20 = 0.19318516525781368 * t19;
-        let t21 = t16 + t20;
-        let t23 = pose[5] * t11;
-        let t24 = 2.0 * pose[6];
-        let t25 = pose[3] * t24;
-        let t26 = t23 + t25;
-        let t27 = 0.05176380902050415 * t26;
-        let t29 = 1.0 - pose[4] * t11;
-        let t30 = pose[6] * t24;
-        let t31 = t29 - t30;
-        let t32 = 0.19318516525781368 * t31;
-        let t33 = t27 + t32;
-        let t35 = t21 * twist[4] - t33 * twist[5];
-        let t36 = 0.19318516525781368 * t26;
-        let t37 = 0.05176380902050415 * t31;
-        let t38 = t36 + t37;
-        let t40 = 0.19318516525781368 * t15;
-        let t41 = 0.05176380902050415 * t19;
-        let t42 = t40 + t41;
-        let t44 = t38 * twist[5] - t42 * twist[4];
-        let t46 = twist[0] - (t35 + t44);
-        let t48 = 0.20791169081775931 * s_cross_leg1;
-        let t49 = pose[5] * t13;
-        let t51 = 1.0 - t49 - t30;
-        let t52 = 0.05176380902050415 * t51;
-        let t53 = t23 - t25;
-        let t54 = 0.19318516525781368 * t53;
-        let t55 = t52 + t54;
-        let t58 = t55 * twist[5] - t21 * twist[3];
-        let t60 = 0.19318516525781368 * t51;
-        let t61 = 0.05176380902050415 * t53;
-        let t62 = t60 + t61;
-        let t64 = t42 * twist[3] - t62 * twist[5];
-        let t66 = twist[1] - (t58 + t64);
-        let t71 = t33 * twist[3] - t55 * twist[4];
-        let t74 = t62 * twist[4] - t38 * twist[3];
-        let t76 = twist[2] - (t71 + t74);
-        let t78 = t10 * t46 - t48 * t66 + minus_c_cross_leg1 * t76;
-        let t79 = s_cylinder_leg1 * joints[2];
-        ::overact::guard::leg(t79, 0.5513142860394166, "leg1")?;
-        let minus_rate_cross_leg1 = t78 / t79;
-        let t81 = s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t82 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t83 = t81 * t82;
-        let t84 = gcylinder_vx_leg1 * t83;
-        let minus_gcross_vx_leg1 = t10 / t79;
-        let t86 = twist[3] * twist[4];
-        let t87 = t86 - acceleration[5];
-        let t89 = twist[4] * twist[4];
-        let t90 = twist[5] * twist[5];
-        let t91 = t89 + t90;
-        let t94 = twist[3] * twist[5];
-        let t95 = t94 + acceleration[4];
-        let t97 = t26 * t87 - t51 * t91 + t15 * t95;
-        let t98 = 0.05176380902050415 * t97;
-        let t103 = t31 * t87 - t53 * t91 + t19 * t95;
-        let t104 = 0.19318516525781368 * t103;
-        let t105 = t98 + t104;
-        let t106 = 0.19318516525781368 * t97;
-        let t107 = 0.05176380902050415 * t103;
-        let t108 = t106 + t107;
-        let t110 = acceleration[0] + t108 - t105;
-        let t112 = t86 + acceleration[5];
-        let t114 = twist[3] * twist[3];
-        let t115 = t114 + t90;
-        let t118 = twist[4] * twist[5];
-        let t119 = t118 - acceleration[3];
-        let t121 = t51 * t112 - t26 * t115 + t15 * t119;
-        let t122 = 0.05176380902050415 * t121;
-        let t127 = t53 * t112 - t31 * t115 + t19 * t119;
-        let t128 = 0.19318516525781368 * t127;
-        let t129 = t122 + t128;
-        let t130 = 0.19318516525781368 * t121;
-        let t131 = 0.05176380902050415 * t127;
-        let t132 = t130 + t131;
-        let t134 = acceleration[1] + t132 - t129;
-        let t137 = t94 - acceleration[4];
-        let t139 = t118 + acceleration[3];
-        let t142 = t114 + t89;
-        let t144 = t51 * t137 + t26 * t139 - t15 * t142;
-        let t145 = 0.05176380902050415 * t144;
-        let t150 = t53 * t137 + t31 * t139 - t19 * t142;
-        let t151 = 0.19318516525781368 * t150;
-        let t152 = t145 + t151;
-        let t153 = 0.19318516525781368 * t144;
-        let t154 = 0.05176380902050415 * t150;
-        let t155 = t153 + t154;
-        let t157 = acceleration[2] + t155 - t152;
-        let t159 = t10 * t110 - t48 * t134 + minus_c_cross_leg1 * t157;
+        let gcylinder_vx_leg1 = t7 / joints[2];
+        let t9 = s_cylinder_leg1 * joints[2];
+        ::overact::guard::leg(t9, 0.5513142860394166, "leg1")?;
+        let t10 = 1.0 / t9;
+        let t11 = 0.9781476007338057 * s_cross_leg1;
+        let t12 = 2.0 * pose[4];
+        let t13 = pose[6] * t12;
+        let t14 = 2.0 * pose[5];
+        let t15 = pose[3] * t14;
+        let t16 = t13 - t15;
+        let t17 = 0.05176380902050415 * t16;
+        let t18 = pose[6] * t14;
+        let t19 = pose[3] * t12;
+        let t20 = t18 + t19;
+        let t21 = 0.19318516525781368 * t20;
+        let t22 = t17 + t21;
+        let t24 = pose[5] * t12;
+        let t25 = 2.0 * pose[6];
+        let t26 = pose[3] * t25;
+        let t27 = t24 + t26;
+        let t28 = 0.05176380902050415 * t27;
+        let t30 = 1.0 - pose[4] * t12;
+        let t31 = pose[6] * t25;
+        let t32 = t30 - t31;
+        let t33 = 0.19318516525781368 * t32;
+        let t34 = t28 + t33;
+        let t36 = t22 * twist[4] - t34 * twist[5];
+        let t37 = 0.19318516525781368 * t27;
+        let t38 = 0.05176380902050415 * t32;
+        let t39 = t37 + t38;
+        let t41 = 0.19318516525781368 * t16;
+        let t42 = 0.05176380902050415 * t20;
+        let t43 = t41 + t42;
+        let t45 = t39 * twist[5] - t43 * twist[4];
+        let t47 = twist[0] - (t36 + t45);
+        let t49 = 0.20791169081775931 * s_cross_leg1;
+        let t50 = pose[5] * t14;
+        let t52 = 1.0 - t50 - t31;
+        let t53 = t24 - t26;
+        let t55 = 0.14142135623730953 * (t52 - t53);
+        let t58 = 0.14142135623730953 * (t16 - t20);
+        let t60 = t55 * twist[5] - t58 * twist[3];
+        let t61 = twist[1] + t60;
+        let t65 = 0.19318516525781368 * t52;
+        let t66 = 0.05176380902050415 * t53;
+        let t67 = t65 + t66;
+        let t68 = t67 - t55;
+        let t70 = t34 * twist[3] - t68 * twist[4];
+        let t73 = t67 * twist[4] - t39 * twist[3];
+        let t75 = twist[2] - (t70 + t73);
+        let t77 = t11 * t47 - t49 * t61 + minus_c_cross_leg1 * t75;
+        let minus_rate_cross_leg1 = t10 * t77;
+        let t79 = s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t80 = minus_c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t81 = t79 * t80;
+        let t82 = gcylinder_vx_leg1 * t81;
+        let minus_gcross_vx_leg1 = t11 * t10;
+        let t85 = 0.20791169081775931 * minus_c_cross_leg1;
+        let t88 = minus_c_cylinder_leg1 * t85 + 0.9781476007338057 * s_cylinder_leg1;
+        let t91 = s_cross_leg1 * minus_c_cylinder_leg1;
+        let rate_cylinder_leg1 = (t7 * t47 - t88 * t61 - t91 * t75) / joints[2];
+        let t95 = rate_cylinder_leg1 * t80;
+        let t96 = twist[3] * twist[4];
+        let t97 = t96 - acceleration[5];
+        let t99 = twist[4] * twist[4];
+        let t100 = twist[5] * twist[5];
+        let t101 = t99 + t100;
+        let t104 = twist[3] * twist[5];
+        let t105 = t104 + acceleration[4];
+        let t107 = t27 * t97 - t52 * t101 + t16 * t105;
+        let t108 = 0.05176380902050415 * t107;
+        let t113 = t32 * t97 - t53 * t101 + t20 * t105;
+        let t114 = 0.19318516525781368 * t113;
+        let t115 = t108 + t114;
+        let t116 = 0.19318516525781368 * t107;
+        let t117 = 0.05176380902050415 * t113;
+        let t118 = t116 + t117;
+        let t120 = acceleration[0] + t118 - t115;
+        let t122 = t96 + acceleration[5];
+        let t124 = twist[3] * twist[3];
+        let t125 = t124 + t100;
+        let t128 = twist[4] * twist[5];
+        let t129 = t128 - acceleration[3];
+        let t131 = t52 * t122 - t27 * t125 + t16 * t129;
+        let t132 = 0.05176380902050415 * t131;
+        let t137 = t53 * t122 - t32 * t125 + t20 * t129;
+        let t138 = 0.19318516525781368 * t137;
+        let t139 = t132 + t138;
+        let t140 = 0.19318516525781368 * t131;
+        let t141 = 0.05176380902050415 * t137;
+        let t142 = t140 + t141;
+        let t144 = acceleration[1] + t142 - t139;
+        let t147 = t104 - acceleration[4];
+        let t149 = t128 + acceleration[3];
+        let t152 = t124 + t99;
+        let t154 = t52 * t147 + t27 * t149 - t16 * t152;
+        let t155 = 0.05176380902050415 * t154;
+        let t160 = t53 * t147 + t32 * t149 - t20 * t152;
+        let t161 = 0.19318516525781368 * t160;
+        let t162 = t155 + t161;
+        let t163 = 0.19318516525781368 * t154;
+        let t164 = 0.05176380902050415 * t160;
+        let t165 = t163 + t164;
+        let t167 = acceleration[2] + t165 - t162;
+        let t169 = t11 * t120 - t49 * t144 + minus_c_cross_leg1 * t167;
+        let t170 = joints[2] * t95;
         let minus_grod_vx_leg1 = s_cylinder_leg1 * t4
             + 0.20791169081775931 * minus_c_cylinder_leg1;
-        let t165 = 0.20791169081775931 * minus_c_cross_leg1;
         let minus_grod_vy_leg1 = 0.9781476007338057 * minus_c_cylinder_leg1
-            - s_cylinder_leg1 * t165;
+            - s_cylinder_leg1 * t85;
         let grod_vz_leg1 = s_cross_leg1 * s_cylinder_leg1;
-        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t46 + minus_grod_vy_leg1 * t66
-            - grod_vz_leg1 * t76;
-        let t173 = 2.0 * minus_rate_rod_leg1;
-        let t175 = t159 + t81 * t173;
-        let t179 = minus_c_cylinder_leg1 * t165 + 0.9781476007338057 * s_cylinder_leg1;
-        let t182 = s_cross_leg1 * minus_c_cylinder_leg1;
-        let t184 = t7 * t46 - t179 * t66 - t182 * t76;
-        let t185 = t82 * t184;
-        let minus_rate_dot_cross_leg1 = (t175 + t185 + t185) / t79;
-        let rate_cylinder_leg1 = t8 * t184;
-        let t190 = rate_cylinder_leg1 * t81;
-        let t191 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t193 = t190 + t191 + t190;
-        let t194 = minus_c_cylinder_leg1 * t193;
-        let t195 = t194 - minus_rate_dot_cross_leg1;
-        let t197 = t84 - minus_gcross_vx_leg1 * t195;
-        let gcross_vy_leg1 = t48 / t79;
-        let minus_gcylinder_vy_leg1 = t179 * t8;
-        let t201 = minus_gcylinder_vy_leg1 * t83;
-        let t202 = gcross_vy_leg1 * t195 - t201;
-        let minus_gcross_vz_leg1 = minus_c_cross_leg1 / t79;
-        let minus_gcylinder_vz_leg1 = t182 * t8;
-        let t206 = minus_gcylinder_vz_leg1 * t83;
-        let t207 = minus_gcross_vz_leg1 * t195 + t206;
-        let t208 = t42 - t21;
-        let t210 = t38 - t33;
-        let gcylinder_wx_leg1 = t208 * minus_gcylinder_vy_leg1
-            - t210 * minus_gcylinder_vz_leg1;
-        let t213 = gcylinder_wx_leg1 * t83;
-        let minus_gcross_wx_leg1 = t210 * minus_gcross_vz_leg1 + t208 * gcross_vy_leg1;
-        let t218 = t213 - minus_gcross_wx_leg1 * t195;
-        let t219 = t62 - t55;
-        let gcross_wy_leg1 = t219 * minus_gcross_vz_leg1 - t208 * minus_gcross_vx_leg1;
-        let gcylinder_wy_leg1 = t208 * gcylinder_vx_leg1
-            + t219 * minus_gcylinder_vz_leg1;
-        let t227 = gcylinder_wy_leg1 * t83;
-        let t228 = gcross_wy_leg1 * t195 + t227;
-        let gcross_wz_leg1 = t219 * gcross_vy_leg1 + t210 * minus_gcross_vx_leg1;
-        let minus_gcylinder_wz_leg1 = t219 * minus_gcylinder_vy_leg1
-            + t210 * gcylinder_vx_leg1;
-        let t236 = minus_gcylinder_wz_leg1 * t83;
-        let t237 = gcross_wz_leg1 * t195 - t236;
-        let t238 = t81 * t81;
-        let t239 = t82 * t82;
-        let t240 = t238 - t239;
-        let t245 = s_cylinder_leg1 * t193 + t175 * (minus_c_cylinder_leg1 / joints[2]);
-        let t247 = gcylinder_vx_leg1 * t240 - minus_gcross_vx_leg1 * t245;
-        let t250 = gcross_vy_leg1 * t245 - minus_gcylinder_vy_leg1 * t240;
-        let t253 = minus_gcross_vz_leg1 * t245 + minus_gcylinder_vz_leg1 * t240;
-        let t256 = gcylinder_wx_leg1 * t240 - minus_gcross_wx_leg1 * t245;
-        let t259 = gcross_wy_leg1 * t245 + gcylinder_wy_leg1 * t240;
-        let t262 = gcross_wz_leg1 * t245 - minus_gcylinder_wz_leg1 * t240;
-        let t267 = t7 * t110 - t179 * t134 - t182 * t157;
-        let t269 = t267 + rate_cylinder_leg1 * t173;
-        let t270 = t269 / joints[2];
-        let rate_dot_cylinder_leg1 = t270 - t83;
-        let t272 = rate_dot_cylinder_leg1 - t83;
-        let t274 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t277 = s_cylinder_leg1 * t272 - minus_c_cylinder_leg1 * (t274 - t238);
-        let t279 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t281 = minus_gcross_vx_leg1 * t277 + gcylinder_vx_leg1 * t279;
-        let t284 = gcross_vy_leg1 * t277 + minus_gcylinder_vy_leg1 * t279;
-        let t287 = minus_gcylinder_vz_leg1 * t279 - minus_gcross_vz_leg1 * t277;
-        let t290 = minus_gcross_wx_leg1 * t277 + gcylinder_wx_leg1 * t279;
-        let t293 = gcross_wy_leg1 * t277 - gcylinder_wy_leg1 * t279;
-        let t296 = gcross_wz_leg1 * t277 + minus_gcylinder_wz_leg1 * t279;
-        let t298 = minus_gcross_vx_leg1 * t194 - t84;
-        let t300 = t201 - gcross_vy_leg1 * t194;
-        let t302 = minus_gcross_vz_leg1 * t194 + t206;
-        let t304 = minus_gcross_wx_leg1 * t194 - t213;
-        let t306 = gcross_wy_leg1 * t194 + t227;
-        let t308 = t236 - gcross_wz_leg1 * t194;
-        let t313 = s_cylinder_leg1 * (t239 - t274) - minus_c_cylinder_leg1 * t270;
-        let t315 = gcylinder_vx_leg1 * t191 - minus_gcross_vx_leg1 * t313;
-        let t318 = gcross_vy_leg1 * t313 - minus_gcylinder_vy_leg1 * t191;
-        let t321 = minus_gcross_vz_leg1 * t313 + minus_gcylinder_vz_leg1 * t191;
-        let t324 = gcylinder_wx_leg1 * t191 - minus_gcross_wx_leg1 * t313;
-        let t327 = gcross_wy_leg1 * t313 + gcylinder_wy_leg1 * t191;
-        let t330 = gcross_wz_leg1 * t313 - minus_gcylinder_wz_leg1 * t191;
-        let t331 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
-        let t332 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
-        let t333 = minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
-        let t334 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
-        let t335 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
-        let t336 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
-        let t337 = 9.81 * minus_c_cross_leg1;
-        let t338 = minus_c_cylinder_leg1 * t337;
-        let t340 = 9.81 * grod_vz_leg1;
-        let t358 = t8 * t340;
-        let t361 = s_cylinder_leg1 * t337;
-        let t363 = 9.81 * t182;
-        let grod_wz_leg1 = minus_grod_vx_leg1 * t210 - minus_grod_vy_leg1 * t219;
-        let t376 = 9.81 * s_cross_leg1;
-        let t387 = minus_grod_vx_leg1 * t110 + minus_grod_vy_leg1 * t134
-            - grod_vz_leg1 * t157;
-        let t388 = t387 - t340;
-        let t391 = t388 - joints[2] * (t239 + t274);
-        let t394 = t159 + t337;
-        let t396 = t79 * t193 + minus_c_cylinder_leg1 * t394;
-        let t400 = gcylinder_vx_leg1 * t391 - minus_gcross_vx_leg1 * t396
-            + minus_grod_vx_leg1 * t272;
-        let t405 = gcross_vy_leg1 * t396 - minus_gcylinder_vy_leg1 * t391
-            + minus_grod_vy_leg1 * t272;
-        let t410 = minus_gcross_vz_leg1 * t396 + minus_gcylinder_vz_leg1 * t391
-            + grod_vz_leg1 * t272;
-        let t422 = t267 - t363;
-        let t425 = t78 * minus_rate_cross_leg1
-            - (s_cylinder_leg1 * t388 + minus_c_cylinder_leg1 * t422);
-        let t428 = t4 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t425;
-        let t431 = gcross_vy_leg1 * t425 - t165 * minus_rate_dot_cross_leg1;
-        let t434 = minus_gcross_vz_leg1 * t425
+        let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t47 + minus_grod_vy_leg1 * t61
+            - grod_vz_leg1 * t75;
+        let minus_rate_dot_cross_leg1 = t10
+            * (t169 + t170 + t170 + 2.0 * (minus_rate_rod_leg1 * t79));
+        let t189 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t190 = t95 - t189;
+        let t192 = rate_cylinder_leg1 * t79;
+        let t193 = minus_c_cylinder_leg1 * t192;
+        let t194 = s_cylinder_leg1 * t190 + t193;
+        let t196 = t82 - minus_gcross_vx_leg1 * t194;
+        let gcross_vy_leg1 = t49 * t10;
+        let minus_gcylinder_vy_leg1 = t88 / joints[2];
+        let t200 = minus_gcylinder_vy_leg1 * t81;
+        let t201 = gcross_vy_leg1 * t194 - t200;
+        let minus_gcross_vz_leg1 = minus_c_cross_leg1 * t10;
+        let minus_gcylinder_vz_leg1 = t91 / joints[2];
+        let t205 = minus_gcylinder_vz_leg1 * t81;
+        let t206 = minus_gcross_vz_leg1 * t194 + t205;
+        let t208 = t39 - t34;
+        let gcylinder_wx_leg1 = t58 * minus_gcylinder_vy_leg1
+            - t208 * minus_gcylinder_vz_leg1;
+        let t211 = gcylinder_wx_leg1 * t81;
+        let minus_gcross_wx_leg1 = t208 * minus_gcross_vz_leg1 + t58 * gcross_vy_leg1;
+        let t216 = t211 - minus_gcross_wx_leg1 * t194;
+        let gcross_wy_leg1 = t55 * minus_gcross_vz_leg1 - t58 * minus_gcross_vx_leg1;
+        let gcylinder_wy_leg1 = t58 * gcylinder_vx_leg1 + t55 * minus_gcylinder_vz_leg1;
+        let t224 = gcylinder_wy_leg1 * t81;
+        let t225 = gcross_wy_leg1 * t194 + t224;
+        let gcross_wz_leg1 = t55 * gcross_vy_leg1 + t208 * minus_gcross_vx_leg1;
+        let minus_gcylinder_wz_leg1 = t55 * minus_gcylinder_vy_leg1
+            + t208 * gcylinder_vx_leg1;
+        let t233 = minus_gcylinder_wz_leg1 * t81;
+        let t234 = gcross_wz_leg1 * t194 - t233;
+        let t235 = t79 * t79;
+        let t236 = t80 * t80;
+        let t237 = t235 - t236;
+        let t239 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t240 = t239 + t192;
+        let t241 = t192 + t240;
+        let t243 = t95 + t190;
+        let t245 = s_cylinder_leg1 * t241 - minus_c_cylinder_leg1 * t243;
+        let t247 = gcylinder_vx_leg1 * t237 - minus_gcross_vx_leg1 * t245;
+        let t250 = gcross_vy_leg1 * t245 - minus_gcylinder_vy_leg1 * t237;
+        let t253 = minus_gcross_vz_leg1 * t245 + minus_gcylinder_vz_leg1 * t237;
+        let t256 = gcylinder_wx_leg1 * t237 - minus_gcross_wx_leg1 * t245;
+        let t259 = gcross_wy_leg1 * t245 + gcylinder_wy_leg1 * t237;
+        let t262 = gcross_wz_leg1 * t245 - minus_gcylinder_wz_leg1 * t237;
+        let t263 = t77 * minus_rate_cross_leg1;
+        let t269 = t7 * t120 - t88 * t144 - t91 * t167;
+        let t272 = t269
+            + rate_cylinder_leg1 * (minus_rate_rod_leg1 + minus_rate_rod_leg1);
+        let rate_dot_cylinder_leg1 = (t272 - minus_c_cylinder_leg1 * t263) / joints[2];
+        let t275 = rate_dot_cylinder_leg1 - t81;
+        let t277 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t280 = s_cylinder_leg1 * t275 - minus_c_cylinder_leg1 * (t277 - t235);
+        let t283 = minus_gcross_vx_leg1 * t280 + gcylinder_vx_leg1 * t189;
+        let t286 = gcross_vy_leg1 * t280 + minus_gcylinder_vy_leg1 * t189;
+        let t289 = minus_gcylinder_vz_leg1 * t189 - minus_gcross_vz_leg1 * t280;
+        let t292 = minus_gcross_wx_leg1 * t280 + gcylinder_wx_leg1 * t189;
+        let t295 = gcross_wy_leg1 * t280 - gcylinder_wy_leg1 * t189;
+        let t298 = gcross_wz_leg1 * t280 + minus_gcylinder_wz_leg1 * t189;
+        let t300 = t193 + minus_c_cylinder_leg1 * t240;
+        let t302 = minus_gcross_vx_leg1 * t300 - t82;
+        let t304 = t200 - gcross_vy_leg1 * t300;
+        let t306 = minus_gcross_vz_leg1 * t300 + t205;
+        let t308 = minus_gcross_wx_leg1 * t300 - t211;
+        let t310 = gcross_wy_leg1 * t300 + t224;
+        let t312 = t233 - gcross_wz_leg1 * t300;
+        let t318 = s_cylinder_leg1 * (t236 - t277)
+            - minus_c_cylinder_leg1 * (t81 + rate_dot_cylinder_leg1);
+        let t320 = gcylinder_vx_leg1 * t239 - minus_gcross_vx_leg1 * t318;
+        let t323 = gcross_vy_leg1 * t318 - minus_gcylinder_vy_leg1 * t239;
+        let t326 = minus_gcross_vz_leg1 * t318 + minus_gcylinder_vz_leg1 * t239;
+        let t329 = gcylinder_wx_leg1 * t239 - minus_gcross_wx_leg1 * t318;
+        let t332 = gcross_wy_leg1 * t318 + gcylinder_wy_leg1 * t239;
+        let t335 = gcross_wz_leg1 * t318 - minus_gcylinder_wz_leg1 * t239;
+        let t336 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
+        let t337 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
+        let t338 = minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
+        let t339 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
+        let t340 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
+        let t341 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
+        let t342 = 9.81 * minus_c_cross_leg1;
+        let t343 = minus_c_cylinder_leg1 * t342;
+        let t345 = 9.81 * grod_vz_leg1;
+        let t363 = t345 / joints[2];
+        let t366 = s_cylinder_leg1 * t342;
+        let t368 = 9.81 * t91;
+        let grod_wz_leg1 = minus_grod_vx_leg1 * t208 - minus_grod_vy_leg1 * t55;
+        let t381 = 9.81 * s_cross_leg1;
+        let t392 = minus_grod_vx_leg1 * t120 + minus_grod_vy_leg1 * t144
+            - grod_vz_leg1 * t167;
+        let t393 = t392 - t345;
+        let t396 = t393 - joints[2] * (t236 + t277);
+        let t399 = t169 + t342;
+        let t401 = t9 * t241 + minus_c_cylinder_leg1 * t399;
+        let t405 = gcylinder_vx_leg1 * t396 - minus_gcross_vx_leg1 * t401
+            + minus_grod_vx_leg1 * t275;
+        let t410 = gcross_vy_leg1 * t401 - minus_gcylinder_vy_leg1 * t396
+            + minus_grod_vy_leg1 * t275;
+        let t415 = minus_gcross_vz_leg1 * t401 + minus_gcylinder_vz_leg1 * t396
+            + grod_vz_leg1 * t275;
+        let t426 = t269 - t368;
+        let t429 = t263 - (s_cylinder_leg1 * t393 + minus_c_cylinder_leg1 * t426);
+        let t432 = t4 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t429;
+        let t435 = gcross_vy_leg1 * t429 - t85 * minus_rate_dot_cross_leg1;
+        let t438 = minus_gcross_vz_leg1 * t429
             + s_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t444 = t269 + t422;
-        let t447 = s_cylinder_leg1 * (t394 + t175);
-        let t450 = t238 + t274;
-        let t452 = gcylinder_vx_leg1 * t444 + minus_gcross_vx_leg1 * t447
-            + minus_grod_vx_leg1 * t450;
-        let t457 = minus_grod_vy_leg1 * t450
-            - (gcross_vy_leg1 * t447 + minus_gcylinder_vy_leg1 * t444);
-        let t462 = minus_gcylinder_vz_leg1 * t444 - minus_gcross_vz_leg1 * t447
-            + grod_vz_leg1 * t450;
-        let t472 = t157 + 9.81;
-        let minus_rate_dot_rod_leg1 = t387 - joints[2] * t450;
-        let grod_wx_leg1 = grod_vz_leg1 * t210 + minus_grod_vy_leg1 * t208;
-        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t208 + grod_vz_leg1 * t219;
-        let t512 = 0.9781476007338057 * minus_c_cross_leg2;
-        let t515 = minus_c_cylinder_leg2 * t512 + 0.20791169081775931 * s_cylinder_leg2;
-        let t516 = 1.0 / joints[5];
-        let gcylinder_vx_leg2 = t515 * t516;
-        let t518 = s_cylinder_leg2 * joints[5];
-        ::overact::guard::leg(t518, 0.5513142860394165, "leg2")?;
-        let t519 = 1.0 / t518;
-        let t520 = 0.9781476007338057 * s_cross_leg2;
-        let t521 = t41 - t40;
-        let t523 = t37 - t36;
-        let t525 = t521 * twist[4] - t523 * twist[5];
-        let t526 = t16 - t20;
-        let t528 = t27 - t32;
+        let t448 = t272 + t426;
+        let t452 = t9 * t243 - s_cylinder_leg1 * t399;
+        let t455 = t235 + t277;
+        let t457 = gcylinder_vx_leg1 * t448 - minus_gcross_vx_leg1 * t452
+            + minus_grod_vx_leg1 * t455;
+        let t462 = gcross_vy_leg1 * t452 - minus_gcylinder_vy_leg1 * t448
+            + minus_grod_vy_leg1 * t455;
+        let t467 = minus_gcross_vz_leg1 * t452 + minus_gcylinder_vz_leg1 * t448
+            + grod_vz_leg1 * t455;
+        let t477 = t167 + 9.81;
+        let minus_rate_dot_rod_leg1 = t392 - joints[2] * t455;
+        let grod_wx_leg1 = grod_vz_leg1 * t208 + minus_grod_vy_leg1 * t58;
+        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t58 + grod_vz_leg1 * t55;
+        let t517 = 0.9781476007338057 * minus_c_cylinder_leg2;
+        let t520 = minus_c_cross_leg2 * t517 + 0.20791169081775931 * s_cylinder_leg2;
+        let t521 = 1.0 / joints[5];
+        let gcylinder_vx_leg2 = t520 * t521;
+        let t523 = s_cylinder_leg2 * joints[5];
+        ::overact::guard::leg(t523, 0.5513142860394165, "leg2")?;
+        let t524 = 1.0 / t523;
+        let t525 = 0.9781476007338057 * s_cross_leg2;
+        let t526 = t42 - t41;
+        let t528 = t38 - t37;
         let t530 = t526 * twist[4] - t528 * twist[5];
-        let t532 = twist[0] - (t525 + t530);
-        let t534 = 0.20791169081775931 * s_cross_leg2;
-        let t535 = t61 - t60;
-        let t538 = t535 * twist[5] - t521 * twist[3];
-        let t539 = t52 - t54;
-        let t542 = t539 * twist[5] - t526 * twist[3];
-        let t544 = twist[1] - (t538 + t542);
-        let t549 = t523 * twist[3] - t535 * twist[4];
-        let t552 = t528 * twist[3] - t539 * twist[4];
-        let t554 = twist[2] - (t549 + t552);
-        let t556 = t520 * t532 + t534 * t544 + minus_c_cross_leg2 * t554;
-        let minus_rate_cross_leg2 = t519 * t556;
-        let t558 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t559 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t560 = t558 * t559;
-        let t561 = gcylinder_vx_leg2 * t560;
-        let minus_gcross_vx_leg2 = t520 * t519;
-        let t563 = t107 - t106;
-        let t564 = t98 - t104;
-        let t566 = acceleration[0] - (t563 + t564);
-        let t568 = t131 - t130;
-        let t569 = t122 - t128;
-        let t571 = acceleration[1] - (t568 + t569);
-        let t574 = t154 - t153;
-        let t575 = t145 - t151;
-        let t577 = acceleration[2] - (t574 + t575);
-        let t579 = t520 * t566 + t534 * t571 + minus_c_cross_leg2 * t577;
-        let t581 = 0.20791169081775931 * minus_c_cross_leg2;
-        let t584 = minus_c_cylinder_leg2 * t581 - 0.9781476007338057 * s_cylinder_leg2;
-        let t587 = s_cross_leg2 * minus_c_cylinder_leg2;
-        let t589 = t515 * t532 + t584 * t544 - t587 * t554;
-        let t590 = t559 * t589;
-        let minus_grod_vx_leg2 = s_cylinder_leg2 * t512
+        let t531 = t17 - t21;
+        let t533 = t28 - t33;
+        let t535 = t531 * twist[4] - t533 * twist[5];
+        let t537 = twist[0] - (t530 + t535);
+        let t539 = 0.20791169081775931 * s_cross_leg2;
+        let t540 = t66 - t65;
+        let t543 = t540 * twist[5] - t526 * twist[3];
+        let t545 = 0.14142135623730953 * (t52 + t53);
+        let t546 = t545 + t540;
+        let t549 = t546 * twist[5] + t531 * twist[3];
+        let t551 = twist[1] + t549 - t543;
+        let t556 = t528 * twist[3] - t540 * twist[4];
+        let t559 = t533 * twist[3] + t546 * twist[4];
+        let t561 = twist[2] - (t556 + t559);
+        let t563 = t525 * t537 + t539 * t551 + minus_c_cross_leg2 * t561;
+        let minus_rate_cross_leg2 = t524 * t563;
+        let t565 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t566 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t567 = t565 * t566;
+        let t568 = gcylinder_vx_leg2 * t567;
+        let minus_gcross_vx_leg2 = t525 * t524;
+        let t570 = t117 - t116;
+        let t571 = t108 - t114;
+        let t573 = acceleration[0] - (t570 + t571);
+        let t575 = t141 - t140;
+        let t576 = t132 - t138;
+        let t578 = acceleration[1] - (t575 + t576);
+        let t581 = t164 - t163;
+        let t582 = t155 - t161;
+        let t584 = acceleration[2] - (t581 + t582);
+        let t586 = t525 * t573 + t539 * t578 + minus_c_cross_leg2 * t584;
+        let t587 = 0.9781476007338057 * s_cylinder_leg2;
+        let minus_grod_vx_leg2 = minus_c_cross_leg2 * t587
             - 0.20791169081775931 * minus_c_cylinder_leg2;
-        let minus_grod_vy_leg2 = s_cylinder_leg2 * t581
-            + 0.9781476007338057 * minus_c_cylinder_leg2;
+        let t592 = 0.20791169081775931 * minus_c_cross_leg2;
+        let minus_grod_vy_leg2 = s_cylinder_leg2 * t592 + t517;
         let grod_vz_leg2 = s_cross_leg2 * s_cylinder_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t532 + minus_grod_vy_leg2 * t544
-            - grod_vz_leg2 * t554;
-        let t605 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
-        let minus_rate_dot_cross_leg2 = t519 * (t579 + t590 + t590 + t558 * t605);
-        let rate_cylinder_leg2 = t516 * t589;
-        let t610 = rate_cylinder_leg2 * t558;
-        let t611 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t613 = t610 + t611 + t610;
-        let t614 = minus_c_cylinder_leg2 * t613;
-        let t615 = t614 - minus_rate_dot_cross_leg2;
-        let t617 = t561 - minus_gcross_vx_leg2 * t615;
-        let gcylinder_vy_leg2 = t584 * t516;
-        let t619 = gcylinder_vy_leg2 * t560;
-        let minus_gcross_vy_leg2 = t534 * t519;
-        let t622 = t619 - minus_gcross_vy_leg2 * t615;
-        let minus_gcross_vz_leg2 = minus_c_cross_leg2 * t519;
-        let minus_gcylinder_vz_leg2 = t587 * t516;
-        let t626 = minus_gcylinder_vz_leg2 * t560;
-        let t627 = minus_gcross_vz_leg2 * t615 + t626;
-        let t628 = t521 + t526;
-        let t630 = t523 + t528;
-        let gcross_wx_leg2 = t630 * minus_gcross_vz_leg2 - t628 * minus_gcross_vy_leg2;
-        let minus_minus_gcylinder_wx_leg2 = t630 * minus_gcylinder_vz_leg2
-            + t628 * gcylinder_vy_leg2;
-        let t637 = minus_minus_gcylinder_wx_leg2 * t560;
-        let t638 = gcross_wx_leg2 * t615 + t637;
-        let t639 = t535 + t539;
-        let gcross_wy_leg2 = t628 * minus_gcross_vx_leg2 - t639 * minus_gcross_vz_leg2;
-        let minus_gcylinder_wy_leg2 = t628 * gcylinder_vx_leg2
-            + t639 * minus_gcylinder_vz_leg2;
-        let t647 = minus_gcylinder_wy_leg2 * t560;
-        let t648 = gcross_wy_leg2 * t615 - t647;
-        let gcross_wz_leg2 = t639 * minus_gcross_vy_leg2 - t630 * minus_gcross_vx_leg2;
-        let gcylinder_wz_leg2 = t630 * gcylinder_vx_leg2 - t639 * gcylinder_vy_leg2;
-        let t656 = gcylinder_wz_leg2 * t560;
-        let t657 = gcross_wz_leg2 * t615 + t656;
-        let t658 = t558 * t558;
-        let t659 = t559 * t559;
-        let t660 = t658 - t659;
-        let t663 = joints[5] * t615;
-        let t666 = s_cylinder_leg2 * t613 - minus_c_cylinder_leg2 * (t519 * t663);
-        let t668 = gcylinder_vx_leg2 * t660 - minus_gcross_vx_leg2 * t666;
-        let t671 = gcylinder_vy_leg2 * t660 - minus_gcross_vy_leg2 * t666;
-        let t674 = minus_gcross_vz_leg2 * t666 + minus_gcylinder_vz_leg2 * t660;
-        let t677 = gcross_wx_leg2 * t666 + minus_minus_gcylinder_wx_leg2 * t660;
-        let t680 = gcross_wy_leg2 * t666 - minus_gcylinder_wy_leg2 * t660;
-        let t683 = gcross_wz_leg2 * t666 + gcylinder_wz_leg2 * t660;
-        let t688 = t515 * t566 + t584 * t571 - t587 * t577;
-        let t690 = t688 + rate_cylinder_leg2 * t605;
-        let t691 = t516 * t690;
-        let rate_dot_cylinder_leg2 = t691 - t560;
-        let t693 = rate_dot_cylinder_leg2 - t560;
-        let t695 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t698 = s_cylinder_leg2 * t693 - minus_c_cylinder_leg2 * (t695 - t658);
-        let t700 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t702 = minus_gcross_vx_leg2 * t698 + gcylinder_vx_leg2 * t700;
-        let t705 = minus_gcross_vy_leg2 * t698 + gcylinder_vy_leg2 * t700;
-        let t708 = minus_gcylinder_vz_leg2 * t700 - minus_gcross_vz_leg2 * t698;
-        let t711 = gcross_wx_leg2 * t698 - minus_minus_gcylinder_wx_leg2 * t700;
-        let t714 = gcross_wy_leg2 * t698 + minus_gcylinder_wy_leg2 * t700;
-        let t717 = gcross_wz_leg2 * t698 - gcylinder_wz_leg2 * t700;
-        let t719 = minus_gcross_vx_leg2 * t614 - t561;
-        let t721 = minus_gcross_vy_leg2 * t614 - t619;
-        let t723 = minus_gcross_vz_leg2 * t614 + t626;
-        let t725 = t637 + gcross_wx_leg2 * t614;
-        let t727 = gcross_wy_leg2 * t614 - t647;
-        let t729 = gcross_wz_leg2 * t614 + t656;
-        let t734 = s_cylinder_leg2 * (t659 - t695) - minus_c_cylinder_leg2 * t691;
-        let t736 = gcylinder_vx_leg2 * t611 - minus_gcross_vx_leg2 * t734;
-        let t739 = gcylinder_vy_leg2 * t611 - minus_gcross_vy_leg2 * t734;
-        let t742 = minus_gcross_vz_leg2 * t734 + minus_gcylinder_vz_leg2 * t611;
-        let t745 = gcross_wx_leg2 * t734 + minus_minus_gcylinder_wx_leg2 * t611;
-        let t748 = gcross_wy_leg2 * t734 - minus_gcylinder_wy_leg2 * t611;
-        let t751 = gcross_wz_leg2 * t734 + gcylinder_wz_leg2 * t611;
-        let t752 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t753 = gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t754 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t755 = minus_minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t756 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t757 = gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t758 = 9.81 * minus_c_cross_leg2;
-        let t759 = minus_c_cylinder_leg2 * t758;
-        let t761 = 9.81 * grod_vz_leg2;
-        let t779 = t516 * t761;
-        let t782 = s_cylinder_leg2 * t758;
-        let t784 = 9.81 * t587;
-        let grod_wz_leg2 = minus_grod_vy_leg2 * t639 - minus_grod_vx_leg2 * t630;
-        let t797 = 9.81 * s_cross_leg2;
-        let t808 = minus_grod_vx_leg2 * t566 + minus_grod_vy_leg2 * t571
-            - grod_vz_leg2 * t577;
-        let t809 = t808 - t761;
-        let t812 = t809 - joints[5] * (t659 + t695);
-        let t815 = t579 + t758;
-        let t817 = t518 * t613 + minus_c_cylinder_leg2 * t815;
-        let t821 = gcylinder_vx_leg2 * t812 - minus_gcross_vx_leg2 * t817
-            + minus_grod_vx_leg2 * t693;
-        let t826 = gcylinder_vy_leg2 * t812 - minus_gcross_vy_leg2 * t817
-            + minus_grod_vy_leg2 * t693;
-        let t831 = minus_gcross_vz_leg2 * t817 + minus_gcylinder_vz_leg2 * t812
-            + grod_vz_leg2 * t693;
-        let t843 = t688 - t784;
-        let t846 = t556 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t809 + minus_c_cylinder_leg2 * t843);
-        let t849 = t512 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t846;
-        let t852 = t581 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t846;
-        let t855 = minus_gcross_vz_leg2 * t846
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t537 + minus_grod_vy_leg2 * t551
+            - grod_vz_leg2 * t561;
+        let t602 = t586 + 2.0 * (minus_rate_rod_leg2 * t565);
+        let t603 = t521 * t602;
+        let t604 = s_cylinder_leg2 * t603;
+        let t606 = t568 + minus_gcross_vx_leg2 * t604;
+        let t608 = minus_c_cylinder_leg2 * t592 - t587;
+        let gcylinder_vy_leg2 = t608 * t521;
+        let t610 = gcylinder_vy_leg2 * t567;
+        let minus_gcross_vy_leg2 = t539 * t524;
+        let t613 = t610 + minus_gcross_vy_leg2 * t604;
+        let minus_gcross_vz_leg2 = minus_c_cross_leg2 * t524;
+        let t616 = s_cross_leg2 * minus_c_cylinder_leg2;
+        let minus_gcylinder_vz_leg2 = t616 * t521;
+        let t618 = minus_gcylinder_vz_leg2 * t567;
+        let t619 = t618 - minus_gcross_vz_leg2 * t604;
+        let t620 = t526 + t531;
+        let t623 = 0.14142135623730953 * (t27 + t32);
+        let minus_gcross_wx_leg2 = t620 * minus_gcross_vy_leg2
+            + t623 * minus_gcross_vz_leg2;
+        let minus_gcylinder_wx_leg2 = t623 * minus_gcylinder_vz_leg2
+            - t620 * gcylinder_vy_leg2;
+        let t630 = minus_gcylinder_wx_leg2 * t567;
+        let t631 = minus_gcross_wx_leg2 * t604 - t630;
+        let gcross_wy_leg2 = t545 * minus_gcross_vz_leg2 + t620 * minus_gcross_vx_leg2;
+        let gcylinder_wy_leg2 = t545 * minus_gcylinder_vz_leg2
+            - t620 * gcylinder_vx_leg2;
+        let t639 = gcylinder_wy_leg2 * t567;
+        let t640 = t639 - gcross_wy_leg2 * t604;
+        let gcross_wz_leg2 = t623 * minus_gcross_vx_leg2 - t545 * minus_gcross_vy_leg2;
+        let gcylinder_wz_leg2 = t545 * gcylinder_vy_leg2 - t623 * gcylinder_vx_leg2;
+        let t648 = gcylinder_wz_leg2 * t567;
+        let t649 = t648 - gcross_wz_leg2 * t604;
+        let t650 = t565 * t565;
+        let t651 = t566 * t566;
+        let t652 = t650 - t651;
+        let t658 = t520 * t537 + t608 * t551 - t616 * t561;
+        let rate_cylinder_leg2 = t521 * t658;
+        let t660 = rate_cylinder_leg2 * t565;
+        let minus_rate_dot_cross_leg2 = t524 * (t602 + t658 * (2.0 * t566));
+        let t665 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t667 = t660 + t665 + t660;
+        let t670 = s_cylinder_leg2 * t667 + minus_c_cylinder_leg2 * t603;
+        let t672 = gcylinder_vx_leg2 * t652 - minus_gcross_vx_leg2 * t670;
+        let t675 = gcylinder_vy_leg2 * t652 - minus_gcross_vy_leg2 * t670;
+        let t678 = minus_gcross_vz_leg2 * t670 + minus_gcylinder_vz_leg2 * t652;
+        let t681 = minus_gcross_wx_leg2 * t670 + minus_gcylinder_wx_leg2 * t652;
+        let t684 = gcross_wy_leg2 * t670 + gcylinder_wy_leg2 * t652;
+        let t687 = gcross_wz_leg2 * t670 + gcylinder_wz_leg2 * t652;
+        let t692 = t520 * t573 + t608 * t578 - t616 * t584;
+        let t693 = t563 * minus_rate_cross_leg2;
+        let rate_dot_cylinder_leg2 = t521
+            * (t692 - minus_c_cylinder_leg2 * t693
+                + rate_cylinder_leg2 * (minus_rate_rod_leg2 + minus_rate_rod_leg2));
+        let t700 = rate_dot_cylinder_leg2 - t567;
+        let t702 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t705 = s_cylinder_leg2 * t700 - minus_c_cylinder_leg2 * (t702 - t650);
+        let t707 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t709 = minus_gcross_vx_leg2 * t705 + gcylinder_vx_leg2 * t707;
+        let t712 = minus_gcross_vy_leg2 * t705 + gcylinder_vy_leg2 * t707;
+        let t715 = minus_gcylinder_vz_leg2 * t707 - minus_gcross_vz_leg2 * t705;
+        let t718 = minus_gcylinder_wx_leg2 * t707 - minus_gcross_wx_leg2 * t705;
+        let t721 = gcross_wy_leg2 * t705 - gcylinder_wy_leg2 * t707;
+        let t724 = gcross_wz_leg2 * t705 - gcylinder_wz_leg2 * t707;
+        let t725 = minus_c_cylinder_leg2 * t667;
+        let t727 = minus_gcross_vx_leg2 * t725 - t568;
+        let t729 = minus_gcross_vy_leg2 * t725 - t610;
+        let t731 = minus_gcross_vz_leg2 * t725 + t618;
+        let t733 = t630 + minus_gcross_wx_leg2 * t725;
+        let t735 = gcross_wy_leg2 * t725 + t639;
+        let t737 = gcross_wz_leg2 * t725 + t648;
+        let t738 = gcylinder_vx_leg2 * t665;
+        let t741 = t567 + rate_dot_cylinder_leg2;
+        let t743 = s_cylinder_leg2 * (t651 - t702) - minus_c_cylinder_leg2 * t741;
+        let t745 = t738 - minus_gcross_vx_leg2 * t743;
+        let t748 = gcylinder_vy_leg2 * t665 - minus_gcross_vy_leg2 * t743;
+        let t751 = minus_gcross_vz_leg2 * t743 + minus_gcylinder_vz_leg2 * t665;
+        let t754 = minus_gcross_wx_leg2 * t743 + minus_gcylinder_wx_leg2 * t665;
+        let t757 = gcross_wy_leg2 * t743 + gcylinder_wy_leg2 * t665;
+        let t760 = gcross_wz_leg2 * t743 + gcylinder_wz_leg2 * t665;
+        let t761 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t762 = gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t763 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t764 = minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t765 = gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t766 = gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t767 = 9.81 * minus_c_cross_leg2;
+        let t768 = minus_c_cylinder_leg2 * t767;
+        let t770 = 9.81 * grod_vz_leg2;
+        let t788 = t770 / joints[5];
+        let t791 = s_cylinder_leg2 * t767;
+        let t793 = 9.81 * t616;
+        let grod_wz_leg2 = minus_grod_vx_leg2 * t623 - minus_grod_vy_leg2 * t545;
+        let t806 = 9.81 * s_cross_leg2;
+        let t817 = minus_grod_vx_leg2 * t573 + minus_grod_vy_leg2 * t578
+            - grod_vz_leg2 * t584;
+        let t818 = t817 - t770;
+        let t821 = t818 - joints[5] * (t651 + t702);
+        let t824 = t586 + t767;
+        let t826 = t523 * t667 + minus_c_cylinder_leg2 * t824;
+        let t830 = gcylinder_vx_leg2 * t821 - minus_gcross_vx_leg2 * t826
+            + minus_grod_vx_leg2 * t700;
+        let t835 = gcylinder_vy_leg2 * t821 - minus_gcross_vy_leg2 * t826
+            + minus_grod_vy_leg2 * t700;
+        let t840 = minus_gcross_vz_leg2 * t826 + minus_gcylinder_vz_leg2 * t821
+            + grod_vz_leg2 * t700;
+        let t852 = t692 - t793;
+        let t855 = t693 - (s_cylinder_leg2 * t818 + minus_c_cylinder_leg2 * t852);
+        let t859 = joints[5] * t738 - minus_gcross_vx_leg2 * t855
+            + minus_grod_vx_leg2 * t707;
+        let t862 = t592 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t855;
+        let t865 = minus_gcross_vz_leg2 * t855
             + s_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t865 = t690 + t843;
-        let t868 = t663 - s_cylinder_leg2 * t815;
-        let t871 = t658 + t695;
-        let t873 = gcylinder_vx_leg2 * t865 - minus_gcross_vx_leg2 * t868
-            + minus_grod_vx_leg2 * t871;
-        let t878 = gcylinder_vy_leg2 * t865 - minus_gcross_vy_leg2 * t868
-            + minus_grod_vy_leg2 * t871;
-        let t883 = minus_gcross_vz_leg2 * t868 + minus_gcylinder_vz_leg2 * t865
-            + grod_vz_leg2 * t871;
-        let t893 = 9.81 + t577;
-        let minus_rate_dot_rod_leg2 = t808 - joints[5] * t871;
-        let minus_grod_wx_leg2 = grod_vz_leg2 * t630 + minus_grod_vy_leg2 * t628;
-        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t628 + grod_vz_leg2 * t639;
-        let t931 = 0.30901699437494734 * s_cross_leg3;
-        let t934 = s_cylinder_leg3 * joints[8];
-        ::overact::guard::leg(t934, 0.5513142860394162, "leg3")?;
-        let gcross_vx_leg3 = t931 / t934;
-        let t936 = 1.0 / joints[8];
-        let t937 = 0.9510565162951536 * s_cross_leg3;
-        let t938 = acceleration[1] + t129;
-        let t940 = acceleration[0] + t105;
-        let t943 = acceleration[2] + t152;
-        let t945 = t937 * t938 - t931 * t940 + minus_c_cross_leg3 * t943;
-        let t946 = 0.9510565162951536 * s_cylinder_leg3;
-        let t947 = 0.30901699437494734 * s_cylinder_leg3;
-        let t948 = minus_c_cross_leg3 * t947;
-        let t949 = joints[8] / t934;
-        let t950 = minus_c_cylinder_leg3 * t949;
-        let t952 = t946 - t948 * t950;
-        let t953 = twist[0] + t35;
-        let t955 = t946 * minus_c_cross_leg3;
-        let t957 = t955 * t950 + t947;
-        let t958 = twist[1] + t58;
-        let t961 = s_cross_leg3 * minus_c_cylinder_leg3;
-        let t962 = twist[2] + t71;
-        let t964 = t952 * t953 + t957 * t958 - t961 * t962;
-        let t969 = t937 * t958 - t931 * t953 + minus_c_cross_leg3 * t962;
-        let minus_rate_cross_leg3 = t969 / t934;
-        let t971 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t972 = t964 * t971;
-        let t975 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_grod_vy_leg3 = t955 - 0.30901699437494734 * minus_c_cylinder_leg3;
-        let grod_vx_leg3 = t948 + 0.9510565162951536 * minus_c_cylinder_leg3;
+        let t876 = joints[5] * t741 + t852;
+        let t879 = s_cylinder_leg2 * (t824 + t602);
+        let t882 = t650 + t702;
+        let t884 = gcylinder_vx_leg2 * t876 + minus_gcross_vx_leg2 * t879
+            + minus_grod_vx_leg2 * t882;
+        let t889 = gcylinder_vy_leg2 * t876 + minus_gcross_vy_leg2 * t879
+            + minus_grod_vy_leg2 * t882;
+        let t894 = minus_gcylinder_vz_leg2 * t876 - minus_gcross_vz_leg2 * t879
+            + grod_vz_leg2 * t882;
+        let t904 = 9.81 + t584;
+        let minus_rate_dot_rod_leg2 = t817 - joints[5] * t882;
+        let grod_wx_leg2 = grod_vz_leg2 * t623 - minus_grod_vy_leg2 * t620;
+        let minus_grod_wy_leg2 = grod_vz_leg2 * t545 - minus_grod_vx_leg2 * t620;
+        let t942 = 0.30901699437494734 * s_cross_leg3;
+        let t945 = s_cylinder_leg3 * joints[8];
+        ::overact::guard::leg(t945, 0.5513142860394162, "leg3")?;
+        let t946 = 1.0 / t945;
+        let gcross_vx_leg3 = t942 * t946;
+        let t948 = 1.0 / joints[8];
+        let t949 = 0.9510565162951536 * s_cross_leg3;
+        let t950 = acceleration[1] + t139;
+        let t952 = acceleration[0] + t115;
+        let t955 = acceleration[2] + t162;
+        let t957 = t949 * t950 - t942 * t952 + minus_c_cross_leg3 * t955;
+        let t958 = 0.9510565162951536 * minus_c_cross_leg3;
+        let minus_grod_vy_leg3 = s_cylinder_leg3 * t958
+            - 0.30901699437494734 * minus_c_cylinder_leg3;
+        let t964 = t68 * twist[5] - t22 * twist[3];
+        let t965 = twist[1] + t964;
+        let t967 = 0.30901699437494734 * minus_c_cross_leg3;
+        let grod_vx_leg3 = s_cylinder_leg3 * t967
+            + 0.9510565162951536 * minus_c_cylinder_leg3;
+        let t971 = twist[0] + t36;
         let grod_vz_leg3 = s_cross_leg3 * s_cylinder_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t958 - grod_vx_leg3 * t953
-            - grod_vz_leg3 * t962;
-        let t986 = 2.0 * minus_rate_rod_leg3;
-        let t989 = t936 * (t945 + t972 + t972 + t975 * t986);
-        let minus_rate_dot_cross_leg3 = t989 * t949;
-        let rate_cylinder_leg3 = t936 * t964;
-        let t992 = rate_cylinder_leg3 * t975;
-        let t993 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t995 = t992 + t993 + t992;
-        let t996 = s_cylinder_leg3 * t995;
-        let t997 = t996 * t950;
-        let t998 = t997 - minus_rate_dot_cross_leg3;
-        let gcylinder_vx_leg3 = t952 * t936;
-        let t1001 = t975 * t971;
-        let t1002 = gcylinder_vx_leg3 * t1001;
-        let t1003 = gcross_vx_leg3 * t998 + t1002;
-        let gcylinder_vy_leg3 = t957 * t936;
-        let t1005 = gcylinder_vy_leg3 * t1001;
-        let minus_gcross_vy_leg3 = t937 / t934;
-        let t1008 = t1005 - minus_gcross_vy_leg3 * t998;
-        let minus_gcross_vz_leg3 = minus_c_cross_leg3 / t934;
-        let minus_gcylinder_vz_leg3 = t961 * t936;
-        let t1012 = minus_gcylinder_vz_leg3 * t1001;
-        let t1013 = minus_gcross_vz_leg3 * t998 + t1012;
-        let gcross_wx_leg3 = t21 * minus_gcross_vy_leg3 - t33 * minus_gcross_vz_leg3;
-        let minus_gcylinder_wx_leg3 = t33 * minus_gcylinder_vz_leg3
-            + t21 * gcylinder_vy_leg3;
-        let t1021 = minus_gcylinder_wx_leg3 * t1001;
-        let t1022 = gcross_wx_leg3 * t998 - t1021;
-        let gcross_wy_leg3 = t21 * gcross_vx_leg3 + t55 * minus_gcross_vz_leg3;
-        let gcylinder_wy_leg3 = t21 * gcylinder_vx_leg3 + t55 * minus_gcylinder_vz_leg3;
-        let t1030 = gcylinder_wy_leg3 * t1001;
-        let t1031 = gcross_wy_leg3 * t998 + t1030;
-        let gcylinder_wz_leg3 = t55 * gcylinder_vy_leg3 - t33 * gcylinder_vx_leg3;
-        let t1035 = gcylinder_wz_leg3 * t1001;
-        let minus_gcross_wz_leg3 = t55 * minus_gcross_vy_leg3 + t33 * gcross_vx_leg3;
-        let t1040 = t1035 - minus_gcross_wz_leg3 * t998;
-        let t1042 = t996 - t998 * t950;
-        let t1044 = t975 * t975;
-        let t1045 = t971 * t971;
-        let t1046 = t1044 - t1045;
-        let t1048 = gcross_vx_leg3 * t1042 + gcylinder_vx_leg3 * t1046;
-        let t1051 = gcylinder_vy_leg3 * t1046 - minus_gcross_vy_leg3 * t1042;
-        let t1054 = minus_gcross_vz_leg3 * t1042 + minus_gcylinder_vz_leg3 * t1046;
-        let t1057 = gcross_wx_leg3 * t1042 - minus_gcylinder_wx_leg3 * t1046;
-        let t1060 = gcross_wy_leg3 * t1042 + gcylinder_wy_leg3 * t1046;
-        let t1063 = gcylinder_wz_leg3 * t1046 - minus_gcross_wz_leg3 * t1042;
-        let t1068 = t952 * t940 + t957 * t938 - t961 * t943;
-        let t1070 = t1068 + rate_cylinder_leg3 * t986;
-        let t1071 = t1070 / joints[8];
-        let rate_dot_cylinder_leg3 = t1071 - t1001;
-        let t1073 = rate_dot_cylinder_leg3 - t1001;
-        let t1075 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1078 = s_cylinder_leg3 * t1073 - minus_c_cylinder_leg3 * (t1075 - t1044);
-        let t1081 = gcross_vx_leg3 * t1078 - gcylinder_vx_leg3 * t989;
-        let t1084 = minus_gcross_vy_leg3 * t1078 + gcylinder_vy_leg3 * t989;
-        let t1087 = minus_gcylinder_vz_leg3 * t989 - minus_gcross_vz_leg3 * t1078;
-        let t1090 = gcross_wx_leg3 * t1078 + minus_gcylinder_wx_leg3 * t989;
-        let t1093 = gcross_wy_leg3 * t1078 - gcylinder_wy_leg3 * t989;
-        let t1096 = minus_gcross_wz_leg3 * t1078 + gcylinder_wz_leg3 * t989;
-        let t1098 = gcross_vx_leg3 * t997 + t1002;
-        let t1100 = minus_gcross_vy_leg3 * t997 - t1005;
-        let t1102 = minus_gcross_vz_leg3 * t997 + t1012;
-        let t1104 = t1021 - gcross_wx_leg3 * t997;
-        let t1106 = gcross_wy_leg3 * t997 + t1030;
-        let t1108 = minus_gcross_wz_leg3 * t997 - t1035;
-        let t1112 = s_cylinder_leg3 * (t1045 - t1075) - minus_c_cylinder_leg3 * t1071;
-        let t1115 = gcross_vx_leg3 * t1112 + gcylinder_vx_leg3 * t993;
-        let t1118 = gcylinder_vy_leg3 * t993 - minus_gcross_vy_leg3 * t1112;
-        let t1121 = minus_gcross_vz_leg3 * t1112 + minus_gcylinder_vz_leg3 * t993;
-        let t1124 = gcross_wx_leg3 * t1112 - minus_gcylinder_wx_leg3 * t993;
-        let t1127 = gcross_wy_leg3 * t1112 + gcylinder_wy_leg3 * t993;
-        let t1130 = gcylinder_wz_leg3 * t993 - minus_gcross_wz_leg3 * t1112;
-        let t1131 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t1132 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t1133 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t1134 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t1135 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t1136 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t1137 = 9.81 * minus_c_cross_leg3;
-        let t1138 = s_cylinder_leg3 * t1137;
-        let t1139 = t1138 * t950;
-        let t1141 = 9.81 * grod_vz_leg3;
-        let t1159 = t1141 / joints[8];
-        let t1163 = 9.81 * t961;
-        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t55 + grod_vx_leg3 * t33;
-        let t1176 = 9.81 * s_cross_leg3;
-        let t1184 = t945 + t1137;
-        let t1186 = t934 * t995 + minus_c_cylinder_leg3 * t1184;
-        let t1192 = minus_grod_vy_leg3 * t938 - grod_vx_leg3 * t940
-            - grod_vz_leg3 * t943;
-        let t1193 = t1192 - t1141;
-        let t1196 = t1193 - joints[8] * (t1045 + t1075);
-        let t1200 = gcross_vx_leg3 * t1186 + gcylinder_vx_leg3 * t1196
-            - grod_vx_leg3 * t1073;
-        let t1205 = gcylinder_vy_leg3 * t1196 - minus_gcross_vy_leg3 * t1186
-            + minus_grod_vy_leg3 * t1073;
-        let t1210 = minus_gcross_vz_leg3 * t1186 + minus_gcylinder_vz_leg3 * t1196
-            + grod_vz_leg3 * t1073;
-        let t1222 = t1068 - t1163;
-        let t1225 = t969 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1193 + minus_c_cylinder_leg3 * t1222);
-        let t1227 = minus_c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t1229 = gcross_vx_leg3 * t1225 - 0.30901699437494734 * t1227;
-        let t1232 = 0.9510565162951536 * t1227 - minus_gcross_vy_leg3 * t1225;
-        let t1235 = minus_gcross_vz_leg3 * t1225
+        let t975 = twist[2] + t70;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t965 - grod_vx_leg3 * t971
+            - grod_vz_leg3 * t975;
+        let t982 = t949 * t965 - t942 * t971 + minus_c_cross_leg3 * t975;
+        let minus_rate_cross_leg3 = t946 * t982;
+        let t984 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t987 = t957 + 2.0 * (minus_rate_rod_leg3 * t984);
+        let t988 = t948 * t987;
+        let t989 = s_cylinder_leg3 * t988;
+        let t993 = 0.9510565162951536 * s_cylinder_leg3 - minus_c_cylinder_leg3 * t967;
+        let gcylinder_vx_leg3 = t993 * t948;
+        let t995 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t996 = t984 * t995;
+        let t997 = gcylinder_vx_leg3 * t996;
+        let t998 = t997 - gcross_vx_leg3 * t989;
+        let t1001 = minus_c_cylinder_leg3 * t958 + 0.30901699437494734 * s_cylinder_leg3;
+        let gcylinder_vy_leg3 = t1001 * t948;
+        let t1003 = gcylinder_vy_leg3 * t996;
+        let minus_gcross_vy_leg3 = t949 * t946;
+        let t1006 = t1003 + minus_gcross_vy_leg3 * t989;
+        let minus_gcross_vz_leg3 = minus_c_cross_leg3 * t946;
+        let t1009 = s_cross_leg3 * minus_c_cylinder_leg3;
+        let minus_gcylinder_vz_leg3 = t1009 * t948;
+        let t1011 = minus_gcylinder_vz_leg3 * t996;
+        let t1012 = t1011 - minus_gcross_vz_leg3 * t989;
+        let gcross_wx_leg3 = t22 * minus_gcross_vy_leg3 - t34 * minus_gcross_vz_leg3;
+        let minus_gcylinder_wx_leg3 = t34 * minus_gcylinder_vz_leg3
+            + t22 * gcylinder_vy_leg3;
+        let t1020 = minus_gcylinder_wx_leg3 * t996;
+        let t1021 = gcross_wx_leg3 * t989 + t1020;
+        let gcross_wy_leg3 = t22 * gcross_vx_leg3 + t68 * minus_gcross_vz_leg3;
+        let gcylinder_wy_leg3 = t22 * gcylinder_vx_leg3 + t68 * minus_gcylinder_vz_leg3;
+        let t1029 = gcylinder_wy_leg3 * t996;
+        let t1030 = t1029 - gcross_wy_leg3 * t989;
+        let gcylinder_wz_leg3 = t68 * gcylinder_vy_leg3 - t34 * gcylinder_vx_leg3;
+        let t1034 = gcylinder_wz_leg3 * t996;
+        let minus_gcross_wz_leg3 = t68 * minus_gcross_vy_leg3 + t34 * gcross_vx_leg3;
+        let t1039 = t1034 + minus_gcross_wz_leg3 * t989;
+        let t1044 = t993 * t971 + t1001 * t965 - t1009 * t975;
+        let rate_cylinder_leg3 = t948 * t1044;
+        let t1046 = rate_cylinder_leg3 * t984;
+        let t1047 = t1044 * t995;
+        let minus_rate_dot_cross_leg3 = t946 * (t987 + t1047 + t1047);
+        let t1051 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1053 = t1046 + t1051 + t1046;
+        let t1056 = s_cylinder_leg3 * t1053 + minus_c_cylinder_leg3 * t988;
+        let t1058 = t984 * t984;
+        let t1059 = t995 * t995;
+        let t1060 = t1058 - t1059;
+        let t1062 = gcross_vx_leg3 * t1056 + gcylinder_vx_leg3 * t1060;
+        let t1065 = gcylinder_vy_leg3 * t1060 - minus_gcross_vy_leg3 * t1056;
+        let t1068 = minus_gcross_vz_leg3 * t1056 + minus_gcylinder_vz_leg3 * t1060;
+        let t1071 = gcross_wx_leg3 * t1056 - minus_gcylinder_wx_leg3 * t1060;
+        let t1074 = gcross_wy_leg3 * t1056 + gcylinder_wy_leg3 * t1060;
+        let t1077 = gcylinder_wz_leg3 * t1060 - minus_gcross_wz_leg3 * t1056;
+        let t1082 = t993 * t952 + t1001 * t950 - t1009 * t955;
+        let t1085 = t1082 + rate_cylinder_leg3 * (2.0 * minus_rate_rod_leg3);
+        let t1086 = t948 * t1085;
+        let rate_dot_cylinder_leg3 = t1086 - t996;
+        let t1088 = rate_dot_cylinder_leg3 - t996;
+        let t1090 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1093 = s_cylinder_leg3 * t1088 - minus_c_cylinder_leg3 * (t1090 - t1058);
+        let t1095 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1097 = gcross_vx_leg3 * t1093 - gcylinder_vx_leg3 * t1095;
+        let t1100 = minus_gcross_vy_leg3 * t1093 + gcylinder_vy_leg3 * t1095;
+        let t1103 = minus_gcylinder_vz_leg3 * t1095 - minus_gcross_vz_leg3 * t1093;
+        let t1106 = gcross_wx_leg3 * t1093 + minus_gcylinder_wx_leg3 * t1095;
+        let t1109 = gcross_wy_leg3 * t1093 - gcylinder_wy_leg3 * t1095;
+        let t1112 = minus_gcross_wz_leg3 * t1093 + gcylinder_wz_leg3 * t1095;
+        let t1113 = minus_c_cylinder_leg3 * t1053;
+        let t1115 = gcross_vx_leg3 * t1113 + t997;
+        let t1117 = minus_gcross_vy_leg3 * t1113 - t1003;
+        let t1119 = minus_gcross_vz_leg3 * t1113 + t1011;
+        let t1121 = t1020 - gcross_wx_leg3 * t1113;
+        let t1123 = gcross_wy_leg3 * t1113 + t1029;
+        let t1125 = minus_gcross_wz_leg3 * t1113 - t1034;
+        let t1129 = s_cylinder_leg3 * (t1059 - t1090) - minus_c_cylinder_leg3 * t1086;
+        let t1132 = gcross_vx_leg3 * t1129 + gcylinder_vx_leg3 * t1051;
+        let t1135 = gcylinder_vy_leg3 * t1051 - minus_gcross_vy_leg3 * t1129;
+        let t1138 = minus_gcross_vz_leg3 * t1129 + minus_gcylinder_vz_leg3 * t1051;
+        let t1141 = gcross_wx_leg3 * t1129 - minus_gcylinder_wx_leg3 * t1051;
+        let t1144 = gcross_wy_leg3 * t1129 + gcylinder_wy_leg3 * t1051;
+        let t1147 = gcylinder_wz_leg3 * t1051 - minus_gcross_wz_leg3 * t1129;
+        let t1148 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t1149 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t1150 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t1151 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t1152 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t1153 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t1154 = 9.81 * minus_c_cross_leg3;
+        let t1155 = minus_c_cylinder_leg3 * t1154;
+        let t1157 = 9.81 * grod_vz_leg3;
+        let t1175 = t948 * t1157;
+        let t1178 = s_cylinder_leg3 * t1154;
+        let t1180 = 9.81 * t1009;
+        let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t68 + grod_vx_leg3 * t34;
+        let t1193 = 9.81 * s_cross_leg3;
+        let t1201 = t957 + t1154;
+        let t1203 = t945 * t1053 + minus_c_cylinder_leg3 * t1201;
+        let t1209 = minus_grod_vy_leg3 * t950 - grod_vx_leg3 * t952
+            - grod_vz_leg3 * t955;
+        let t1210 = t1209 - t1157;
+        let t1213 = t1210 - joints[8] * (t1059 + t1090);
+        let t1217 = gcross_vx_leg3 * t1203 + gcylinder_vx_leg3 * t1213
+            - grod_vx_leg3 * t1088;
+        let t1222 = gcylinder_vy_leg3 * t1213 - minus_gcross_vy_leg3 * t1203
+            + minus_grod_vy_leg3 * t1088;
+        let t1227 = minus_gcross_vz_leg3 * t1203 + minus_gcylinder_vz_leg3 * t1213
+            + grod_vz_leg3 * t1088;
+        let t1239 = t1082 - t1180;
+        let t1242 = t982 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1210 + minus_c_cylinder_leg3 * t1239);
+        let t1245 = gcross_vx_leg3 * t1242 - t967 * minus_rate_dot_cross_leg3;
+        let t1248 = t958 * minus_rate_dot_cross_leg3 - minus_gcross_vy_leg3 * t1242;
+        let t1251 = minus_gcross_vz_leg3 * t1242
             + s_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t1247 = joints[8] * t998 - s_cylinder_leg3 * t1184;
-        let t1249 = t1070 + t1222;
-        let t1252 = t1044 + t1075;
-        let t1254 = gcross_vx_leg3 * t1247 + gcylinder_vx_leg3 * t1249
-            - grod_vx_leg3 * t1252;
-        let t1259 = gcylinder_vy_leg3 * t1249 - minus_gcross_vy_leg3 * t1247
-            + minus_grod_vy_leg3 * t1252;
-        let t1264 = minus_gcross_vz_leg3 * t1247 + minus_gcylinder_vz_leg3 * t1249
-            + grod_vz_leg3 * t1252;
-        let t1274 = 9.81 + t943;
-        let minus_rate_dot_rod_leg3 = t1192 - joints[8] * t1252;
-        let grod_wx_leg3 = grod_vz_leg3 * t33 + minus_grod_vy_leg3 * t21;
-        let grod_wy_leg3 = grod_vx_leg3 * t21 - grod_vz_leg3 * t55;
-        let t1312 = 0.6691306063588579 * s_cross_leg4;
-        let t1315 = s_cylinder_leg4 * joints[11];
-        ::overact::guard::leg(t1315, 0.5513142860394165, "leg4")?;
-        let gcross_vx_leg4 = t1312 / t1315;
-        let t1317 = 0.7431448254773945 * s_cross_leg4;
-        let t1318 = acceleration[1] + t568;
-        let t1320 = acceleration[0] + t563;
-        let t1323 = acceleration[2] + t574;
-        let t1325 = t1317 * t1318 - t1312 * t1320 + minus_c_cross_leg4 * t1323;
-        let t1326 = 0.7431448254773945 * s_cylinder_leg4;
-        let t1327 = 0.6691306063588579 * minus_c_cylinder_leg4;
-        let t1329 = t1326 - minus_c_cross_leg4 * t1327;
-        let t1330 = twist[0] + t525;
-        let t1332 = 0.7431448254773945 * minus_c_cylinder_leg4;
-        let t1334 = 0.6691306063588579 * s_cylinder_leg4;
-        let t1335 = minus_c_cross_leg4 * t1332 + t1334;
-        let t1336 = twist[1] + t538;
-        let t1339 = s_cross_leg4 * minus_c_cylinder_leg4;
-        let t1340 = twist[2] + t549;
-        let t1342 = t1329 * t1330 + t1335 * t1336 - t1339 * t1340;
-        let t1347 = t1317 * t1336 - t1312 * t1330 + minus_c_cross_leg4 * t1340;
-        let minus_rate_cross_leg4 = t1347 / t1315;
-        let t1349 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t1350 = t1342 * t1349;
-        let t1353 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_grod_vy_leg4 = t1326 * minus_c_cross_leg4 - t1327;
-        let grod_vx_leg4 = minus_c_cross_leg4 * t1334 + t1332;
+        let t1262 = s_cylinder_leg3 * (t1201 + t987);
+        let t1264 = t1085 + t1239;
+        let t1267 = t1058 + t1090;
+        let t1269 = gcylinder_vx_leg3 * t1264 - gcross_vx_leg3 * t1262
+            - grod_vx_leg3 * t1267;
+        let t1274 = gcylinder_vy_leg3 * t1264 + minus_gcross_vy_leg3 * t1262
+            + minus_grod_vy_leg3 * t1267;
+        let t1279 = minus_gcylinder_vz_leg3 * t1264 - minus_gcross_vz_leg3 * t1262
+            + grod_vz_leg3 * t1267;
+        let t1289 = 9.81 + t955;
+        let minus_rate_dot_rod_leg3 = t1209 - joints[8] * t1267;
+        let grod_wx_leg3 = grod_vz_leg3 * t34 + minus_grod_vy_leg3 * t22;
+        let grod_wy_leg3 = grod_vx_leg3 * t22 - grod_vz_leg3 * t68;
+        let t1327 = 0.6691306063588579 * s_cross_leg4;
+        let t1330 = s_cylinder_leg4 * joints[11];
+        ::overact::guard::leg(t1330, 0.5513142860394165, "leg4")?;
+        let t1331 = 1.0 / t1330;
+        let gcross_vx_leg4 = t1327 * t1331;
+        let t1333 = 1.0 / joints[11];
+        let t1334 = 0.7431448254773945 * s_cross_leg4;
+        let t1335 = acceleration[1] + t575;
+        let t1337 = acceleration[0] + t570;
+        let t1340 = acceleration[2] + t581;
+        let t1342 = t1334 * t1335 - t1327 * t1337 + minus_c_cross_leg4 * t1340;
+        let t1343 = twist[1] + t543;
+        let t1345 = twist[0] + t530;
+        let t1348 = twist[2] + t556;
+        let t1350 = t1334 * t1343 - t1327 * t1345 + minus_c_cross_leg4 * t1348;
+        let minus_rate_cross_leg4 = t1331 * t1350;
+        let t1352 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t1353 = 0.7431448254773945 * minus_c_cross_leg4;
+        let minus_grod_vy_leg4 = s_cylinder_leg4 * t1353
+            - 0.6691306063588579 * minus_c_cylinder_leg4;
+        let t1358 = 0.6691306063588579 * minus_c_cross_leg4;
+        let grod_vx_leg4 = s_cylinder_leg4 * t1358
+            + 0.7431448254773945 * minus_c_cylinder_leg4;
         let grod_vz_leg4 = s_cross_leg4 * s_cylinder_leg4;
-        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t1336 - grod_vx_leg4 * t1330
+        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t1343 - grod_vx_leg4 * t1345
+            - grod_vz_leg4 * t1348;
+        let t1367 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
+        let t1369 = t1342 + t1352 * t1367;
+        let t1370 = t1333 * t1369;
+        let t1371 = t1330 * t1370;
+        let t1372 = t1333 * t1371;
+        let t1376 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t1358;
+        let gcylinder_vx_leg4 = t1376 * t1333;
+        let t1378 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t1379 = t1352 * t1378;
+        let t1380 = gcylinder_vx_leg4 * t1379;
+        let t1381 = t1380 - gcross_vx_leg4 * t1372;
+        let t1384 = minus_c_cylinder_leg4 * t1353 + 0.6691306063588579 * s_cylinder_leg4;
+        let gcylinder_vy_leg4 = t1384 * t1333;
+        let t1386 = gcylinder_vy_leg4 * t1379;
+        let minus_gcross_vy_leg4 = t1334 * t1331;
+        let t1389 = t1386 + minus_gcross_vy_leg4 * t1372;
+        let minus_gcross_vz_leg4 = minus_c_cross_leg4 * t1331;
+        let t1392 = s_cross_leg4 * minus_c_cylinder_leg4;
+        let minus_gcylinder_vz_leg4 = t1392 * t1333;
+        let t1394 = minus_gcylinder_vz_leg4 * t1379;
+        let t1395 = t1394 - minus_gcross_vz_leg4 * t1372;
+        let gcross_wx_leg4 = t526 * minus_gcross_vy_leg4 - t528 * minus_gcross_vz_leg4;
+        let minus_gcylinder_wx_leg4 = t528 * minus_gcylinder_vz_leg4
+            + t526 * gcylinder_vy_leg4;
+        let t1403 = minus_gcylinder_wx_leg4 * t1379;
+        let t1404 = gcross_wx_leg4 * t1372 + t1403;
+        let gcross_wy_leg4 = t526 * gcross_vx_leg4 + t540 * minus_gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t526 * gcylinder_vx_leg4
+            + t540 * minus_gcylinder_vz_leg4;
+        let t1412 = gcylinder_wy_leg4 * t1379;
+        let t1413 = t1412 - gcross_wy_leg4 * t1372;
+        let gcylinder_wz_leg4 = t540 * gcylinder_vy_leg4 - t528 * gcylinder_vx_leg4;
+        let t1417 = gcylinder_wz_leg4 * t1379;
+        let minus_gcross_wz_leg4 = t540 * minus_gcross_vy_leg4 + t528 * gcross_vx_leg4;
+        let t1422 = t1417 + minus_gcross_wz_leg4 * t1372;
+        let t1427 = t1376 * t1345 + t1384 * t1343 - t1392 * t1348;
+        let rate_cylinder_leg4 = t1333 * t1427;
+        let t1429 = rate_cylinder_leg4 * t1352;
+        let minus_rate_dot_cross_leg4 = t1331 * (t1369 + 2.0 * (t1427 * t1378));
+        let t1434 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1436 = t1429 + t1434 + t1429;
+        let t1439 = s_cylinder_leg4 * t1436 + minus_c_cylinder_leg4 * t1370;
+        let t1441 = t1352 * t1352;
+        let t1442 = t1378 * t1378;
+        let t1443 = t1441 - t1442;
+        let t1445 = gcross_vx_leg4 * t1439 + gcylinder_vx_leg4 * t1443;
+        let t1448 = gcylinder_vy_leg4 * t1443 - minus_gcross_vy_leg4 * t1439;
+        let t1451 = minus_gcross_vz_leg4 * t1439 + minus_gcylinder_vz_leg4 * t1443;
+        let t1454 = gcross_wx_leg4 * t1439 - minus_gcylinder_wx_leg4 * t1443;
+        let t1457 = gcross_wy_leg4 * t1439 + gcylinder_wy_leg4 * t1443;
+        let t1460 = gcylinder_wz_leg4 * t1443 - minus_gcross_wz_leg4 * t1439;
+        let t1465 = t1376 * t1337 + t1384 * t1335 - t1392 * t1340;
+        let t1467 = t1465 + rate_cylinder_leg4 * t1367;
+        let t1468 = t1333 * t1467;
+        let rate_dot_cylinder_leg4 = t1468 - t1379;
+        let t1470 = rate_dot_cylinder_leg4 - t1379;
+        let t1472 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1475 = s_cylinder_leg4 * t1470 - minus_c_cylinder_leg4 * (t1472 - t1441);
+        let t1477 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1479 = gcross_vx_leg4 * t1475 - gcylinder_vx_leg4 * t1477;
+        let t1482 = minus_gcross_vy_leg4 * t1475 + gcylinder_vy_leg4 * t1477;
+        let t1485 = minus_gcylinder_vz_leg4 * t1477 - minus_gcross_vz_leg4 * t1475;
+        let t1488 = gcross_wx_leg4 * t1475 + minus_gcylinder_wx_leg4 * t1477;
+        let t1491 = gcross_wy_leg4 * t1475 - gcylinder_wy_leg4 * t1477;
+        let t1494 = minus_gcross_wz_leg4 * t1475 + gcylinder_wz_leg4 * t1477;
+        let t1495 = minus_c_cylinder_leg4 * t1436;
+        let t1497 = gcross_vx_leg4 * t1495 + t1380;
+        let t1499 = minus_gcross_vy_leg4 * t1495 - t1386;
+        let t1501 = minus_gcross_vz_leg4 * t1495 + t1394;
+        let t1503 = t1403 - gcross_wx_leg4 * t1495;
+        let t1505 = gcross_wy_leg4 * t1495 + t1412;
+        let t1507 = minus_gcross_wz_leg4 * t1495 - t1417;
+        let t1511 = s_cylinder_leg4 * (t1442 - t1472) - minus_c_cylinder_leg4 * t1468;
+        let t1514 = gcross_vx_leg4 * t1511 + gcylinder_vx_leg4 * t1434;
+        let t1517 = gcylinder_vy_leg4 * t1434 - minus_gcross_vy_leg4 * t1511;
+        let t1520 = minus_gcross_vz_leg4 * t1511 + minus_gcylinder_vz_leg4 * t1434;
+        let t1523 = gcross_wx_leg4 * t1511 - minus_gcylinder_wx_leg4 * t1434;
+        let t1526 = gcross_wy_leg4 * t1511 + gcylinder_wy_leg4 * t1434;
+        let t1529 = gcylinder_wz_leg4 * t1434 - minus_gcross_wz_leg4 * t1511;
+        let t1530 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t1531 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t1532 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t1533 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t1534 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t1535 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t1536 = 9.81 * minus_c_cross_leg4;
+        let t1537 = minus_c_cylinder_leg4 * t1536;
+        let t1539 = 9.81 * grod_vz_leg4;
+        let t1557 = t1333 * t1539;
+        let t1560 = s_cylinder_leg4 * t1536;
+        let t1562 = 9.81 * t1392;
+        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t540 + grod_vx_leg4 * t528;
+        let t1575 = 9.81 * s_cross_leg4;
+        let t1583 = t1342 + t1536;
+        let t1585 = t1330 * t1436 + minus_c_cylinder_leg4 * t1583;
+        let t1591 = minus_grod_vy_leg4 * t1335 - grod_vx_leg4 * t1337
             - grod_vz_leg4 * t1340;
-        let t1364 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = (t1325 + t1350 + t1350 + t1353 * t1364) / t1315;
-        let t1368 = 1.0 / joints[11];
-        let rate_cylinder_leg4 = t1368 * t1342;
-        let t1370 = rate_cylinder_leg4 * t1353;
-        let t1371 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1373 = t1370 + t1371 + t1370;
-        let t1374 = minus_c_cylinder_leg4 * t1373;
-        let t1375 = t1374 - minus_rate_dot_cross_leg4;
-        let gcylinder_vx_leg4 = t1329 * t1368;
-        let t1378 = t1353 * t1349;
-        let t1379 = gcylinder_vx_leg4 * t1378;
-        let t1380 = gcross_vx_leg4 * t1375 + t1379;
-        let gcylinder_vy_leg4 = t1335 * t1368;
-        let t1382 = gcylinder_vy_leg4 * t1378;
-        let minus_gcross_vy_leg4 = t1317 / t1315;
-        let t1385 = t1382 - minus_gcross_vy_leg4 * t1375;
-        let minus_gcross_vz_leg4 = minus_c_cross_leg4 / t1315;
-        let minus_gcylinder_vz_leg4 = t1339 * t1368;
-        let t1389 = minus_gcylinder_vz_leg4 * t1378;
-        let t1390 = minus_gcross_vz_leg4 * t1375 + t1389;
-        let gcross_wx_leg4 = t521 * minus_gcross_vy_leg4 - t523 * minus_gcross_vz_leg4;
-        let minus_gcylinder_wx_leg4 = t523 * minus_gcylinder_vz_leg4
-            + t521 * gcylinder_vy_leg4;
-        let t1398 = minus_gcylinder_wx_leg4 * t1378;
-        let t1399 = gcross_wx_leg4 * t1375 - t1398;
-        let gcross_wy_leg4 = t521 * gcross_vx_leg4 + t535 * minus_gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t521 * gcylinder_vx_leg4
-            + t535 * minus_gcylinder_vz_leg4;
-        let t1407 = gcylinder_wy_leg4 * t1378;
-        let t1408 = gcross_wy_leg4 * t1375 + t1407;
-        let gcylinder_wz_leg4 = t535 * gcylinder_vy_leg4 - t523 * gcylinder_vx_leg4;
-        let t1412 = gcylinder_wz_leg4 * t1378;
-        let minus_gcross_wz_leg4 = t535 * minus_gcross_vy_leg4 + t523 * gcross_vx_leg4;
-        let t1417 = t1412 - minus_gcross_wz_leg4 * t1375;
-        let t1419 = joints[11] * t1375;
-        let t1422 = s_cylinder_leg4 * t1373 - minus_c_cylinder_leg4 * (t1419 / t1315);
-        let t1424 = t1353 * t1353;
-        let t1425 = t1349 * t1349;
-        let t1426 = t1424 - t1425;
-        let t1428 = gcross_vx_leg4 * t1422 + gcylinder_vx_leg4 * t1426;
-        let t1431 = gcylinder_vy_leg4 * t1426 - minus_gcross_vy_leg4 * t1422;
-        let t1434 = minus_gcross_vz_leg4 * t1422 + minus_gcylinder_vz_leg4 * t1426;
-        let t1437 = gcross_wx_leg4 * t1422 - minus_gcylinder_wx_leg4 * t1426;
-        let t1440 = gcross_wy_leg4 * t1422 + gcylinder_wy_leg4 * t1426;
-        let t1443 = gcylinder_wz_leg4 * t1426 - minus_gcross_wz_leg4 * t1422;
-        let t1448 = t1329 * t1320 + t1335 * t1318 - t1339 * t1323;
-        let t1450 = t1448 + rate_cylinder_leg4 * t1364;
-        let t1451 = t1368 * t1450;
-        let rate_dot_cylinder_leg4 = t1451 - t1378;
-        let t1453 = rate_dot_cylinder_leg4 - t1378;
-        let t1455 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1458 = s_cylinder_leg4 * t1453 - minus_c_cylinder_leg4 * (t1455 - t1424);
-        let t1460 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1462 = gcross_vx_leg4 * t1458 - gcylinder_vx_leg4 * t1460;
-        let t1465 = minus_gcross_vy_leg4 * t1458 + gcylinder_vy_leg4 * t1460;
-        let t1468 = minus_gcylinder_vz_leg4 * t1460 - minus_gcross_vz_leg4 * t1458;
-        let t1471 = gcross_wx_leg4 * t1458 + minus_gcylinder_wx_leg4 * t1460;
-        let t1474 = gcross_wy_leg4 * t1458 - gcylinder_wy_leg4 * t1460;
-        let t1477 = minus_gcross_wz_leg4 * t1458 + gcylinder_wz_leg4 * t1460;
-        let t1479 = gcross_vx_leg4 * t1374 + t1379;
-        let t1481 = minus_gcross_vy_leg4 * t1374 - t1382;
-        let t1483 = minus_gcross_vz_leg4 * t1374 + t1389;
-        let t1485 = t1398 - gcross_wx_leg4 * t1374;
-        let t1487 = gcross_wy_leg4 * t1374 + t1407;
-        let t1489 = minus_gcross_wz_leg4 * t1374 - t1412;
-        let t1493 = s_cylinder_leg4 * (t1425 - t1455) - minus_c_cylinder_leg4 * t1451;
-        let t1496 = gcross_vx_leg4 * t1493 + gcylinder_vx_leg4 * t1371;
-        let t1499 = gcylinder_vy_leg4 * t1371 - minus_gcross_vy_leg4 * t1493;
-        let t1502 = minus_gcross_vz_leg4 * t1493 + minus_gcylinder_vz_leg4 * t1371;
-        let t1505 = gcross_wx_leg4 * t1493 - minus_gcylinder_wx_leg4 * t1371;
-        let t1508 = gcross_wy_leg4 * t1493 + gcylinder_wy_leg4 * t1371;
-        let t1511 = gcylinder_wz_leg4 * t1371 - minus_gcross_wz_leg4 * t1493;
-        let t1512 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t1513 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t1514 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t1515 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t1516 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t1517 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t1518 = 9.81 * minus_c_cross_leg4;
-        let t1519 = minus_c_cylinder_leg4 * t1518;
-        let t1521 = 9.81 * grod_vz_leg4;
-        let t1539 = t1368 * t1521;
-        let t1542 = s_cylinder_leg4 * t1518;
-        let t1544 = 9.81 * t1339;
-        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t535 + grod_vx_leg4 * t523;
-        let t1557 = 9.81 * s_cross_leg4;
-        let t1565 = t1325 + t1518;
-        let t1567 = t1315 * t1373 + minus_c_cylinder_leg4 * t1565;
-        let t1573 = minus_grod_vy_leg4 * t1318 - grod_vx_leg4 * t1320
-            - grod_vz_leg4 * t1323;
-        let t1574 = t1573 - t1521;
-        let t1577 = t1574 - joints[11] * (t1425 + t1455);
-        let t1581 = gcross_vx_leg4 * t1567 + gcylinder_vx_leg4 * t1577
-            - grod_vx_leg4 * t1453;
-        let t1586 = gcylinder_vy_leg4 * t1577 - minus_gcross_vy_leg4 * t1567
-            + minus_grod_vy_leg4 * t1453;
-        let t1591 = minus_gcross_vz_leg4 * t1567 + minus_gcylinder_vz_leg4 * t1577
-            + grod_vz_leg4 * t1453;
-        let t1603 = t1448 - t1544;
-        let t1606 = t1347 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t1574 + minus_c_cylinder_leg4 * t1603);
-        let t1608 = minus_c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t1610 = gcross_vx_leg4 * t1606 - 0.6691306063588579 * t1608;
-        let t1613 = 0.7431448254773945 * t1608 - minus_gcross_vy_leg4 * t1606;
-        let t1616 = minus_gcross_vz_leg4 * t1606
+        let t1592 = t1591 - t1539;
+        let t1595 = t1592 - joints[11] * (t1442 + t1472);
+        let t1599 = gcross_vx_leg4 * t1585 + gcylinder_vx_leg4 * t1595
+            - grod_vx_leg4 * t1470;
+        let t1604 = gcylinder_vy_leg4 * t1595 - minus_gcross_vy_leg4 * t1585
+            + minus_grod_vy_leg4 * t1470;
+        let t1609 = minus_gcross_vz_leg4 * t1585 + minus_gcylinder_vz_leg4 * t1595
+            + grod_vz_leg4 * t1470;
+        let t1621 = t1465 - t1562;
+        let t1624 = t1350 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1592 + minus_c_cylinder_leg4 * t1621);
+        let t1627 = gcross_vx_leg4 * t1624 - t1358 * minus_rate_dot_cross_leg4;
+        let t1630 = t1353 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t1624;
+        let t1633 = minus_gcross_vz_leg4 * t1624
             + s_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t1627 = t1419 - s_cylinder_leg4 * t1565;
-        let t1629 = t1450 + t1603;
-        let t1632 = t1424 + t1455;
-        let t1634 = gcross_vx_leg4 * t1627 + gcylinder_vx_leg4 * t1629
-            - grod_vx_leg4 * t1632;
-        let t1639 = gcylinder_vy_leg4 * t1629 - minus_gcross_vy_leg4 * t1627
-            + minus_grod_vy_leg4 * t1632;
-        let t1644 = minus_gcross_vz_leg4 * t1627 + minus_gcylinder_vz_leg4 * t1629
-            + grod_vz_leg4 * t1632;
-        let t1654 = acceleration[2] + 9.81;
-        let t1655 = t574 + t1654;
-        let minus_rate_dot_rod_leg4 = t1573 - joints[11] * t1632;
-        let grod_wx_leg4 = grod_vz_leg4 * t523 + minus_grod_vy_leg4 * t521;
-        let grod_wy_leg4 = grod_vx_leg4 * t521 - grod_vz_leg4 * t535;
-        let t1693 = 0.6691306063588579 * s_cross_leg5;
-        let t1696 = s_cylinder_leg5 * joints[14];
-        ::overact::guard::leg(t1696, 0.5513142860394162, "leg5")?;
-        let gcross_vx_leg5 = t1693 / t1696;
-        let t1698 = acceleration[2] - t155;
-        let t1700 = acceleration[0] - t108;
-        let t1702 = 0.7431448254773945 * s_cross_leg5;
-        let t1703 = acceleration[1] - t132;
-        let t1706 = minus_c_cross_leg5 * t1698 - (t1693 * t1700 + t1702 * t1703);
-        let t1707 = twist[2] + t74;
-        let t1709 = twist[0] + t44;
-        let t1711 = twist[1] + t64;
-        let t1714 = minus_c_cross_leg5 * t1707 - (t1693 * t1709 + t1702 * t1711);
-        let minus_rate_cross_leg5 = t1714 / t1696;
-        let t1716 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1718 = 0.6691306063588579 * minus_c_cross_leg5;
+        let t1644 = t1371 + s_cylinder_leg4 * t1583;
+        let t1646 = t1467 + t1621;
+        let t1649 = t1441 + t1472;
+        let t1651 = gcylinder_vx_leg4 * t1646 - gcross_vx_leg4 * t1644
+            - grod_vx_leg4 * t1649;
+        let t1656 = gcylinder_vy_leg4 * t1646 + minus_gcross_vy_leg4 * t1644
+            + minus_grod_vy_leg4 * t1649;
+        let t1661 = minus_gcylinder_vz_leg4 * t1646 - minus_gcross_vz_leg4 * t1644
+            + grod_vz_leg4 * t1649;
+        let t1671 = 9.81 + t1340;
+        let minus_rate_dot_rod_leg4 = t1591 - joints[11] * t1649;
+        let grod_wx_leg4 = grod_vz_leg4 * t528 + minus_grod_vy_leg4 * t526;
+        let grod_wy_leg4 = grod_vx_leg4 * t526 - grod_vz_leg4 * t540;
+        let t1709 = 0.6691306063588579 * s_cross_leg5;
+        let t1712 = s_cylinder_leg5 * joints[14];
+        ::overact::guard::leg(t1712, 0.5513142860394162, "leg5")?;
+        let gcross_vx_leg5 = t1709 / t1712;
+        let t1714 = 1.0 / joints[14];
+        let t1715 = acceleration[2] - t165;
+        let t1717 = acceleration[0] - t118;
+        let t1719 = 0.7431448254773945 * s_cross_leg5;
+        let t1720 = acceleration[1] - t142;
+        let t1723 = minus_c_cross_leg5 * t1715 - (t1709 * t1717 + t1719 * t1720);
+        let t1724 = twist[2] + t73;
+        let t1726 = twist[0] + t45;
+        let t1729 = twist[1] - (t60 + t964);
+        let t1732 = minus_c_cross_leg5 * t1724 - (t1709 * t1726 + t1719 * t1729);
+        let minus_rate_cross_leg5 = t1732 / t1712;
+        let t1734 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1736 = 0.6691306063588579 * minus_c_cross_leg5;
         let minus_grod_vx_leg5 = 0.7431448254773945 * minus_c_cylinder_leg5
-            - s_cylinder_leg5 * t1718;
-        let t1722 = 0.7431448254773945 * minus_c_cross_leg5;
-        let grod_vy_leg5 = s_cylinder_leg5 * t1722
+            - s_cylinder_leg5 * t1736;
+        let t1740 = 0.7431448254773945 * minus_c_cross_leg5;
+        let grod_vy_leg5 = s_cylinder_leg5 * t1740
             + 0.6691306063588579 * minus_c_cylinder_leg5;
         let grod_vz_leg5 = s_cross_leg5 * s_cylinder_leg5;
-        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t1709 - grod_vy_leg5 * t1711
-            - grod_vz_leg5 * t1707;
-        let t1731 = 2.0 * minus_rate_rod_leg5;
-        let t1733 = t1706 + t1716 * t1731;
-        let t1736 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t1722;
-        let t1740 = minus_c_cylinder_leg5 * t1718 + 0.7431448254773945 * s_cylinder_leg5;
-        let t1743 = s_cross_leg5 * minus_c_cylinder_leg5;
-        let t1745 = t1736 * t1711 - t1740 * t1709 - t1743 * t1707;
-        let t1746 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t1747 = t1745 * t1746;
-        let minus_rate_dot_cross_leg5 = (t1733 + t1747 + t1747) / t1696;
-        let t1751 = 1.0 / joints[14];
-        let rate_cylinder_leg5 = t1751 * t1745;
-        let t1753 = rate_cylinder_leg5 * t1716;
-        let t1754 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1756 = t1753 + t1754 + t1753;
-        let t1757 = minus_c_cylinder_leg5 * t1756;
-        let t1758 = t1757 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t1740 * t1751;
-        let t1761 = t1716 * t1746;
-        let t1762 = minus_gcylinder_vx_leg5 * t1761;
-        let t1763 = gcross_vx_leg5 * t1758 - t1762;
-        let gcross_vy_leg5 = t1702 / t1696;
-        let gcylinder_vy_leg5 = t1736 * t1751;
-        let t1767 = gcylinder_vy_leg5 * t1761;
-        let t1768 = gcross_vy_leg5 * t1758 + t1767;
-        let minus_gcross_vz_leg5 = minus_c_cross_leg5 / t1696;
-        let minus_gcylinder_vz_leg5 = t1743 * t1751;
-        let t1772 = minus_gcylinder_vz_leg5 * t1761;
-        let t1773 = minus_gcross_vz_leg5 * t1758 + t1772;
-        let gcross_wx_leg5 = t38 * minus_gcross_vz_leg5 + t42 * gcross_vy_leg5;
-        let gcylinder_wx_leg5 = t38 * minus_gcylinder_vz_leg5 + t42 * gcylinder_vy_leg5;
-        let t1781 = gcylinder_wx_leg5 * t1761;
-        let t1782 = gcross_wx_leg5 * t1758 + t1781;
-        let gcylinder_wy_leg5 = t42 * minus_gcylinder_vx_leg5
-            - t62 * minus_gcylinder_vz_leg5;
-        let t1786 = gcylinder_wy_leg5 * t1761;
-        let minus_gcross_wy_leg5 = t42 * gcross_vx_leg5 + t62 * minus_gcross_vz_leg5;
-        let t1791 = t1786 - minus_gcross_wy_leg5 * t1758;
-        let gcross_wz_leg5 = t38 * gcross_vx_leg5 - t62 * gcross_vy_leg5;
-        let minus_gcylinder_wz_leg5 = t62 * gcylinder_vy_leg5
-            + t38 * minus_gcylinder_vx_leg5;
-        let t1799 = minus_gcylinder_wz_leg5 * t1761;
-        let t1800 = gcross_wz_leg5 * t1758 - t1799;
-        let t1804 = s_cylinder_leg5 * t1756
-            + minus_c_cylinder_leg5 * (t1733 / joints[14]);
-        let t1806 = t1716 * t1716;
-        let t1807 = t1746 * t1746;
-        let t1808 = t1806 - t1807;
-        let t1810 = gcross_vx_leg5 * t1804 - minus_gcylinder_vx_leg5 * t1808;
-        let t1813 = gcross_vy_leg5 * t1804 + gcylinder_vy_leg5 * t1808;
-        let t1816 = minus_gcross_vz_leg5 * t1804 + minus_gcylinder_vz_leg5 * t1808;
-        let t1819 = gcross_wx_leg5 * t1804 + gcylinder_wx_leg5 * t1808;
-        let t1822 = gcylinder_wy_leg5 * t1808 - minus_gcross_wy_leg5 * t1804;
-        let t1825 = gcross_wz_leg5 * t1804 - minus_gcylinder_wz_leg5 * t1808;
-        let t1830 = t1736 * t1703 - t1740 * t1700 - t1743 * t1698;
-        let t1832 = t1830 + rate_cylinder_leg5 * t1731;
-        let t1833 = t1832 / joints[14];
-        let rate_dot_cylinder_leg5 = t1833 - t1761;
-        let t1835 = rate_dot_cylinder_leg5 - t1761;
-        let t1837 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1840 = s_cylinder_leg5 * t1835 - minus_c_cylinder_leg5 * (t1837 - t1806);
-        let t1842 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1844 = gcross_vx_leg5 * t1840 + minus_gcylinder_vx_leg5 * t1842;
-        let t1847 = gcross_vy_leg5 * t1840 - gcylinder_vy_leg5 * t1842;
-        let t1850 = minus_gcylinder_vz_leg5 * t1842 - minus_gcross_vz_leg5 * t1840;
-        let t1853 = gcross_wx_leg5 * t1840 - gcylinder_wx_leg5 * t1842;
-        let t1856 = minus_gcross_wy_leg5 * t1840 + gcylinder_wy_leg5 * t1842;
-        let t1859 = gcross_wz_leg5 * t1840 + minus_gcylinder_wz_leg5 * t1842;
-        let t1861 = t1762 - gcross_vx_leg5 * t1757;
-        let t1863 = gcross_vy_leg5 * t1757 + t1767;
-        let t1865 = minus_gcross_vz_leg5 * t1757 + t1772;
-        let t1867 = gcross_wx_leg5 * t1757 + t1781;
-        let t1869 = minus_gcross_wy_leg5 * t1757 - t1786;
-        let t1871 = t1799 - gcross_wz_leg5 * t1757;
-        let t1875 = s_cylinder_leg5 * (t1807 - t1837) - minus_c_cylinder_leg5 * t1833;
-        let t1878 = gcross_vx_leg5 * t1875 - minus_gcylinder_vx_leg5 * t1754;
-        let t1881 = gcross_vy_leg5 * t1875 + gcylinder_vy_leg5 * t1754;
-        let t1884 = minus_gcross_vz_leg5 * t1875 + minus_gcylinder_vz_leg5 * t1754;
-        let t1887 = gcross_wx_leg5 * t1875 + gcylinder_wx_leg5 * t1754;
-        let t1890 = gcylinder_wy_leg5 * t1754 - minus_gcross_wy_leg5 * t1875;
-        let t1893 = gcross_wz_leg5 * t1875 - minus_gcylinder_wz_leg5 * t1754;
-        let t1894 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t1895 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t1896 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t1897 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t1898 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t1899 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t1900 = 9.81 * minus_c_cross_leg5;
-        let t1901 = minus_c_cylinder_leg5 * t1900;
-        let t1903 = 9.81 * grod_vz_leg5;
-        let t1921 = t1903 / joints[14];
-        let t1924 = s_cylinder_leg5 * t1900;
-        let t1926 = 9.81 * t1743;
-        let minus_grod_wz_leg5 = grod_vy_leg5 * t62 + minus_grod_vx_leg5 * t38;
-        let t1939 = 9.81 * s_cross_leg5;
-        let t1947 = t1706 + t1900;
-        let t1949 = t1696 * t1756 + minus_c_cylinder_leg5 * t1947;
-        let t1955 = minus_grod_vx_leg5 * t1700 - grod_vy_leg5 * t1703
-            - grod_vz_leg5 * t1698;
-        let t1956 = t1955 - t1903;
-        let t1959 = t1956 - joints[14] * (t1807 + t1837);
-        let t1963 = gcross_vx_leg5 * t1949 - minus_gcylinder_vx_leg5 * t1959
-            + minus_grod_vx_leg5 * t1835;
-        let t1968 = gcross_vy_leg5 * t1949 + gcylinder_vy_leg5 * t1959
-            - grod_vy_leg5 * t1835;
-        let t1973 = minus_gcross_vz_leg5 * t1949 + minus_gcylinder_vz_leg5 * t1959
-            + grod_vz_leg5 * t1835;
-        let t1985 = t1830 - t1926;
-        let t1988 = t1714 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t1956 + minus_c_cylinder_leg5 * t1985);
-        let t1991 = gcross_vx_leg5 * t1988 - t1718 * minus_rate_dot_cross_leg5;
-        let t1994 = gcross_vy_leg5 * t1988 - t1722 * minus_rate_dot_cross_leg5;
-        let t1997 = minus_gcross_vz_leg5 * t1988
+        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t1726 - grod_vy_leg5 * t1729
+            - grod_vz_leg5 * t1724;
+        let t1749 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
+        let t1751 = t1723 + t1734 * t1749;
+        let t1752 = t1714 * t1751;
+        let t1753 = s_cylinder_leg5 * t1752;
+        let t1757 = minus_c_cylinder_leg5 * t1736 + 0.7431448254773945 * s_cylinder_leg5;
+        let minus_gcylinder_vx_leg5 = t1757 * t1714;
+        let t1759 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t1760 = t1734 * t1759;
+        let t1761 = minus_gcylinder_vx_leg5 * t1760;
+        let t1762 = gcross_vx_leg5 * t1753 + t1761;
+        let gcross_vy_leg5 = t1719 / t1712;
+        let t1767 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t1740;
+        let gcylinder_vy_leg5 = t1767 * t1714;
+        let t1769 = gcylinder_vy_leg5 * t1760;
+        let t1770 = t1769 - gcross_vy_leg5 * t1753;
+        let minus_gcross_vz_leg5 = minus_c_cross_leg5 / t1712;
+        let t1773 = s_cross_leg5 * minus_c_cylinder_leg5;
+        let minus_gcylinder_vz_leg5 = t1773 * t1714;
+        let t1775 = minus_gcylinder_vz_leg5 * t1760;
+        let t1776 = t1775 - minus_gcross_vz_leg5 * t1753;
+        let gcross_wx_leg5 = t39 * minus_gcross_vz_leg5 + t43 * gcross_vy_leg5;
+        let gcylinder_wx_leg5 = t39 * minus_gcylinder_vz_leg5 + t43 * gcylinder_vy_leg5;
+        let t1784 = gcylinder_wx_leg5 * t1760;
+        let t1785 = t1784 - gcross_wx_leg5 * t1753;
+        let gcylinder_wy_leg5 = t43 * minus_gcylinder_vx_leg5
+            - t67 * minus_gcylinder_vz_leg5;
+        let t1789 = gcylinder_wy_leg5 * t1760;
+        let minus_gcross_wy_leg5 = t43 * gcross_vx_leg5 + t67 * minus_gcross_vz_leg5;
+        let t1794 = t1789 + minus_gcross_wy_leg5 * t1753;
+        let gcross_wz_leg5 = t39 * gcross_vx_leg5 - t67 * gcross_vy_leg5;
+        let minus_gcylinder_wz_leg5 = t67 * gcylinder_vy_leg5
+            + t39 * minus_gcylinder_vx_leg5;
+        let t1802 = minus_gcylinder_wz_leg5 * t1760;
+        let t1803 = gcross_wz_leg5 * t1753 + t1802;
+        let t1808 = t1767 * t1729 - t1757 * t1726 - t1773 * t1724;
+        let rate_cylinder_leg5 = t1714 * t1808;
+        let t1810 = rate_cylinder_leg5 * t1734;
+        let t1811 = t1808 * t1759;
+        let minus_rate_dot_cross_leg5 = (t1751 + t1811 + t1811) / t1712;
+        let t1815 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1817 = t1810 + t1815 + t1810;
+        let t1820 = s_cylinder_leg5 * t1817 + minus_c_cylinder_leg5 * t1752;
+        let t1822 = t1734 * t1734;
+        let t1823 = t1759 * t1759;
+        let t1824 = t1822 - t1823;
+        let t1826 = gcross_vx_leg5 * t1820 - minus_gcylinder_vx_leg5 * t1824;
+        let t1829 = gcross_vy_leg5 * t1820 + gcylinder_vy_leg5 * t1824;
+        let t1832 = minus_gcross_vz_leg5 * t1820 + minus_gcylinder_vz_leg5 * t1824;
+        let t1835 = gcross_wx_leg5 * t1820 + gcylinder_wx_leg5 * t1824;
+        let t1838 = gcylinder_wy_leg5 * t1824 - minus_gcross_wy_leg5 * t1820;
+        let t1841 = gcross_wz_leg5 * t1820 - minus_gcylinder_wz_leg5 * t1824;
+        let t1846 = t1767 * t1720 - t1757 * t1717 - t1773 * t1715;
+        let t1848 = t1846 + rate_cylinder_leg5 * t1749;
+        let t1849 = t1714 * t1848;
+        let rate_dot_cylinder_leg5 = t1849 - t1760;
+        let t1851 = rate_dot_cylinder_leg5 - t1760;
+        let t1853 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1856 = s_cylinder_leg5 * t1851 - minus_c_cylinder_leg5 * (t1853 - t1822);
+        let t1858 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1860 = gcross_vx_leg5 * t1856 + minus_gcylinder_vx_leg5 * t1858;
+        let t1863 = gcross_vy_leg5 * t1856 - gcylinder_vy_leg5 * t1858;
+        let t1866 = minus_gcylinder_vz_leg5 * t1858 - minus_gcross_vz_leg5 * t1856;
+        let t1869 = gcross_wx_leg5 * t1856 - gcylinder_wx_leg5 * t1858;
+        let t1872 = minus_gcross_wy_leg5 * t1856 + gcylinder_wy_leg5 * t1858;
+        let t1875 = gcross_wz_leg5 * t1856 + minus_gcylinder_wz_leg5 * t1858;
+        let t1876 = minus_c_cylinder_leg5 * t1817;
+        let t1878 = t1761 - gcross_vx_leg5 * t1876;
+        let t1880 = gcross_vy_leg5 * t1876 + t1769;
+        let t1882 = minus_gcross_vz_leg5 * t1876 + t1775;
+        let t1884 = gcross_wx_leg5 * t1876 + t1784;
+        let t1886 = minus_gcross_wy_leg5 * t1876 - t1789;
+        let t1888 = t1802 - gcross_wz_leg5 * t1876;
+        let t1892 = s_cylinder_leg5 * (t1823 - t1853) - minus_c_cylinder_leg5 * t1849;
+        let t1895 = gcross_vx_leg5 * t1892 - minus_gcylinder_vx_leg5 * t1815;
+        let t1898 = gcross_vy_leg5 * t1892 + gcylinder_vy_leg5 * t1815;
+        let t1901 = minus_gcross_vz_leg5 * t1892 + minus_gcylinder_vz_leg5 * t1815;
+        let t1904 = gcross_wx_leg5 * t1892 + gcylinder_wx_leg5 * t1815;
+        let t1907 = gcylinder_wy_leg5 * t1815 - minus_gcross_wy_leg5 * t1892;
+        let t1910 = gcross_wz_leg5 * t1892 - minus_gcylinder_wz_leg5 * t1815;
+        let t1911 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t1912 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t1913 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t1914 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t1915 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t1916 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t1917 = 9.81 * minus_c_cross_leg5;
+        let t1918 = minus_c_cylinder_leg5 * t1917;
+        let t1920 = 9.81 * grod_vz_leg5;
+        let t1938 = t1920 / joints[14];
+        let t1941 = s_cylinder_leg5 * t1917;
+        let t1943 = 9.81 * t1773;
+        let minus_grod_wz_leg5 = grod_vy_leg5 * t67 + minus_grod_vx_leg5 * t39;
+        let t1956 = 9.81 * s_cross_leg5;
+        let t1964 = t1723 + t1917;
+        let t1966 = t1712 * t1817 + minus_c_cylinder_leg5 * t1964;
+        let t1972 = minus_grod_vx_leg5 * t1717 - grod_vy_leg5 * t1720
+            - grod_vz_leg5 * t1715;
+        let t1973 = t1972 - t1920;
+        let t1976 = t1973 - joints[14] * (t1823 + t1853);
+        let t1980 = gcross_vx_leg5 * t1966 - minus_gcylinder_vx_leg5 * t1976
+            + minus_grod_vx_leg5 * t1851;
+        let t1985 = gcross_vy_leg5 * t1966 + gcylinder_vy_leg5 * t1976
+            - grod_vy_leg5 * t1851;
+        let t1990 = minus_gcross_vz_leg5 * t1966 + minus_gcylinder_vz_leg5 * t1976
+            + grod_vz_leg5 * t1851;
+        let t2002 = t1846 - t1943;
+        let t2005 = t1732 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t1973 + minus_c_cylinder_leg5 * t2002);
+        let t2008 = gcross_vx_leg5 * t2005 - t1736 * minus_rate_dot_cross_leg5;
+        let t2011 = gcross_vy_leg5 * t2005 - t1740 * minus_rate_dot_cross_leg5;
+        let t2014 = minus_gcross_vz_leg5 * t2005
             + s_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2008 = s_cylinder_leg5 * (t1947 + t1733);
-        let t2010 = t1832 + t1985;
-        let t2013 = t1806 + t1837;
-        let t2015 = minus_grod_vx_leg5 * t2013
-            - (gcross_vx_leg5 * t2008 + minus_gcylinder_vx_leg5 * t2010);
-        let t2020 = gcylinder_vy_leg5 * t2010 - gcross_vy_leg5 * t2008
-            - grod_vy_leg5 * t2013;
-        let t2025 = minus_gcylinder_vz_leg5 * t2010 - minus_gcross_vz_leg5 * t2008
-            + grod_vz_leg5 * t2013;
-        let t2035 = 9.81 + t1698;
-        let minus_rate_dot_rod_leg5 = t1955 - joints[14] * t2013;
-        let grod_wx_leg5 = grod_vy_leg5 * t42 - grod_vz_leg5 * t38;
-        let grod_wy_leg5 = minus_grod_vx_leg5 * t42 + grod_vz_leg5 * t62;
-        let t2073 = 0.30901699437494734 * s_cross_leg6;
-        let t2076 = s_cylinder_leg6 * joints[17];
-        ::overact::guard::leg(t2076, 0.5513142860394162, "leg6")?;
-        let gcross_vx_leg6 = t2073 / t2076;
-        let t2078 = acceleration[2] + t575;
-        let t2080 = acceleration[0] + t564;
-        let t2082 = 0.9510565162951536 * s_cross_leg6;
-        let t2083 = acceleration[1] + t569;
-        let t2086 = minus_c_cross_leg6 * t2078 - (t2073 * t2080 + t2082 * t2083);
-        let t2088 = 0.9510565162951536 * minus_c_cross_leg6;
-        let t2090 = 0.30901699437494734 * s_cylinder_leg6
-            - minus_c_cylinder_leg6 * t2088;
-        let t2091 = twist[1] + t542;
-        let t2093 = 0.30901699437494734 * minus_c_cross_leg6;
-        let t2096 = minus_c_cylinder_leg6 * t2093 + 0.9510565162951536 * s_cylinder_leg6;
-        let t2097 = twist[0] + t530;
-        let t2100 = s_cross_leg6 * minus_c_cylinder_leg6;
-        let t2101 = twist[2] + t552;
-        let t2103 = t2090 * t2091 - t2096 * t2097 - t2100 * t2101;
-        let t2108 = minus_c_cross_leg6 * t2101 - (t2073 * t2097 + t2082 * t2091);
-        let minus_rate_cross_leg6 = t2108 / t2076;
-        let t2110 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2111 = t2103 * t2110;
-        let t2114 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2025 = s_cylinder_leg5 * (t1964 + t1751);
+        let t2027 = t1848 + t2002;
+        let t2030 = t1822 + t1853;
+        let t2032 = minus_grod_vx_leg5 * t2030
+            - (gcross_vx_leg5 * t2025 + minus_gcylinder_vx_leg5 * t2027);
+        let t2037 = gcylinder_vy_leg5 * t2027 - gcross_vy_leg5 * t2025
+            - grod_vy_leg5 * t2030;
+        let t2042 = minus_gcylinder_vz_leg5 * t2027 - minus_gcross_vz_leg5 * t2025
+            + grod_vz_leg5 * t2030;
+        let t2052 = 9.81 + t1715;
+        let minus_rate_dot_rod_leg5 = t1972 - joints[14] * t2030;
+        let grod_wx_leg5 = grod_vy_leg5 * t43 - grod_vz_leg5 * t39;
+        let grod_wy_leg5 = minus_grod_vx_leg5 * t43 + grod_vz_leg5 * t67;
+        let t2090 = 0.30901699437494734 * s_cross_leg6;
+        let t2093 = s_cylinder_leg6 * joints[17];
+        ::overact::guard::leg(t2093, 0.5513142860394162, "leg6")?;
+        let gcross_vx_leg6 = t2090 / t2093;
+        let t2095 = 1.0 / joints[17];
+        let t2097 = 0.9510565162951536 * minus_c_cross_leg6;
+        let t2099 = 0.30901699437494734 * s_cylinder_leg6
+            - minus_c_cylinder_leg6 * t2097;
+        let t2100 = twist[1] - t549;
+        let t2102 = 0.30901699437494734 * minus_c_cross_leg6;
+        let t2105 = minus_c_cylinder_leg6 * t2102 + 0.9510565162951536 * s_cylinder_leg6;
+        let t2106 = twist[0] + t535;
+        let t2109 = s_cross_leg6 * minus_c_cylinder_leg6;
+        let t2110 = twist[2] + t559;
+        let rate_cylinder_leg6 = t2095 * (t2099 * t2100 - t2105 * t2106 - t2109 * t2110);
+        let t2116 = 0.9510565162951536 * s_cross_leg6;
+        let t2119 = minus_c_cross_leg6 * t2110 - (t2090 * t2106 + t2116 * t2100);
+        let minus_rate_cross_leg6 = t2119 / t2093;
+        let t2121 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2122 = rate_cylinder_leg6 * t2121;
+        let t2123 = acceleration[2] + t582;
+        let t2125 = acceleration[0] + t571;
+        let t2127 = acceleration[1] + t576;
+        let t2130 = minus_c_cross_leg6 * t2123 - (t2090 * t2125 + t2116 * t2127);
+        let t2131 = joints[17] * t2122;
+        let t2134 = s_cylinder_leg6 * minus_rate_cross_leg6;
         let minus_grod_vx_leg6 = 0.9510565162951536 * minus_c_cylinder_leg6
-            - s_cylinder_leg6 * t2093;
-        let grod_vy_leg6 = s_cylinder_leg6 * t2088
+            - s_cylinder_leg6 * t2102;
+        let grod_vy_leg6 = s_cylinder_leg6 * t2097
             + 0.30901699437494734 * minus_c_cylinder_leg6;
         let grod_vz_leg6 = s_cross_leg6 * s_cylinder_leg6;
-        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t2097 - grod_vy_leg6 * t2091
-            - grod_vz_leg6 * t2101;
-        let t2127 = minus_rate_rod_leg6 + minus_rate_rod_leg6;
-        let minus_rate_dot_cross_leg6 = (t2086 + t2111 + t2111 + t2114 * t2127) / t2076;
-        let t2131 = 1.0 / joints[17];
-        let rate_cylinder_leg6 = t2131 * t2103;
-        let t2133 = rate_cylinder_leg6 * t2114;
-        let t2134 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2136 = t2133 + t2134 + t2133;
-        let t2137 = minus_c_cylinder_leg6 * t2136;
-        let t2138 = t2137 - minus_rate_dot_cross_leg6;
-        let minus_gcylinder_vx_leg6 = t2096 * t2131;
-        let t2141 = t2114 * t2110;
-        let t2142 = minus_gcylinder_vx_leg6 * t2141;
-        let t2143 = gcross_vx_leg6 * t2138 - t2142;
-        let gcross_vy_leg6 = t2082 / t2076;
-        let gcylinder_vy_leg6 = t2090 * t2131;
-        let t2147 = gcylinder_vy_leg6 * t2141;
-        let t2148 = gcross_vy_leg6 * t2138 + t2147;
-        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t2076;
-        let minus_gcylinder_vz_leg6 = t2100 * t2131;
-        let t2152 = minus_gcylinder_vz_leg6 * t2141;
-        let t2153 = minus_gcross_vz_leg6 * t2138 + t2152;
-        let minus_gcross_wx_leg6 = t528 * minus_gcross_vz_leg6 + t526 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t528 * minus_gcylinder_vz_leg6
-            + t526 * gcylinder_vy_leg6;
-        let t2161 = minus_gcylinder_wx_leg6 * t2141;
-        let t2162 = minus_gcross_wx_leg6 * t2138 + t2161;
-        let gcross_wy_leg6 = t526 * gcross_vx_leg6 + t539 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t539 * minus_gcylinder_vz_leg6
-            - t526 * minus_gcylinder_vx_leg6;
-        let t2170 = gcylinder_wy_leg6 * t2141;
-        let t2171 = gcross_wy_leg6 * t2138 + t2170;
-        let gcross_wz_leg6 = t539 * gcross_vy_leg6 - t528 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t539 * gcylinder_vy_leg6
-            + t528 * minus_gcylinder_vx_leg6;
-        let t2179 = gcylinder_wz_leg6 * t2141;
-        let t2180 = gcross_wz_leg6 * t2138 + t2179;
-        let t2182 = joints[17] * t2138;
-        let t2185 = s_cylinder_leg6 * t2136 - minus_c_cylinder_leg6 * (t2182 / t2076);
-        let t2187 = t2114 * t2114;
-        let t2188 = t2110 * t2110;
-        let t2189 = t2187 - t2188;
-        let t2191 = gcross_vx_leg6 * t2185 - minus_gcylinder_vx_leg6 * t2189;
-        let t2194 = gcross_vy_leg6 * t2185 + gcylinder_vy_leg6 * t2189;
-        let t2197 = minus_gcross_vz_leg6 * t2185 + minus_gcylinder_vz_leg6 * t2189;
-        let t2200 = minus_gcross_wx_leg6 * t2185 + minus_gcylinder_wx_leg6 * t2189;
-        let t2203 = gcross_wy_leg6 * t2185 + gcylinder_wy_leg6 * t2189;
-        let t2206 = gcross_wz_leg6 * t2185 + gcylinder_wz_leg6 * t2189;
-        let t2211 = t2090 * t2083 - t2096 * t2080 - t2100 * t2078;
-        let t2213 = t2211 + rate_cylinder_leg6 * t2127;
-        let t2214 = t2131 * t2213;
-        let rate_dot_cylinder_leg6 = t2214 - t2141;
-        let t2216 = rate_dot_cylinder_leg6 - t2141;
-        let t2218 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t2221 = s_cylinder_leg6 * t2216 - minus_c_cylinder_leg6 * (t2218 - t2187);
-        let t2223 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2225 = gcross_vx_leg6 * t2221 + minus_gcylinder_vx_leg6 * t2223;
-        let t2228 = gcross_vy_leg6 * t2221 - gcylinder_vy_leg6 * t2223;
-        let t2231 = minus_gcylinder_vz_leg6 * t2223 - minus_gcross_vz_leg6 * t2221;
-        let t2234 = minus_gcylinder_wx_leg6 * t2223 - minus_gcross_wx_leg6 * t2221;
-        let t2237 = gcross_wy_leg6 * t2221 - gcylinder_wy_leg6 * t2223;
-        let t2240 = gcross_wz_leg6 * t2221 - gcylinder_wz_leg6 * t2223;
-        let t2242 = t2142 - gcross_vx_leg6 * t2137;
-        let t2244 = gcross_vy_leg6 * t2137 + t2147;
-        let t2246 = minus_gcross_vz_leg6 * t2137 + t2152;
-        let t2248 = minus_gcross_wx_leg6 * t2137 + t2161;
-        let t2250 = gcross_wy_leg6 * t2137 + t2170;
-        let t2252 = gcross_wz_leg6 * t2137 + t2179;
-        let t2256 = s_cylinder_leg6 * (t2188 - t2218) - minus_c_cylinder_leg6 * t2214;
-        let t2259 = gcross_vx_leg6 * t2256 - minus_gcylinder_vx_leg6 * t2134;
-        let t2262 = gcross_vy_leg6 * t2256 + gcylinder_vy_leg6 * t2134;
-        let t2265 = minus_gcross_vz_leg6 * t2256 + minus_gcylinder_vz_leg6 * t2134;
-        let t2268 = minus_gcross_wx_leg6 * t2256 + minus_gcylinder_wx_leg6 * t2134;
-        let t2271 = gcross_wy_leg6 * t2256 + gcylinder_wy_leg6 * t2134;
-        let t2274 = gcross_wz_leg6 * t2256 + gcylinder_wz_leg6 * t2134;
-        let t2275 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
-        let t2276 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
-        let t2277 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
-        let t2278 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
-        let t2279 = gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
-        let t2280 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
-        let t2281 = 9.81 * minus_c_cross_leg6;
-        let t2282 = minus_c_cylinder_leg6 * t2281;
-        let t2284 = 9.81 * grod_vz_leg6;
-        let t2302 = t2284 / joints[17];
-        let t2305 = s_cylinder_leg6 * t2281;
-        let t2307 = 9.81 * t2100;
-        let grod_wz_leg6 = grod_vy_leg6 * t539 + minus_grod_vx_leg6 * t528;
-        let t2320 = 9.81 * s_cross_leg6;
-        let t2328 = t2086 + t2281;
-        let t2330 = t2076 * t2136 + minus_c_cylinder_leg6 * t2328;
-        let t2336 = minus_grod_vx_leg6 * t2080 - grod_vy_leg6 * t2083
-            - grod_vz_leg6 * t2078;
-        let t2337 = t2336 - t2284;
-        let t2340 = t2337 - joints[17] * (t2188 + t2218);
-        let t2344 = gcross_vx_leg6 * t2330 - minus_gcylinder_vx_leg6 * t2340
-            + minus_grod_vx_leg6 * t2216;
-        let t2349 = gcross_vy_leg6 * t2330 + gcylinder_vy_leg6 * t2340
-            - grod_vy_leg6 * t2216;
-        let t2354 = minus_gcross_vz_leg6 * t2330 + minus_gcylinder_vz_leg6 * t2340
-            + grod_vz_leg6 * t2216;
-        let t2366 = t2211 - t2307;
-        let t2369 = t2108 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2337 + minus_c_cylinder_leg6 * t2366);
-        let t2372 = gcross_vx_leg6 * t2369 - t2093 * minus_rate_dot_cross_leg6;
-        let t2375 = gcross_vy_leg6 * t2369 - t2088 * minus_rate_dot_cross_leg6;
-        let t2378 = minus_gcross_vz_leg6 * t2369
+        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t2106 - grod_vy_leg6 * t2100
+            - grod_vz_leg6 * t2110;
+        let t2147 = minus_rate_rod_leg6 + minus_rate_rod_leg6;
+        let minus_rate_dot_cross_leg6 = (t2130 + t2131 + t2131 + t2134 * t2147) / t2093;
+        let t2151 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2153 = t2122 + t2122 - t2151;
+        let t2154 = s_cylinder_leg6 * t2153;
+        let minus_gcylinder_vx_leg6 = t2105 * t2095;
+        let t2157 = t2134 * t2121;
+        let t2158 = minus_gcylinder_vx_leg6 * t2157;
+        let t2159 = gcross_vx_leg6 * t2154 - t2158;
+        let gcross_vy_leg6 = t2116 / t2093;
+        let gcylinder_vy_leg6 = t2099 * t2095;
+        let t2163 = gcylinder_vy_leg6 * t2157;
+        let t2164 = gcross_vy_leg6 * t2154 + t2163;
+        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t2093;
+        let minus_gcylinder_vz_leg6 = t2109 * t2095;
+        let t2168 = minus_gcylinder_vz_leg6 * t2157;
+        let t2169 = minus_gcross_vz_leg6 * t2154 + t2168;
+        let minus_gcross_wx_leg6 = t533 * minus_gcross_vz_leg6 + t531 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t533 * minus_gcylinder_vz_leg6
+            + t531 * gcylinder_vy_leg6;
+        let t2177 = minus_gcylinder_wx_leg6 * t2157;
+        let t2178 = minus_gcross_wx_leg6 * t2154 + t2177;
+        let gcross_wy_leg6 = t531 * gcross_vx_leg6 - t546 * minus_gcross_vz_leg6;
+        let minus_gcylinder_wy_leg6 = t546 * minus_gcylinder_vz_leg6
+            + t531 * minus_gcylinder_vx_leg6;
+        let t2186 = minus_gcylinder_wy_leg6 * t2157;
+        let t2187 = gcross_wy_leg6 * t2154 - t2186;
+        let minus_gcross_wz_leg6 = t546 * gcross_vy_leg6 + t533 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t533 * minus_gcylinder_vx_leg6
+            - t546 * gcylinder_vy_leg6;
+        let t2195 = gcylinder_wz_leg6 * t2157;
+        let t2196 = t2195 - minus_gcross_wz_leg6 * t2154;
+        let t2197 = rate_cylinder_leg6 * t2134;
+        let t2198 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2200 = t2197 + t2198 + t2197;
+        let t2203 = s_cylinder_leg6 * t2200 - minus_c_cylinder_leg6 * t2153;
+        let t2205 = t2134 * t2134;
+        let t2206 = t2121 * t2121;
+        let t2207 = t2205 - t2206;
+        let t2209 = gcross_vx_leg6 * t2203 - minus_gcylinder_vx_leg6 * t2207;
+        let t2212 = gcross_vy_leg6 * t2203 + gcylinder_vy_leg6 * t2207;
+        let t2215 = minus_gcross_vz_leg6 * t2203 + minus_gcylinder_vz_leg6 * t2207;
+        let t2218 = minus_gcross_wx_leg6 * t2203 + minus_gcylinder_wx_leg6 * t2207;
+        let t2221 = gcross_wy_leg6 * t2203 - minus_gcylinder_wy_leg6 * t2207;
+        let t2224 = gcylinder_wz_leg6 * t2207 - minus_gcross_wz_leg6 * t2203;
+        let t2229 = t2099 * t2127 - t2105 * t2125 - t2109 * t2123;
+        let t2231 = t2229 + rate_cylinder_leg6 * t2147;
+        let t2232 = t2095 * t2231;
+        let rate_dot_cylinder_leg6 = t2232 - t2157;
+        let t2234 = rate_dot_cylinder_leg6 - t2157;
+        let t2236 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t2239 = s_cylinder_leg6 * t2234 - minus_c_cylinder_leg6 * (t2236 - t2205);
+        let t2242 = gcross_vx_leg6 * t2239 + minus_gcylinder_vx_leg6 * t2151;
+        let t2245 = gcross_vy_leg6 * t2239 - gcylinder_vy_leg6 * t2151;
+        let t2248 = minus_gcylinder_vz_leg6 * t2151 - minus_gcross_vz_leg6 * t2239;
+        let t2251 = minus_gcylinder_wx_leg6 * t2151 - minus_gcross_wx_leg6 * t2239;
+        let t2254 = gcross_wy_leg6 * t2239 + minus_gcylinder_wy_leg6 * t2151;
+        let t2257 = minus_gcross_wz_leg6 * t2239 + gcylinder_wz_leg6 * t2151;
+        let t2258 = minus_c_cylinder_leg6 * t2200;
+        let t2260 = t2158 - gcross_vx_leg6 * t2258;
+        let t2262 = gcross_vy_leg6 * t2258 + t2163;
+        let t2264 = minus_gcross_vz_leg6 * t2258 + t2168;
+        let t2266 = minus_gcross_wx_leg6 * t2258 + t2177;
+        let t2268 = gcross_wy_leg6 * t2258 - t2186;
+        let t2270 = t2195 - minus_gcross_wz_leg6 * t2258;
+        let t2274 = s_cylinder_leg6 * (t2206 - t2236) - minus_c_cylinder_leg6 * t2232;
+        let t2277 = gcross_vx_leg6 * t2274 - minus_gcylinder_vx_leg6 * t2198;
+        let t2280 = gcross_vy_leg6 * t2274 + gcylinder_vy_leg6 * t2198;
+        let t2283 = minus_gcross_vz_leg6 * t2274 + minus_gcylinder_vz_leg6 * t2198;
+        let t2286 = minus_gcross_wx_leg6 * t2274 + minus_gcylinder_wx_leg6 * t2198;
+        let t2289 = gcross_wy_leg6 * t2274 - minus_gcylinder_wy_leg6 * t2198;
+        let t2292 = gcylinder_wz_leg6 * t2198 - minus_gcross_wz_leg6 * t2274;
+        let t2293 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
+        let t2294 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
+        let t2295 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
+        let t2296 = minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6;
+        let t2297 = minus_gcylinder_wy_leg6 * rate_dot_cylinder_leg6;
+        let t2298 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
+        let t2299 = 9.81 * minus_c_cross_leg6;
+        let t2300 = minus_c_cylinder_leg6 * t2299;
+        let t2302 = 9.81 * grod_vz_leg6;
+        let t2320 = t2095 * t2302;
+        let t2323 = s_cylinder_leg6 * t2299;
+        let t2325 = 9.81 * t2109;
+        let grod_wz_leg6 = minus_grod_vx_leg6 * t533 - grod_vy_leg6 * t546;
+        let t2338 = 9.81 * s_cross_leg6;
+        let t2346 = t2130 + t2299;
+        let t2348 = t2093 * t2200 + minus_c_cylinder_leg6 * t2346;
+        let t2354 = minus_grod_vx_leg6 * t2125 - grod_vy_leg6 * t2127
+            - grod_vz_leg6 * t2123;
+        let t2355 = t2354 - t2302;
+        let t2358 = t2355 - joints[17] * (t2206 + t2236);
+        let t2362 = gcross_vx_leg6 * t2348 - minus_gcylinder_vx_leg6 * t2358
+            + minus_grod_vx_leg6 * t2234;
+        let t2367 = gcross_vy_leg6 * t2348 + gcylinder_vy_leg6 * t2358
+            - grod_vy_leg6 * t2234;
+        let t2372 = minus_gcross_vz_leg6 * t2348 + minus_gcylinder_vz_leg6 * t2358
+            + grod_vz_leg6 * t2234;
+        let t2384 = t2229 - t2325;
+        let t2387 = t2119 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2355 + minus_c_cylinder_leg6 * t2384);
+        let t2390 = gcross_vx_leg6 * t2387 - t2102 * minus_rate_dot_cross_leg6;
+        let t2393 = gcross_vy_leg6 * t2387 - t2097 * minus_rate_dot_cross_leg6;
+        let t2396 = minus_gcross_vz_leg6 * t2387
             + s_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2389 = t2182 - s_cylinder_leg6 * t2328;
-        let t2391 = t2213 + t2366;
-        let t2394 = t2187 + t2218;
-        let t2396 = gcross_vx_leg6 * t2389 - minus_gcylinder_vx_leg6 * t2391
-            + minus_grod_vx_leg6 * t2394;
-        let t2401 = gcross_vy_leg6 * t2389 + gcylinder_vy_leg6 * t2391
-            - grod_vy_leg6 * t2394;
-        let t2406 = minus_gcross_vz_leg6 * t2389 + minus_gcylinder_vz_leg6 * t2391
-            + grod_vz_leg6 * t2394;
-        let t2416 = t575 + t1654;
-        let minus_rate_dot_rod_leg6 = t2336 - joints[17] * t2394;
-        let grod_wx_leg6 = grod_vz_leg6 * t528 - grod_vy_leg6 * t526;
-        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t526 + grod_vz_leg6 * t539;
-        let t2456 = t51 * acceleration[3] + t26 * acceleration[4]
-            + t15 * acceleration[5];
-        let t2462 = t51 * twist[3] + t26 * twist[4] + t15 * twist[5];
-        let t2463 = t12 + t14;
-        let t2465 = t17 - t18;
-        let t2468 = t29 - t49;
-        let t2470 = t2463 * twist[3] + t2465 * twist[4] + t2468 * twist[5];
-        let t2471 = t2462 * t2470;
-        let t2472 = t53 * t2471;
-        let t2478 = t53 * twist[3] + t31 * twist[4] + t19 * twist[5];
-        let t2479 = t2462 * t2478;
-        let t2480 = t2463 * t2479;
-        let t2483 = t31 * t2471;
-        let t2485 = t2465 * t2479;
-        let t2488 = t19 * t2471;
-        let t2490 = t2468 * t2479;
-        let t2496 = t53 * acceleration[3] + t31 * acceleration[4]
-            + t19 * acceleration[5];
-        let t2497 = t2496 - t2471;
-        let t2499 = t2478 * t2470;
-        let t2500 = t2456 + t2499;
-        let t2503 = t2462 * t2462;
-        let t2504 = t2478 * t2478;
-        let t2505 = t2503 - t2504;
-        let t2522 = t2463 * acceleration[3] + t2465 * acceleration[4]
-            + t2468 * acceleration[5];
-        let t2523 = t2522 + t2479;
-        let t2525 = t2470 * t2470;
-        let t2526 = t2525 - t2503;
-        let t2529 = t2456 - t2499;
-        let t2543 = t51 * t2499;
-        let t2547 = t26 * t2499;
-        let t2551 = t15 * t2499;
-        let t2554 = t2504 - t2525;
-        let t2556 = t2522 - t2479;
-        let t2559 = t2496 + t2471;
+        let t2408 = t2093 * t2153 - s_cylinder_leg6 * t2346;
+        let t2410 = t2231 + t2384;
+        let t2413 = t2205 + t2236;
+        let t2415 = gcross_vx_leg6 * t2408 - minus_gcylinder_vx_leg6 * t2410
+            + minus_grod_vx_leg6 * t2413;
+        let t2420 = gcross_vy_leg6 * t2408 + gcylinder_vy_leg6 * t2410
+            - grod_vy_leg6 * t2413;
+        let t2425 = minus_gcross_vz_leg6 * t2408 + minus_gcylinder_vz_leg6 * t2410
+            + grod_vz_leg6 * t2413;
+        let t2435 = 9.81 + t2123;
+        let minus_rate_dot_rod_leg6 = t2354 - joints[17] * t2413;
+        let grod_wx_leg6 = grod_vz_leg6 * t533 - grod_vy_leg6 * t531;
+        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t531 - grod_vz_leg6 * t546;
+        let t2475 = t52 * acceleration[3] + t27 * acceleration[4]
+            + t16 * acceleration[5];
+        let t2481 = t52 * twist[3] + t27 * twist[4] + t16 * twist[5];
+        let t2482 = t13 + t15;
+        let t2484 = t18 - t19;
+        let t2487 = t30 - t50;
+        let t2489 = t2482 * twist[3] + t2484 * twist[4] + t2487 * twist[5];
+        let t2490 = t2481 * t2489;
+        let t2491 = t53 * t2490;
+        let t2497 = t53 * twist[3] + t32 * twist[4] + t20 * twist[5];
+        let t2498 = t2481 * t2497;
+        let t2499 = t2482 * t2498;
+        let t2502 = t32 * t2490;
+        let t2504 = t2484 * t2498;
+        let t2507 = t20 * t2490;
+        let t2509 = t2487 * t2498;
+        let t2515 = t53 * acceleration[3] + t32 * acceleration[4]
+            + t20 * acceleration[5];
+        let t2516 = t2515 - t2490;
+        let t2518 = t2497 * t2489;
+        let t2519 = t2475 + t2518;
+        let t2522 = t2481 * t2481;
+        let t2523 = t2497 * t2497;
+        let t2524 = t2522 - t2523;
+        let t2541 = t2482 * acceleration[3] + t2484 * acceleration[4]
+            + t2487 * acceleration[5];
+        let t2542 = t2541 + t2498;
+        let t2544 = t2489 * t2489;
+        let t2545 = t2544 - t2522;
+        let t2548 = t2475 - t2518;
+        let t2562 = t52 * t2518;
+        let t2566 = t27 * t2518;
+        let t2570 = t16 * t2518;
+        let t2573 = t2523 - t2544;
+        let t2575 = t2541 - t2498;
+        let t2578 = t2515 + t2490;
+        let t2600 = acceleration[2] + 9.81;
         Ok([
             [
-                t197, t247, -t281, t298, t315, t331,
-                -(minus_gcross_vx_leg1 * t338 + gcylinder_vx_leg1 * t340),
-                -(minus_grod_vx_leg1 * t358), -(minus_gcross_vx_leg1 * t376), t197, -t281, -t247,
-                t331, -t315, t298, t400, t428, t452, t110,
+                t196, t247, -t283, t302, t320, t336,
+                -(minus_gcross_vx_leg1 * t343 + gcylinder_vx_leg1 * t345),
+                -(minus_grod_vx_leg1 * t363), -(minus_gcross_vx_leg1 * t381), t196, -t283, -t247,
+                t336, -t320, t302, t405, t432, t457, t120,
                 minus_grod_vx_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vx_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_vx_leg1, minus_rate_rod_leg1),
-                -minus_grod_vx_leg1, t617, t668, -t702, t719, t736, t752,
-                -(minus_gcross_vx_leg2 * t759 + gcylinder_vx_leg2 * t761),
-                -(minus_grod_vx_leg2 * t779), -(minus_gcross_vx_leg2 * t797), t617, -t702, -t668,
-                t752, -t736, t719, t821, t849, t873, t566,
+                -minus_grod_vx_leg1, t606, t672, -t709, t727, t745, t761,
+                -(minus_gcross_vx_leg2 * t768 + gcylinder_vx_leg2 * t770),
+                -(minus_grod_vx_leg2 * t788), -(minus_gcross_vx_leg2 * t806), t606, -t709, -t672,
+                t761, -t745, t727, t830, t859, t884, t573,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vx_leg2 * minus_rate_rod_leg2,
                 ::overact::math::signed(minus_grod_vx_leg2, minus_rate_rod_leg2),
-                -minus_grod_vx_leg2, t1003, t1048, t1081, -t1098, t1115, t1131,
-                gcross_vx_leg3 * t1139 - gcylinder_vx_leg3 * t1141, grod_vx_leg3 * t1159,
-                gcross_vx_leg3 * t1176, t1003, t1081, -t1048, t1131, -t1115, -t1098, t1200, t1229,
-                t1254, t940, -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
+                -minus_grod_vx_leg2, t998, t1062, t1097, -t1115, t1132, t1148,
+                gcross_vx_leg3 * t1155 - gcylinder_vx_leg3 * t1157, grod_vx_leg3 * t1175,
+                gcross_vx_leg3 * t1193, t998, t1097, -t1062, t1148, -t1132, -t1115, t1217, t1245,
+                t1269, t952, -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_vx_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_vx_leg3, minus_rate_rod_leg3), grod_vx_leg3, t1380,
-                t1428, t1462, -t1479, t1496, t1512,
-                gcross_vx_leg4 * t1519 - gcylinder_vx_leg4 * t1521, grod_vx_leg4 * t1539,
-                gcross_vx_leg4 * t1557, t1380, t1462, -t1428, t1512, -t1496, -t1479, t1581, t1610,
-                t1634, t1320, -(grod_vx_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_vx_leg3, minus_rate_rod_leg3), grod_vx_leg3, t1381,
+                t1445, t1479, -t1497, t1514, t1530,
+                gcross_vx_leg4 * t1537 - gcylinder_vx_leg4 * t1539, grod_vx_leg4 * t1557,
+                gcross_vx_leg4 * t1575, t1381, t1479, -t1445, t1530, -t1514, -t1497, t1599, t1627,
+                t1651, t1337, -(grod_vx_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_vx_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_vx_leg4, minus_rate_rod_leg4), grod_vx_leg4, t1763,
-                t1810, t1844, t1861, t1878, -t1894,
-                gcross_vx_leg5 * t1901 + minus_gcylinder_vx_leg5 * t1903,
-                -(minus_grod_vx_leg5 * t1921), gcross_vx_leg5 * t1939, t1763, t1844, -t1810, -t1894,
-                -t1878, t1861, t1963, t1991, t2015, t1700,
+                -::overact::math::signed(grod_vx_leg4, minus_rate_rod_leg4), grod_vx_leg4, -t1762,
+                t1826, t1860, t1878, t1895, -t1911,
+                gcross_vx_leg5 * t1918 + minus_gcylinder_vx_leg5 * t1920,
+                -(minus_grod_vx_leg5 * t1938), gcross_vx_leg5 * t1956, -t1762, t1860, -t1826,
+                -t1911, -t1895, t1878, t1980, t2008, t2032, t1717,
                 minus_grod_vx_leg5 * minus_rate_dot_rod_leg5,
                 minus_grod_vx_leg5 * minus_rate_rod_leg5,
                 ::overact::math::signed(minus_grod_vx_leg5, minus_rate_rod_leg5),
-                -minus_grod_vx_leg5, t2143, t2191, t2225, t2242, t2259, -t2275,
-                gcross_vx_leg6 * t2282 + minus_gcylinder_vx_leg6 * t2284,
-                -(minus_grod_vx_leg6 * t2302), gcross_vx_leg6 * t2320, t2143, t2225, -t2191, -t2275,
-                -t2259, t2242, t2344, t2372, t2396, t2080,
+                -minus_grod_vx_leg5, t2159, t2209, t2242, t2260, t2277, -t2293,
+                gcross_vx_leg6 * t2300 + minus_gcylinder_vx_leg6 * t2302,
+                -(minus_grod_vx_leg6 * t2320), gcross_vx_leg6 * t2338, t2159, t2242, -t2209, -t2293,
+                -t2277, t2260, t2362, t2390, t2415, t2125,
                 minus_grod_vx_leg6 * minus_rate_dot_rod_leg6,
                 minus_grod_vx_leg6 * minus_rate_rod_leg6,
                 ::overact::math::signed(minus_grod_vx_leg6, minus_rate_rod_leg6),
-                -minus_grod_vx_leg6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t97, t103,
-                t2465 * t87 - t2463 * t91 + t2468 * t95, acceleration[0],
+                -minus_grod_vx_leg6, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t107, t113,
+                t2484 * t97 - t2482 * t101 + t2487 * t105, acceleration[0],
             ],
             [
-                t202, t250, t284, t300, t318, -t332,
-                gcross_vy_leg1 * t338 + minus_gcylinder_vy_leg1 * t340,
-                -(minus_grod_vy_leg1 * t358), gcross_vy_leg1 * t376, t202, t284, -t250, -t332,
-                -t318, t300, t405, t431, t457, t134, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
+                t201, t250, t286, t304, t323, -t337,
+                gcross_vy_leg1 * t343 + minus_gcylinder_vy_leg1 * t345,
+                -(minus_grod_vy_leg1 * t363), gcross_vy_leg1 * t381, t201, t286, -t250, -t337,
+                -t323, t304, t410, t435, t462, t144, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vy_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_vy_leg1, minus_rate_rod_leg1),
-                -minus_grod_vy_leg1, t622, t671, -t705, t721, t739, t753,
-                -(minus_gcross_vy_leg2 * t759 + gcylinder_vy_leg2 * t761),
-                -(minus_grod_vy_leg2 * t779), -(minus_gcross_vy_leg2 * t797), t622, -t705, -t671,
-                t753, -t739, t721, t826, t852, t878, t571,
+                -minus_grod_vy_leg1, t613, t675, -t712, t729, t748, t762,
+                -(minus_gcross_vy_leg2 * t768 + gcylinder_vy_leg2 * t770),
+                -(minus_grod_vy_leg2 * t788), -(minus_gcross_vy_leg2 * t806), t613, -t712, -t675,
+                t762, -t748, t729, t835, t862, t889, t578,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vy_leg2 * minus_rate_rod_leg2,
                 ::overact::math::signed(minus_grod_vy_leg2, minus_rate_rod_leg2),
-                -minus_grod_vy_leg2, t1008, t1051, -t1084, t1100, t1118, t1132,
-                -(minus_gcross_vy_leg3 * t1139 + gcylinder_vy_leg3 * t1141),
-                -(minus_grod_vy_leg3 * t1159), -(minus_gcross_vy_leg3 * t1176), t1008, -t1084,
-                -t1051, t1132, -t1118, t1100, t1205, t1232, t1259, t938,
+                -minus_grod_vy_leg2, t1006, t1065, -t1100, t1117, t1135, t1149,
+                -(minus_gcross_vy_leg3 * t1155 + gcylinder_vy_leg3 * t1157),
+                -(minus_grod_vy_leg3 * t1175), -(minus_gcross_vy_leg3 * t1193), t1006, -t1100,
+                -t1065, t1149, -t1135, t1117, t1222, t1248, t1274, t950,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_vy_leg3 * minus_rate_rod_leg3,
                 ::overact::math::signed(minus_grod_vy_leg3, minus_rate_rod_leg3),
-                -minus_grod_vy_leg3, t1385, t1431, -t1465, t1481, t1499, t1513,
-                -(minus_gcross_vy_leg4 * t1519 + gcylinder_vy_leg4 * t1521),
-                -(minus_grod_vy_leg4 * t1539), -(minus_gcross_vy_leg4 * t1557), t1385, -t1465,
-                -t1431, t1513, -t1499, t1481, t1586, t1613, t1639, t1318,
+                -minus_grod_vy_leg3, t1389, t1448, -t1482, t1499, t1517, t1531,
+                -(minus_gcross_vy_leg4 * t1537 + gcylinder_vy_leg4 * t1539),
+                -(minus_grod_vy_leg4 * t1557), -(minus_gcross_vy_leg4 * t1575), t1389, -t1482,
+                -t1448, t1531, -t1517, t1499, t1604, t1630, t1656, t1335,
                 minus_grod_vy_leg4 * minus_rate_dot_rod_leg4,
                 minus_grod_vy_leg4 * minus_rate_rod_leg4,
                 ::overact::math::signed(minus_grod_vy_leg4, minus_rate_rod_leg4),
-                -minus_grod_vy_leg4, t1768, t1813, t1847, -t1863, t1881, t1895,
-                gcross_vy_leg5 * t1901 - gcylinder_vy_leg5 * t1903, grod_vy_leg5 * t1921,
-                gcross_vy_leg5 * t1939, t1768, t1847, -t1813, t1895, -t1881, -t1863, t1968, t1994,
-                t2020, t1703, -(grod_vy_leg5 * minus_rate_dot_rod_leg5),
+                -minus_grod_vy_leg4, t1770, t1829, t1863, -t1880, t1898, t1912,
+                gcross_vy_leg5 * t1918 - gcylinder_vy_leg5 * t1920, grod_vy_leg5 * t1938,
+                gcross_vy_leg5 * t1956, t1770, t1863, -t1829, t1912, -t1898, -t1880, t1985, t2011,
+                t2037, t1720, -(grod_vy_leg5 * minus_rate_dot_rod_leg5),
                 -(grod_vy_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_vy_leg5, minus_rate_rod_leg5), grod_vy_leg5, t2148,
-                t2194, t2228, -t2244, t2262, t2276,
-                gcross_vy_leg6 * t2282 - gcylinder_vy_leg6 * t2284, grod_vy_leg6 * t2302,
-                gcross_vy_leg6 * t2320, t2148, t2228, -t2194, t2276, -t2262, -t2244, t2349, t2375,
-                t2401, t2083, -(grod_vy_leg6 * minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_vy_leg5, minus_rate_rod_leg5), grod_vy_leg5, t2164,
+                t2212, t2245, -t2262, t2280, t2294,
+                gcross_vy_leg6 * t2300 - gcylinder_vy_leg6 * t2302, grod_vy_leg6 * t2320,
+                gcross_vy_leg6 * t2338, t2164, t2245, -t2212, t2294, -t2280, -t2262, t2367, t2393,
+                t2420, t2127, -(grod_vy_leg6 * minus_rate_dot_rod_leg6),
                 -(grod_vy_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_vy_leg6, minus_rate_rod_leg6), grod_vy_leg6, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t121, t127, t2463 * t112 - t2465 * t115 + t2468 * t119,
+                0.0, 0.0, 0.0, 0.0, t131, t137, t2482 * t122 - t2484 * t125 + t2487 * t129,
                 acceleration[1],
             ],
             [
-                -t207, -t253, t287, t302, -t321, -t333,
-                minus_gcylinder_vz_leg1 * t340 - minus_gcross_vz_leg1 * t338,
-                -(minus_gcross_vz_leg1 * t361 + minus_gcylinder_vz_leg1 * t363),
-                -(minus_gcross_vz_leg1 * t376), -t207, t287, t253, -t333, t321, t302, -t410, -t434,
-                -t462, t472, -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
+                -t206, -t253, t289, t306, -t326, -t338,
+                minus_gcylinder_vz_leg1 * t345 - minus_gcross_vz_leg1 * t343,
+                -(minus_gcross_vz_leg1 * t366 + minus_gcylinder_vz_leg1 * t368),
+                -(minus_gcross_vz_leg1 * t381), -t206, t289, t253, -t338, t326, t306, -t415, -t438,
+                -t467, t477, -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_vz_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_vz_leg1, minus_rate_rod_leg1), grod_vz_leg1, -t627,
-                -t674, t708, t723, -t742, -t754,
-                minus_gcylinder_vz_leg2 * t761 - minus_gcross_vz_leg2 * t759,
-                -(minus_gcross_vz_leg2 * t782 + minus_gcylinder_vz_leg2 * t784),
-                -(minus_gcross_vz_leg2 * t797), -t627, t708, t674, -t754, t742, t723, -t831, -t855,
-                -t883, t893, -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
+                -::overact::math::signed(grod_vz_leg1, minus_rate_rod_leg1), grod_vz_leg1, -t619,
+                -t678, t715, t731, -t751, -t763,
+                minus_gcylinder_vz_leg2 * t770 - minus_gcross_vz_leg2 * t768,
+                -(minus_gcross_vz_leg2 * t791 + minus_gcylinder_vz_leg2 * t793),
+                -(minus_gcross_vz_leg2 * t806), -t619, t715, t678, -t763, t751, t731, -t840, -t865,
+                -t894, t904, -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_vz_leg2 * minus_rate_rod_leg2),
-                -::overact::math::signed(grod_vz_leg2, minus_rate_rod_leg2), grod_vz_leg2, -t1013,
-                -t1054, t1087, t1102, -t1121, -t1133,
-                minus_gcylinder_vz_leg3 * t1141 - minus_gcross_vz_leg3 * t1139,
-                -(minus_gcross_vz_leg3 * t1138 + minus_gcylinder_vz_leg3 * t1163),
-                -(minus_gcross_vz_leg3 * t1176), -t1013, t1087, t1054, -t1133, t1121, t1102, -t1210,
-                -t1235, -t1264, t1274, -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
+                -::overact::math::signed(grod_vz_leg2, minus_rate_rod_leg2), grod_vz_leg2, -t1012,
+                -t1068, t1103, t1119, -t1138, -t1150,
+                minus_gcylinder_vz_leg3 * t1157 - minus_gcross_vz_leg3 * t1155,
+                -(minus_gcross_vz_leg3 * t1178 + minus_gcylinder_vz_leg3 * t1180),
+                -(minus_gcross_vz_leg3 * t1193), -t1012, t1103, t1068, -t1150, t1138, t1119, -t1227,
+                -t1251, -t1279, t1289, -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_vz_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_vz_leg3, minus_rate_rod_leg3), grod_vz_leg3, -t1390,
-                -t1434, t1468, t1483, -t1502, -t1514,
-                minus_gcylinder_vz_leg4 * t1521 - minus_gcross_vz_leg4 * t1519,
-                -(minus_gcross_vz_leg4 * t1542 + minus_gcylinder_vz_leg4 * t1544),
-                -(minus_gcross_vz_leg4 * t1557), -t1390, t1468, t1434, -t1514, t1502, t1483, -t1591,
-                -t1616, -t1644, t1655, -(grod_vz_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_vz_leg3, minus_rate_rod_leg3), grod_vz_leg3, -t1395,
+                -t1451, t1485, t1501, -t1520, -t1532,
+                minus_gcylinder_vz_leg4 * t1539 - minus_gcross_vz_leg4 * t1537,
+                -(minus_gcross_vz_leg4 * t1560 + minus_gcylinder_vz_leg4 * t1562),
+                -(minus_gcross_vz_leg4 * t1575), -t1395, t1485, t1451, -t1532, t1520, t1501, -t1609,
+                -t1633, -t1661, t1671, -(grod_vz_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_vz_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_vz_leg4, minus_rate_rod_leg4), grod_vz_leg4, -t1773,
-                -t1816, t1850, t1865, -t1884, -t1896,
-                minus_gcylinder_vz_leg5 * t1903 - minus_gcross_vz_leg5 * t1901,
-                -(minus_gcross_vz_leg5 * t1924 + minus_gcylinder_vz_leg5 * t1926),
-                -(minus_gcross_vz_leg5 * t1939), -t1773, t1850, t1816, -t1896, t1884, t1865, -t1973,
-                -t1997, -t2025, t2035, -(grod_vz_leg5 * minus_rate_dot_rod_leg5),
+                -::overact::math::signed(grod_vz_leg4, minus_rate_rod_leg4), grod_vz_leg4, -t1776,
+                -t1832, t1866, t1882, -t1901, -t1913,
+                minus_gcylinder_vz_leg5 * t1920 - minus_gcross_vz_leg5 * t1918,
+                -(minus_gcross_vz_leg5 * t1941 + minus_gcylinder_vz_leg5 * t1943),
+                -(minus_gcross_vz_leg5 * t1956), -t1776, t1866, t1832, -t1913, t1901, t1882, -t1990,
+                -t2014, -t2042, t2052, -(grod_vz_leg5 * minus_rate_dot_rod_leg5),
                 -(grod_vz_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_vz_leg5, minus_rate_rod_leg5), grod_vz_leg5, -t2153,
-                -t2197, t2231, t2246, -t2265, -t2277,
-                minus_gcylinder_vz_leg6 * t2284 - minus_gcross_vz_leg6 * t2282,
-                -(minus_gcross_vz_leg6 * t2305 + minus_gcylinder_vz_leg6 * t2307),
-                -(minus_gcross_vz_leg6 * t2320), -t2153, t2231, t2197, -t2277, t2265, t2246, -t2354,
-                -t2378, -t2406, t2416, -(grod_vz_leg6 * minus_rate_dot_rod_leg6),
+                -::overact::math::signed(grod_vz_leg5, minus_rate_rod_leg5), grod_vz_leg5, -t2169,
+                -t2215, t2248, t2264, -t2283, -t2295,
+                minus_gcylinder_vz_leg6 * t2302 - minus_gcross_vz_leg6 * t2300,
+                -(minus_gcross_vz_leg6 * t2323 + minus_gcylinder_vz_leg6 * t2325),
+                -(minus_gcross_vz_leg6 * t2338), -t2169, t2248, t2215, -t2295, t2283, t2264, -t2372,
+                -t2396, -t2425, t2435, -(grod_vz_leg6 * minus_rate_dot_rod_leg6),
                 -(grod_vz_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_vz_leg6, minus_rate_rod_leg6), grod_vz_leg6, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t144, t150, t2463 * t137 + t2465 * t139 - t2468 * t142, t1654,
+                0.0, 0.0, 0.0, 0.0, t154, t160, t2482 * t147 + t2484 * t149 - t2487 * t152, t2600,
             ],
             [
-                t218, t256, -t290, t304, t324, t334,
-                -(minus_gcross_wx_leg1 * t338 + gcylinder_wx_leg1 * t340),
-                gcylinder_wx_leg1 * t363 - minus_gcross_wx_leg1 * t361,
-                -(minus_gcross_wx_leg1 * t376), t218, -t290, -t256, t334, -t324, t304,
-                -(t210 * t410 + t208 * t405), -(t210 * t434 + t208 * t431),
-                -(t210 * t462 + t208 * t457), t210 * t472 - t208 * t134,
+                t216, t256, -t292, t308, t329, t339,
+                -(minus_gcross_wx_leg1 * t343 + gcylinder_wx_leg1 * t345),
+                gcylinder_wx_leg1 * t368 - minus_gcross_wx_leg1 * t366,
+                -(minus_gcross_wx_leg1 * t381), t216, -t292, -t256, t339, -t329, t308,
+                -(t208 * t415 + t58 * t410), -(t208 * t438 + t58 * t435),
+                -(t208 * t467 + t58 * t462), t208 * t477 - t58 * t144,
                 -(grod_wx_leg1 * minus_rate_dot_rod_leg1), -(grod_wx_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_wx_leg1, minus_rate_rod_leg1), grod_wx_leg1, t638,
-                t677, t711, -t725, t745, t755,
-                gcross_wx_leg2 * t759 - minus_minus_gcylinder_wx_leg2 * t761,
-                gcross_wx_leg2 * t782 + minus_minus_gcylinder_wx_leg2 * t784, gcross_wx_leg2 * t797,
-                t638, t711, -t677, t755, -t745, -t725, t630 * t831 + t628 * t826,
-                t630 * t855 + t628 * t852, t630 * t883 + t628 * t878, t628 * t571 - t630 * t893,
-                minus_grod_wx_leg2 * minus_rate_dot_rod_leg2,
-                minus_grod_wx_leg2 * minus_rate_rod_leg2,
-                ::overact::math::signed(minus_grod_wx_leg2, minus_rate_rod_leg2),
-                -minus_grod_wx_leg2, t1022, t1057, t1090, t1104, t1124, -t1134,
-                gcross_wx_leg3 * t1139 + minus_gcylinder_wx_leg3 * t1141,
-                gcross_wx_leg3 * t1138 - minus_gcylinder_wx_leg3 * t1163, gcross_wx_leg3 * t1176,
-                t1022, t1090, -t1057, -t1134, -t1124, t1104, -(t33 * t1210 + t21 * t1205),
-                -(t33 * t1235 + t21 * t1232), -(t33 * t1264 + t21 * t1259),
-                t33 * t1274 - t21 * t938, -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
+                -::overact::math::signed(grod_wx_leg1, minus_rate_rod_leg1), grod_wx_leg1, t631,
+                -t681, t718, t733, -t754, -t764,
+                minus_gcylinder_wx_leg2 * t770 - minus_gcross_wx_leg2 * t768,
+                -(minus_gcross_wx_leg2 * t791 + minus_gcylinder_wx_leg2 * t793),
+                -(minus_gcross_wx_leg2 * t806), t631, t718, t681, -t764, t754, t733,
+                -(t623 * t840 - t620 * t835), -(t623 * t865 - t620 * t862),
+                -(t623 * t894 - t620 * t889), t623 * t904 + t620 * t578,
+                -(grod_wx_leg2 * minus_rate_dot_rod_leg2), -(grod_wx_leg2 * minus_rate_rod_leg2),
+                -::overact::math::signed(grod_wx_leg2, minus_rate_rod_leg2), grod_wx_leg2, -t1021,
+                t1071, t1106, t1121, t1141, -t1151,
+                gcross_wx_leg3 * t1155 + minus_gcylinder_wx_leg3 * t1157,
+                gcross_wx_leg3 * t1178 - minus_gcylinder_wx_leg3 * t1180, gcross_wx_leg3 * t1193,
+                -t1021, t1106, -t1071, -t1151, -t1141, t1121, -(t34 * t1227 + t22 * t1222),
+                -(t34 * t1251 + t22 * t1248), -(t34 * t1279 + t22 * t1274),
+                t34 * t1289 - t22 * t950, -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_wx_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_wx_leg3, minus_rate_rod_leg3), grod_wx_leg3, t1399,
-                t1437, t1471, t1485, t1505, -t1515,
-                gcross_wx_leg4 * t1519 + minus_gcylinder_wx_leg4 * t1521,
-                gcross_wx_leg4 * t1542 - minus_gcylinder_wx_leg4 * t1544, gcross_wx_leg4 * t1557,
-                t1399, t1471, -t1437, -t1515, -t1505, t1485, -(t523 * t1591 + t521 * t1586),
-                -(t523 * t1616 + t521 * t1613), -(t523 * t1644 + t521 * t1639),
-                t523 * t1655 - t521 * t1318, -(grod_wx_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_wx_leg3, minus_rate_rod_leg3), grod_wx_leg3, -t1404,
+                t1454, t1488, t1503, t1523, -t1533,
+                gcross_wx_leg4 * t1537 + minus_gcylinder_wx_leg4 * t1539,
+                gcross_wx_leg4 * t1560 - minus_gcylinder_wx_leg4 * t1562, gcross_wx_leg4 * t1575,
+                -t1404, t1488, -t1454, -t1533, -t1523, t1503, -(t528 * t1609 + t526 * t1604),
+                -(t528 * t1633 + t526 * t1630), -(t528 * t1661 + t526 * t1656),
+                t528 * t1671 - t526 * t1335, -(grod_wx_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_wx_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_wx_leg4, minus_rate_rod_leg4), grod_wx_leg4, t1782,
-                t1819, t1853, -t1867, t1887, t1897,
-                gcross_wx_leg5 * t1901 - gcylinder_wx_leg5 * t1903,
-                gcross_wx_leg5 * t1924 + gcylinder_wx_leg5 * t1926, gcross_wx_leg5 * t1939, t1782,
-                t1853, -t1819, t1897, -t1887, -t1867, t38 * t1973 + t42 * t1968,
-                t38 * t1997 + t42 * t1994, t38 * t2025 + t42 * t2020, t42 * t1703 - t38 * t2035,
+                -::overact::math::signed(grod_wx_leg4, minus_rate_rod_leg4), grod_wx_leg4, t1785,
+                t1835, t1869, -t1884, t1904, t1914,
+                gcross_wx_leg5 * t1918 - gcylinder_wx_leg5 * t1920,
+                gcross_wx_leg5 * t1941 + gcylinder_wx_leg5 * t1943, gcross_wx_leg5 * t1956, t1785,
+                t1869, -t1835, t1914, -t1904, -t1884, t39 * t1990 + t43 * t1985,
+                t39 * t2014 + t43 * t2011, t39 * t2042 + t43 * t2037, t43 * t1720 - t39 * t2052,
                 -(grod_wx_leg5 * minus_rate_dot_rod_leg5), -(grod_wx_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_wx_leg5, minus_rate_rod_leg5), grod_wx_leg5, -t2162,
-                -t2200, t2234, t2248, -t2268, -t2278,
-                minus_gcylinder_wx_leg6 * t2284 - minus_gcross_wx_leg6 * t2282,
-                -(minus_gcross_wx_leg6 * t2305 + minus_gcylinder_wx_leg6 * t2307),
-                -(minus_gcross_wx_leg6 * t2320), -t2162, t2234, t2200, -t2278, t2268, t2248,
-                -(t528 * t2354 + t526 * t2349), -(t528 * t2378 + t526 * t2375),
-                -(t528 * t2406 + t526 * t2401), t528 * t2416 - t526 * t2083,
+                -::overact::math::signed(grod_wx_leg5, minus_rate_rod_leg5), grod_wx_leg5, -t2178,
+                -t2218, t2251, t2266, -t2286, -t2296,
+                minus_gcylinder_wx_leg6 * t2302 - minus_gcross_wx_leg6 * t2300,
+                -(minus_gcross_wx_leg6 * t2323 + minus_gcylinder_wx_leg6 * t2325),
+                -(minus_gcross_wx_leg6 * t2338), -t2178, t2251, t2218, -t2296, t2286, t2266,
+                -(t533 * t2372 + t531 * t2367), -(t533 * t2396 + t531 * t2393),
+                -(t533 * t2425 + t531 * t2420), t533 * t2435 - t531 * t2127,
                 -(grod_wx_leg6 * minus_rate_dot_rod_leg6), -(grod_wx_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_wx_leg6, minus_rate_rod_leg6), grod_wx_leg6,
-                t51 * t2456 + t2472 - t2480, t51 * t2497 + t53 * t2500 + t2463 * t2505,
-                t51 * t2523 + t53 * t2526 + t2463 * t2529, t53 * t2496 - t2543 + t2480,
-                t51 * t2554 + t53 * t2556 + t2463 * t2559, t2543 - t2472 + t2463 * t2522,
-                t26 * t1654 - t15 * acceleration[1], t31 * t1654 - t19 * acceleration[1],
-                t2465 * t1654 - t2468 * acceleration[1], 0.0,
+                t52 * t2475 + t2491 - t2499, t52 * t2516 + t53 * t2519 + t2482 * t2524,
+                t52 * t2542 + t53 * t2545 + t2482 * t2548, t53 * t2515 - t2562 + t2499,
+                t52 * t2573 + t53 * t2575 + t2482 * t2578, t2562 - t2491 + t2482 * t2541,
+                t27 * t2600 - t16 * acceleration[1], t32 * t2600 - t20 * acceleration[1],
+                t2484 * t2600 - t2487 * acceleration[1], 0.0,
             ],
             [
-                t228, t259, t293, -t306, t327, t335,
-                gcross_wy_leg1 * t338 - gcylinder_wy_leg1 * t340,
-                gcross_wy_leg1 * t361 + gcylinder_wy_leg1 * t363, gcross_wy_leg1 * t376, t228, t293,
-                -t259, t335, -t327, -t306, t208 * t400 + t219 * t410, t208 * t428 + t219 * t434,
-                t208 * t452 + t219 * t462, t208 * t110 - t219 * t472,
+                t225, t259, t295, -t310, t332, t340,
+                gcross_wy_leg1 * t343 - gcylinder_wy_leg1 * t345,
+                gcross_wy_leg1 * t366 + gcylinder_wy_leg1 * t368, gcross_wy_leg1 * t381, t225, t295,
+                -t259, t340, -t332, -t310, t58 * t405 + t55 * t415, t58 * t432 + t55 * t438,
+                t58 * t457 + t55 * t467, t58 * t120 - t55 * t477,
                 minus_grod_wy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_wy_leg1 * minus_rate_rod_leg1,
                 ::overact::math::signed(minus_grod_wy_leg1, minus_rate_rod_leg1),
-                -minus_grod_wy_leg1, t648, t680, t714, -t727, t748, -t756,
-                gcross_wy_leg2 * t759 + minus_gcylinder_wy_leg2 * t761,
-                gcross_wy_leg2 * t782 - minus_gcylinder_wy_leg2 * t784, gcross_wy_leg2 * t797, t648,
-                t714, -t680, -t756, -t748, -t727, -(t628 * t821 + t639 * t831),
-                -(t628 * t849 + t639 * t855), -(t628 * t873 + t639 * t883),
-                t639 * t893 - t628 * t566, -(minus_minus_grod_wy_leg2 * minus_rate_dot_rod_leg2),
-                -(minus_minus_grod_wy_leg2 * minus_rate_rod_leg2),
-                -::overact::math::signed(minus_minus_grod_wy_leg2, minus_rate_rod_leg2),
-                minus_minus_grod_wy_leg2, t1031, t1060, t1093, -t1106, t1127, t1135,
-                gcross_wy_leg3 * t1139 - gcylinder_wy_leg3 * t1141,
-                gcross_wy_leg3 * t1138 + gcylinder_wy_leg3 * t1163, gcross_wy_leg3 * t1176, t1031,
-                t1093, -t1060, t1135, -t1127, -t1106, t21 * t1200 + t55 * t1210,
-                t21 * t1229 + t55 * t1235, t21 * t1254 + t55 * t1264, t21 * t940 - t55 * t1274,
+                -minus_grod_wy_leg1, t640, t684, t721, -t735, t757, t765,
+                gcross_wy_leg2 * t768 - gcylinder_wy_leg2 * t770,
+                gcross_wy_leg2 * t791 + gcylinder_wy_leg2 * t793, gcross_wy_leg2 * t806, t640, t721,
+                -t684, t765, -t757, -t735, t545 * t840 - t620 * t830, t545 * t865 - t620 * t859,
+                t545 * t894 - t620 * t884, -(t620 * t573 + t545 * t904),
+                minus_grod_wy_leg2 * minus_rate_dot_rod_leg2,
+                minus_grod_wy_leg2 * minus_rate_rod_leg2,
+                ::overact::math::signed(minus_grod_wy_leg2, minus_rate_rod_leg2),
+                -minus_grod_wy_leg2, t1030, t1074, t1109, -t1123, t1144, t1152,
+                gcross_wy_leg3 * t1155 - gcylinder_wy_leg3 * t1157,
+                gcross_wy_leg3 * t1178 + gcylinder_wy_leg3 * t1180, gcross_wy_leg3 * t1193, t1030,
+                t1109, -t1074, t1152, -t1144, -t1123, t22 * t1217 + t68 * t1227,
+                t22 * t1245 + t68 * t1251, t22 * t1269 + t68 * t1279, t22 * t952 - t68 * t1289,
                 -(grod_wy_leg3 * minus_rate_dot_rod_leg3), -(grod_wy_leg3 * minus_rate_rod_leg3),
-                -::overact::math::signed(grod_wy_leg3, minus_rate_rod_leg3), grod_wy_leg3, t1408,
-                t1440, t1474, -t1487, t1508, t1516,
-                gcross_wy_leg4 * t1519 - gcylinder_wy_leg4 * t1521,
-                gcross_wy_leg4 * t1542 + gcylinder_wy_leg4 * t1544, gcross_wy_leg4 * t1557, t1408,
-                t1474, -t1440, t1516, -t1508, -t1487, t521 * t1581 + t535 * t1591,
-                t521 * t1610 + t535 * t1616, t521 * t1634 + t535 * t1644,
-                t521 * t1320 - t535 * t1655, -(grod_wy_leg4 * minus_rate_dot_rod_leg4),
+                -::overact::math::signed(grod_wy_leg3, minus_rate_rod_leg3), grod_wy_leg3, t1413,
+                t1457, t1491, -t1505, t1526, t1534,
+                gcross_wy_leg4 * t1537 - gcylinder_wy_leg4 * t1539,
+                gcross_wy_leg4 * t1560 + gcylinder_wy_leg4 * t1562, gcross_wy_leg4 * t1575, t1413,
+                t1491, -t1457, t1534, -t1526, -t1505, t526 * t1599 + t540 * t1609,
+                t526 * t1627 + t540 * t1633, t526 * t1651 + t540 * t1661,
+                t526 * t1337 - t540 * t1671, -(grod_wy_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_wy_leg4 * minus_rate_rod_leg4),
-                -::overact::math::signed(grod_wy_leg4, minus_rate_rod_leg4), grod_wy_leg4, t1791,
-                t1822, -t1856, t1869, t1890, t1898,
-                -(minus_gcross_wy_leg5 * t1901 + gcylinder_wy_leg5 * t1903),
-                gcylinder_wy_leg5 * t1926 - minus_gcross_wy_leg5 * t1924,
-                -(minus_gcross_wy_leg5 * t1939), t1791, -t1856, -t1822, t1898, -t1890, t1869,
-                -(t42 * t1963 + t62 * t1973), -(t42 * t1991 + t62 * t1997),
-                -(t42 * t2015 + t62 * t2025), t62 * t2035 - t42 * t1700,
+                -::overact::math::signed(grod_wy_leg4, minus_rate_rod_leg4), grod_wy_leg4, t1794,
+                t1838, -t1872, t1886, t1907, t1915,
+                -(minus_gcross_wy_leg5 * t1918 + gcylinder_wy_leg5 * t1920),
+                gcylinder_wy_leg5 * t1943 - minus_gcross_wy_leg5 * t1941,
+                -(minus_gcross_wy_leg5 * t1956), t1794, -t1872, -t1838, t1915, -t1907, t1886,
+                -(t43 * t1980 + t67 * t1990), -(t43 * t2008 + t67 * t2014),
+                -(t43 * t2032 + t67 * t2042), t67 * t2052 - t43 * t1717,
                 -(grod_wy_leg5 * minus_rate_dot_rod_leg5), -(grod_wy_leg5 * minus_rate_rod_leg5),
-                -::overact::math::signed(grod_wy_leg5, minus_rate_rod_leg5), grod_wy_leg5, t2171,
-                t2203, t2237, -t2250, t2271, t2279,
-                gcross_wy_leg6 * t2282 - gcylinder_wy_leg6 * t2284,
-                gcross_wy_leg6 * t2305 + gcylinder_wy_leg6 * t2307, gcross_wy_leg6 * t2320, t2171,
-                t2237, -t2203, t2279, -t2271, -t2250, t526 * t2344 + t539 * t2354,
-                t526 * t2372 + t539 * t2378, t526 * t2396 + t539 * t2406,
-                t526 * t2080 - t539 * t2416, minus_grod_wy_leg6 * minus_rate_dot_rod_leg6,
+                -::overact::math::signed(grod_wy_leg5, minus_rate_rod_leg5), grod_wy_leg5, t2187,
+                t2221, t2254, -t2268, t2289, -t2297,
+                gcross_wy_leg6 * t2300 + minus_gcylinder_wy_leg6 * t2302,
+                gcross_wy_leg6 * t2323 - minus_gcylinder_wy_leg6 * t2325, gcross_wy_leg6 * t2338,
+                t2187, t2254, -t2221, -t2297, -t2289, -t2268, t531 * t2362 - t546 * t2372,
+                t531 * t2390 - t546 * t2396, t531 * t2415 - t546 * t2425,
+                t531 * t2125 + t546 * t2435, minus_grod_wy_leg6 * minus_rate_dot_rod_leg6,
                 minus_grod_wy_leg6 * minus_rate_rod_leg6,
                 ::overact::math::signed(minus_grod_wy_leg6, minus_rate_rod_leg6),
-                -minus_grod_wy_leg6, t26 * t2456 + t2483 - t2485,
-                t26 * t2497 + t31 * t2500 + t2465 * t2505,
-                t26 * t2523 + t31 * t2526 + t2465 * t2529, t31 * t2496 - t2547 + t2485,
-                t26 * t2554 + t31 * t2556 + t2465 * t2559, t2547 - t2483 + t2465 * t2522,
-                t15 * acceleration[0] - t51 * t1654, t19 * acceleration[0] - t53 * t1654,
-                t2468 * acceleration[0] - t2463 * t1654, 0.0,
+                -minus_grod_wy_leg6, t27 * t2475 + t2502 - t2504,
+                t27 * t2516 + t32 * t2519 + t2484 * t2524,
+                t27 * t2542 + t32 * t2545 + t2484 * t2548, t32 * t2515 - t2566 + t2504,
+                t27 * t2573 + t32 * t2575 + t2484 * t2578, t2566 - t2502 + t2484 * t2541,
+                t16 * acceleration[0] - t52 * t2600, t20 * acceleration[0] - t53 * t2600,
+                t2487 * acceleration[0] - t2482 * t2600, 0.0,
             ],
             [
-                t237, t262, t296, t308, t330, -t336,
-                gcross_wz_leg1 * t338 + minus_gcylinder_wz_leg1 * t340, grod_wz_leg1 * t358,
-                gcross_wz_leg1 * t376, t237, t296, -t262, -t336, -t330, t308,
-                t219 * t405 - t210 * t400, t219 * t431 - t210 * t428, t219 * t457 - t210 * t452,
-                t219 * t134 - t210 * t110, -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
+                t234, t262, t298, t312, t335, -t341,
+                gcross_wz_leg1 * t343 + minus_gcylinder_wz_leg1 * t345, grod_wz_leg1 * t363,
+                gcross_wz_leg1 * t381, t234, t298, -t262, -t341, -t335, t312,
+                t55 * t410 - t208 * t405, t55 * t435 - t208 * t432, t55 * t462 - t208 * t457,
+                t55 * t144 - t208 * t120, -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_wz_leg1 * minus_rate_rod_leg1),
-                -::overact::math::signed(grod_wz_leg1, minus_rate_rod_leg1), grod_wz_leg1, t657,
-                t683, t717, -t729, t751, t757, gcross_wz_leg2 * t759 - gcylinder_wz_leg2 * t761,
-                grod_wz_leg2 * t779, gcross_wz_leg2 * t797, t657, t717, -t683, t757, -t751, -t729,
-                t630 * t821 - t639 * t826, t630 * t849 - t639 * t852, t630 * t873 - t639 * t878,
-                t630 * t566 - t639 * t571, -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                -::overact::math::signed(grod_wz_leg1, minus_rate_rod_leg1), grod_wz_leg1, t649,
+                t687, t724, -t737, t760, t766, gcross_wz_leg2 * t768 - gcylinder_wz_leg2 * t770,
+                grod_wz_leg2 * t788, gcross_wz_leg2 * t806, t649, t724, -t687, t766, -t760, -t737,
+                t545 * t835 - t623 * t830, t545 * t862 - t623 * t859, t545 * t889 - t623 * t884,
+                t545 * t578 - t623 * t573, -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wz_leg2 * minus_rate_rod_leg2),
-                -::overact::math::signed(grod_wz_leg2, minus_rate_rod_leg2), grod_wz_leg2, t1040,
-                t1063, -t1096, t1108, t1130, t1136,
-                -(minus_gcross_wz_leg3 * t1139 + gcylinder_wz_leg3 * t1141),
-                -(minus_grod_wz_leg3 * t1159), -(minus_gcross_wz_leg3 * t1176), t1040, -t1096,
-                -t1063, t1136, -t1130, t1108, t55 * t1205 - t33 * t1200, t55 * t1232 - t33 * t1229,
-                t55 * t1259 - t33 * t1254, t55 * t938 - t33 * t940,
+                -::overact::math::signed(grod_wz_leg2, minus_rate_rod_leg2), grod_wz_leg2, t1039,
+                t1077, -t1112, t1125, t1147, t1153,
+                -(minus_gcross_wz_leg3 * t1155 + gcylinder_wz_leg3 * t1157),
+                -(minus_grod_wz_leg3 * t1175), -(minus_gcross_wz_leg3 * t1193), t1039, -t1112,
+                -t1077, t1153, -t1147, t1125, t68 * t1222 - t34 * t1217, t68 * t1248 - t34 * t1245,
+                t68 * t1274 - t34 * t1269, t68 * t950 - t34 * t952,
                 minus_grod_wz_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_wz_leg3 * minus_rate_rod_leg3,
                 ::overact::math::signed(minus_grod_wz_leg3, minus_rate_rod_leg3),
-                -minus_grod_wz_leg3, t1417, t1443, -t1477, t1489, t1511, t1517,
-                -(minus_gcross_wz_leg4 * t1519 + gcylinder_wz_leg4 * t1521),
-                -(minus_grod_wz_leg4 * t1539), -(minus_gcross_wz_leg4 * t1557), t1417, -t1477,
-                -t1443, t1517, -t1511, t1489, t535 * t1586 - t523 * t1581,
-                t535 * t1613 - t523 * t1610, t535 * t1639 - t523 * t1634,
-                t535 * t1318 - t523 * t1320, minus_grod_wz_leg4 * minus_rate_dot_rod_leg4,
+                -minus_grod_wz_leg3, t1422, t1460, -t1494, t1507, t1529, t1535,
+                -(minus_gcross_wz_leg4 * t1537 + gcylinder_wz_leg4 * t1539),
+                -(minus_grod_wz_leg4 * t1557), -(minus_gcross_wz_leg4 * t1575), t1422, -t1494,
+                -t1460, t1535, -t1529, t1507, t540 * t1604 - t528 * t1599,
+                t540 * t1630 - t528 * t1627, t540 * t1656 - t528 * t1651,
+                t540 * t1335 - t528 * t1337, minus_grod_wz_leg4 * minus_rate_dot_rod_leg4,
                 minus_grod_wz_leg4 * minus_rate_rod_leg4,
                 ::overact::math::signed(minus_grod_wz_leg4, minus_rate_rod_leg4),
-                -minus_grod_wz_leg4, t1800, t1825, t1859, t1871, t1893, -t1899,
-                gcross_wz_leg5 * t1901 + minus_gcylinder_wz_leg5 * t1903,
-                -(minus_grod_wz_leg5 * t1921), gcross_wz_leg5 * t1939, t1800, t1859, -t1825, -t1899,
-                -t1893, t1871, t38 * t1963 - t62 * t1968, t38 * t1991 - t62 * t1994,
-                t38 * t2015 - t62 * t2020, t38 * t1700 - t62 * t1703,
+                -minus_grod_wz_leg4, -t1803, t1841, t1875, t1888, t1910, -t1916,
+                gcross_wz_leg5 * t1918 + minus_gcylinder_wz_leg5 * t1920,
+                -(minus_grod_wz_leg5 * t1938), gcross_wz_leg5 * t1956, -t1803, t1875, -t1841,
+                -t1916, -t1910, t1888, t39 * t1980 - t67 * t1985, t39 * t2008 - t67 * t2011,
+                t39 * t2032 - t67 * t2037, t39 * t1717 - t67 * t1720,
                 minus_grod_wz_leg5 * minus_rate_dot_rod_leg5,
                 minus_grod_wz_leg5 * minus_rate_rod_leg5,
                 ::overact::math::signed(minus_grod_wz_leg5, minus_rate_rod_leg5),
-                -minus_grod_wz_leg5, t2180, t2206, t2240, -t2252, t2274, t2280,
-                gcross_wz_leg6 * t2282 - gcylinder_wz_leg6 * t2284, grod_wz_leg6 * t2302,
-                gcross_wz_leg6 * t2320, t2180, t2240, -t2206, t2280, -t2274, -t2252,
-                t539 * t2349 - t528 * t2344, t539 * t2375 - t528 * t2372,
-                t539 * t2401 - t528 * t2396, t539 * t2083 - t528 * t2080,
+                -minus_grod_wz_leg5, t2196, t2224, -t2257, -t2270, t2292, t2298,
+                -(minus_gcross_wz_leg6 * t2300 + gcylinder_wz_leg6 * t2302), grod_wz_leg6 * t2320,
+                -(minus_gcross_wz_leg6 * t2338), t2196, -t2257, -t2224, t2298, -t2292, -t2270,
+                -(t546 * t2367 + t533 * t2362), -(t546 * t2393 + t533 * t2390),
+                -(t546 * t2420 + t533 * t2415), -(t546 * t2127 + t533 * t2125),
                 -(grod_wz_leg6 * minus_rate_dot_rod_leg6), -(grod_wz_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_wz_leg6, minus_rate_rod_leg6), grod_wz_leg6,
-                t15 * t2456 + t2488 - t2490, t15 * t2497 + t19 * t2500 + t2468 * t2505,
-                t15 * t2523 + t19 * t2526 + t2468 * t2529, t19 * t2496 - t2551 + t2490,
-                t15 * t2554 + t19 * t2556 + t2468 * t2559, t2551 - t2488 + t2468 * t2522,
-                t51 * acceleration[1] - t26 * acceleration[0],
-                t53 * acceleration[1] - t31 * acceleration[0],
-                t2463 * acceleration[1] - t2465 * acceleration[0], 0.0,
+                t16 * t2475 + t2507 - t2509, t16 * t2516 + t20 * t2519 + t2487 * t2524,
+                t16 * t2542 + t20 * t2545 + t2487 * t2548, t20 * t2515 - t2570 + t2509,
+                t16 * t2573 + t20 * t2575 + t2487 * t2578, t2570 - t2507 + t2487 * t2541,
+                t52 * acceleration[1] - t27 * acceleration[0],
+                t53 * acceleration[1] - t32 * acceleration[0],
+                t2482 * acceleration[1] - t2484 * acceleration[0], 0.0,
             ],
         ])
     }
@@ -6303,7 +6312,7 @@ impl Hexapod {
     /// Output: 6 x 148.
     /// Columns: `PARAMETERS`.
     ///
-    /// 3239 operations (1247 additions, 1922 multiplications, 70 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2636 intermediates.
+    /// 3239 operations (1244 additions, 1922 multiplications, 73 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2636 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6369,151 +6378,151 @@ impl Hexapod {
         ::overact::guard::reach(t61, "leg1")?;
         let t62 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(t62, 0.5619721604570214, "leg1")?;
-        let t63 = 1.0 / t62;
-        let grod_vx_leg1 = t18 * t63;
-        let minus_minus_grod_vy_leg1 = t32 * t63;
         let c_cylinder_leg1 = t52 / t62;
+        let grod_vx_leg1 = t18 / t62;
+        let t66 = t14 - t13;
+        let t67 = t6 - t11;
+        let t68 = t66 + t67;
+        let t70 = pose[0] - t68 - 0.3912590402935223;
+        let t72 = t28 - t27;
+        let t73 = t21 - t25;
+        let t74 = t72 + t73;
+        let t76 = pose[1] - t74 - 0.08316467632710373;
+        let t78 = 0.9781476007338057 * t70 + 0.20791169081775931 * t76;
+        let t80 = t46 - t45;
+        let t81 = t39 - t43;
+        let t82 = t80 + t81;
+        let t83 = pose[2] - t82;
+        let t85 = t78 * t78 + t83 * t83;
+        let t88 = 0.20791169081775931 * t70 - 0.9781476007338057 * t76;
+        let t90 = t85 + t88 * t88;
+        ::overact::guard::reach(t90, "leg2")?;
+        let t91 = ::overact::math::sqrt(t90);
+        ::overact::guard::leg(t91, 0.5619721604570214, "leg2")?;
+        let t92 = 1.0 / t91;
+        let grod_vx_leg2 = t70 * t92;
+        let t95 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
+        let t97 = pose[0] + t12 + 0.12360679774997894;
+        let t99 = pose[1] + t26 - 0.3804226065180615;
+        let t102 = 0.9510565162951536 * t99 - 0.30901699437494734 * t97;
+        let t104 = pose[2] + t44;
+        let t106 = t102 * t102 + t104 * t104;
+        let t109 = 0.9510565162951536 * t97 + 0.30901699437494734 * t99;
+        let t111 = t106 + t109 * t109;
+        ::overact::guard::reach(t111, "leg3")?;
+        let t112 = ::overact::math::sqrt(t111);
+        ::overact::guard::leg(t112, 0.5619721604570214, "leg3")?;
+        let t113 = 1.0 / t112;
+        let minus_minus_grod_vx_leg3 = t97 * t113;
+        let t118 = pose[0] + t66 + 0.2676522425435432;
+        let t120 = pose[1] + t72 - 0.2972579301909578;
+        let t123 = 0.7431448254773945 * t120 - 0.6691306063588579 * t118;
+        let t125 = pose[2] + t80;
+        let t127 = t123 * t123 + t125 * t125;
+        let t130 = 0.7431448254773945 * t118 + 0.6691306063588579 * t120;
+        let t132 = t127 + t130 * t130;
+        ::overact::guard::reach(t132, "leg4")?;
+        let t133 = ::overact::math::sqrt(t132);
+        ::overact::guard::leg(t133, 0.5619721604570214, "leg4")?;
+        let t134 = 1.0 / t133;
+        let minus_minus_grod_vx_leg4 = t118 * t134;
+        let t139 = pose[0] - t15 + 0.2676522425435432;
+        let t142 = pose[1] - t29 + 0.2972579301909578;
+        let t144 = 0.6691306063588579 * t139 + 0.7431448254773945 * t142;
+        let t146 = pose[2] - t47;
+        let t148 = t144 * t144 + t146 * t146;
+        let t151 = 0.6691306063588579 * t142 - 0.7431448254773945 * t139;
+        let t153 = t148 + t151 * t151;
+        ::overact::guard::reach(t153, "leg5")?;
+        let t154 = ::overact::math::sqrt(t153);
+        ::overact::guard::leg(t154, 0.5619721604570214, "leg5")?;
+        let minus_minus_grod_vx_leg5 = t139 / t154;
+        let t159 = pose[0] + t67 + 0.12360679774997894;
+        let t162 = pose[1] + t73 + 0.3804226065180615;
+        let t164 = 0.30901699437494734 * t159 + 0.9510565162951536 * t162;
+        let t166 = pose[2] + t81;
+        let t168 = t164 * t164 + t166 * t166;
+        let t171 = 0.30901699437494734 * t162 - 0.9510565162951536 * t159;
+        let t173 = t168 + t171 * t171;
+        ::overact::guard::reach(t173, "leg6")?;
+        let t174 = ::overact::math::sqrt(t173);
+        ::overact::guard::leg(t174, 0.5619721604570214, "leg6")?;
+        let t175 = 1.0 / t174;
+        let minus_minus_grod_vx_leg6 = t159 * t175;
+        let t178 = t95 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
+            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
+            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
+            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
+        ::overact::guard::platform(t178, 0.625174737048712, "actuators")?;
+        ::overact::guard::platform(t178, 0.625174737048712, "actuators")?;
+        let t179 = 1.0 / t178;
+        let minus_minus_grod_vy_leg1 = t32 / t62;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
         let grod_wy_leg1 = t48 * grod_vx_leg1 - t16 * grod_vz_leg1;
-        let t71 = grod_wy_leg1 * actuator_velocities[0];
-        let t72 = t46 - t45;
-        let t73 = t39 - t43;
-        let t74 = t72 + t73;
-        let t75 = t14 - t13;
-        let t76 = t6 - t11;
-        let t77 = t75 + t76;
-        let t79 = pose[0] - t77 - 0.3912590402935223;
-        let t81 = t28 - t27;
-        let t82 = t21 - t25;
-        let t83 = t81 + t82;
-        let t85 = pose[1] - t83 - 0.08316467632710373;
-        let t87 = 0.9781476007338057 * t79 + 0.20791169081775931 * t85;
-        let t89 = pose[2] - t74;
-        let t91 = t87 * t87 + t89 * t89;
-        let t94 = 0.20791169081775931 * t79 - 0.9781476007338057 * t85;
-        let t96 = t91 + t94 * t94;
-        ::overact::guard::reach(t96, "leg2")?;
-        let t97 = ::overact::math::sqrt(t96);
-        ::overact::guard::leg(t97, 0.5619721604570214, "leg2")?;
-        let grod_vx_leg2 = t79 / t97;
-        let t100 = ::overact::math::sqrt(t91);
-        ::overact::guard::leg(t100, 0.5513142860385972, "leg2")?;
-        let t101 = 1.0 / t100;
-        let c_cross_leg2 = t89 * t101;
-        let t103 = 1.0 / t97;
-        let c_cylinder_leg2 = t100 * t103;
+        let t185 = grod_wy_leg1 * actuator_velocities[0];
+        let t187 = ::overact::math::sqrt(t85);
+        ::overact::guard::leg(t187, 0.5513142860385972, "leg2")?;
+        let c_cross_leg2 = t83 / t187;
+        let c_cylinder_leg2 = t187 * t92;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let grod_wy_leg2 = t77 * grod_vz_leg2 - t74 * grod_vx_leg2;
-        let t108 = grod_wy_leg2 * actuator_velocities[1];
-        let t111 = pose[0] + t12 + 0.12360679774997894;
-        let t113 = pose[1] + t26 - 0.3804226065180615;
-        let t116 = 0.9510565162951536 * t113 - 0.30901699437494734 * t111;
-        let t118 = pose[2] + t44;
-        let t120 = t116 * t116 + t118 * t118;
-        let t123 = 0.9510565162951536 * t111 + 0.30901699437494734 * t113;
-        let t125 = t120 + t123 * t123;
-        ::overact::guard::reach(t125, "leg3")?;
-        let t126 = ::overact::math::sqrt(t125);
-        ::overact::guard::leg(t126, 0.5619721604570214, "leg3")?;
-        let minus_minus_grod_vx_leg3 = t111 / t126;
-        let t129 = ::overact::math::sqrt(t120);
-        ::overact::guard::leg(t129, 0.5513142860385972, "leg3")?;
-        let c_cross_leg3 = t118 / t129;
-        let t131 = 1.0 / t126;
-        let c_cylinder_leg3 = t129 * t131;
+        let grod_wy_leg2 = t68 * grod_vz_leg2 - t82 * grod_vx_leg2;
+        let t193 = grod_wy_leg2 * actuator_velocities[1];
+        let t196 = ::overact::math::sqrt(t106);
+        ::overact::guard::leg(t196, 0.5513142860385972, "leg3")?;
+        let t197 = 1.0 / t196;
+        let c_cross_leg3 = t104 * t197;
+        let c_cylinder_leg3 = t196 / t112;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
         let minus_grod_wy_leg3 = t12 * grod_vz_leg3 - t44 * minus_minus_grod_vx_leg3;
-        let t136 = minus_grod_wy_leg3 * actuator_velocities[2];
-        let t139 = pose[0] + t75 + 0.2676522425435432;
-        let t141 = pose[1] + t81 - 0.2972579301909578;
-        let t144 = 0.7431448254773945 * t141 - 0.6691306063588579 * t139;
-        let t146 = pose[2] + t72;
-        let t148 = t144 * t144 + t146 * t146;
-        let t151 = 0.7431448254773945 * t139 + 0.6691306063588579 * t141;
-        let t153 = t148 + t151 * t151;
-        ::overact::guard::reach(t153, "leg4")?;
-        let t154 = ::overact::math::sqrt(t153);
-        ::overact::guard::leg(t154, 0.5619721604570214, "leg4")?;
-        let minus_minus_grod_vx_leg4 = t139 / t154;
-        let t157 = ::overact::math::sqrt(t148);
-        ::overact::guard::leg(t157, 0.5513142860385972, "leg4")?;
-        let t158 = 1.0 / t157;
-        let c_cross_leg4 = t146 * t158;
-        let c_cylinder_leg4 = t157 / t154;
+        let t203 = minus_grod_wy_leg3 * actuator_velocities[2];
+        let t206 = ::overact::math::sqrt(t127);
+        ::overact::guard::leg(t206, 0.5513142860385972, "leg4")?;
+        let c_cross_leg4 = t125 / t206;
+        let c_cylinder_leg4 = t206 * t134;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_grod_wy_leg4 = t75 * grod_vz_leg4 - t72 * minus_minus_grod_vx_leg4;
-        let t164 = minus_grod_wy_leg4 * actuator_velocities[3];
-        let t167 = pose[0] - t15 + 0.2676522425435432;
-        let t170 = pose[1] - t29 + 0.2972579301909578;
-        let t172 = 0.6691306063588579 * t167 + 0.7431448254773945 * t170;
-        let t174 = pose[2] - t47;
-        let t176 = t172 * t172 + t174 * t174;
-        let t179 = 0.6691306063588579 * t170 - 0.7431448254773945 * t167;
-        let t181 = t176 + t179 * t179;
-        ::overact::guard::reach(t181, "leg5")?;
-        let t182 = ::overact::math::sqrt(t181);
-        ::overact::guard::leg(t182, 0.5619721604570214, "leg5")?;
-        let t183 = 1.0 / t182;
-        let minus_minus_grod_vx_leg5 = t167 * t183;
-        let t186 = ::overact::math::sqrt(t176);
-        ::overact::guard::leg(t186, 0.5513142860385972, "leg5")?;
-        let t187 = 1.0 / t186;
-        let c_cross_leg5 = t174 * t187;
-        let c_cylinder_leg5 = t186 / t182;
+        let minus_grod_wy_leg4 = t66 * grod_vz_leg4 - t80 * minus_minus_grod_vx_leg4;
+        let t212 = minus_grod_wy_leg4 * actuator_velocities[3];
+        let t215 = ::overact::math::sqrt(t148);
+        ::overact::guard::leg(t215, 0.5513142860385972, "leg5")?;
+        let t216 = 1.0 / t215;
+        let c_cross_leg5 = t146 * t216;
+        let c_cylinder_leg5 = t215 / t154;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
         let grod_wy_leg5 = t15 * grod_vz_leg5 - t47 * minus_minus_grod_vx_leg5;
-        let t193 = grod_wy_leg5 * actuator_velocities[4];
-        let t196 = pose[0] + t76 + 0.12360679774997894;
-        let t199 = pose[1] + t82 + 0.3804226065180615;
-        let t201 = 0.30901699437494734 * t196 + 0.9510565162951536 * t199;
-        let t203 = pose[2] + t73;
-        let t205 = t201 * t201 + t203 * t203;
-        let t208 = 0.30901699437494734 * t199 - 0.9510565162951536 * t196;
-        let t210 = t205 + t208 * t208;
-        ::overact::guard::reach(t210, "leg6")?;
-        let t211 = ::overact::math::sqrt(t210);
-        ::overact::guard::leg(t211, 0.5619721604570214, "leg6")?;
-        let t212 = 1.0 / t211;
-        let minus_minus_grod_vx_leg6 = t196 * t212;
-        let t215 = ::overact::math::sqrt(t205);
-        ::overact::guard::leg(t215, 0.5513142860385972, "leg6")?;
-        let t216 = 1.0 / t215;
-        let c_cross_leg6 = t203 * t216;
-        let c_cylinder_leg6 = t215 / t211;
+        let t222 = grod_wy_leg5 * actuator_velocities[4];
+        let t225 = ::overact::math::sqrt(t168);
+        ::overact::guard::leg(t225, 0.5513142860385972, "leg6")?;
+        let t226 = 1.0 / t225;
+        let c_cross_leg6 = t166 * t226;
+        let c_cylinder_leg6 = t225 / t174;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_grod_wy_leg6 = t76 * grod_vz_leg6 - t73 * minus_minus_grod_vx_leg6;
-        let t222 = minus_grod_wy_leg6 * actuator_velocities[5];
-        let t224 = grod_vx_leg1 * actuator_velocities[0];
-        let t225 = grod_vx_leg2 * actuator_velocities[1];
-        let t227 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
-        let t229 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
-        let t231 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
-        let t233 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
-        let t234 = t224 + t225 + t227 + t229 + t231 + t233;
-        let t245 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
+        let minus_grod_wy_leg6 = t67 * grod_vz_leg6 - t81 * minus_minus_grod_vx_leg6;
+        let t232 = minus_grod_wy_leg6 * actuator_velocities[5];
+        let t234 = grod_vx_leg1 * actuator_velocities[0];
+        let t235 = grod_vx_leg2 * actuator_velocities[1];
+        let t237 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
+        let t239 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
+        let t241 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
+        let t243 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
+        let t244 = t234 + t235 + t237 + t239 + t241 + t243;
+        let t255 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
             - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
             - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
             + minus_minus_grod_vx_leg5 * grod_wy_leg5
             - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
-        let t248 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
-        let t256 = t248 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
-            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
-            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
-            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
-        ::overact::guard::platform(t256, 0.625174737048712, "actuators")?;
-        ::overact::guard::platform(t256, 0.625174737048712, "actuators")?;
-        let t257 = t245 / t256;
+        let t256 = t255 * t179;
         let grod_wx_leg1 = t30 * grod_vz_leg1 - t48 * minus_minus_grod_vy_leg1;
-        let minus_minus_grod_vy_leg2 = t85 * t103;
-        let grod_wx_leg2 = t74 * minus_minus_grod_vy_leg2 - t83 * grod_vz_leg2;
-        let grod_vy_leg3 = t113 * t131;
+        let minus_minus_grod_vy_leg2 = t76 / t91;
+        let grod_wx_leg2 = t82 * minus_minus_grod_vy_leg2 - t74 * grod_vz_leg2;
+        let grod_vy_leg3 = t99 / t112;
         let grod_wx_leg3 = t26 * grod_vz_leg3 - t44 * grod_vy_leg3;
-        let grod_vy_leg4 = t141 / t154;
-        let grod_wx_leg4 = t81 * grod_vz_leg4 - t72 * grod_vy_leg4;
-        let grod_vy_leg5 = t170 * t183;
+        let grod_vy_leg4 = t120 * t134;
+        let grod_wx_leg4 = t72 * grod_vz_leg4 - t80 * grod_vy_leg4;
+        let t281 = 1.0 / t154;
+        let grod_vy_leg5 = t142 * t281;
         let grod_wx_leg5 = t47 * grod_vy_leg5 - t29 * grod_vz_leg5;
-        let grod_vy_leg6 = t199 * t212;
-        let grod_wx_leg6 = t82 * grod_vz_leg6 - t73 * grod_vy_leg6;
+        let grod_vy_leg6 = t162 / t174;
+        let grod_wx_leg6 = t73 * grod_vz_leg6 - t81 * grod_vy_leg6;
         let t293 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
             + minus_minus_grod_vx_leg3 * grod_wx_leg3
             + minus_minus_grod_vx_leg4 * grod_wx_leg4
@@ -6521,10 +6530,10 @@ impl Hexapod {
             + minus_minus_grod_vx_leg6 * grod_wx_leg6;
         let grod_wz_leg3 = t12 * grod_vy_leg3 - t26 * minus_minus_grod_vx_leg3;
         let minus_grod_wz_leg1 = t30 * grod_vx_leg1 - t16 * minus_minus_grod_vy_leg1;
-        let minus_grod_wz_leg2 = t77 * minus_minus_grod_vy_leg2 - t83 * grod_vx_leg2;
-        let grod_wz_leg4 = t75 * grod_vy_leg4 - t81 * minus_minus_grod_vx_leg4;
+        let minus_grod_wz_leg2 = t68 * minus_minus_grod_vy_leg2 - t74 * grod_vx_leg2;
+        let grod_wz_leg4 = t66 * grod_vy_leg4 - t72 * minus_minus_grod_vx_leg4;
         let minus_grod_wz_leg5 = t15 * grod_vy_leg5 - t29 * minus_minus_grod_vx_leg5;
-        let grod_wz_leg6 = t76 * grod_vy_leg6 - t82 * minus_minus_grod_vx_leg6;
+        let grod_wz_leg6 = t67 * grod_vy_leg6 - t73 * minus_minus_grod_vx_leg6;
         let t322 = grod_vz_leg3 * grod_wz_leg3
             - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
             + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
@@ -6535,394 +6544,394 @@ impl Hexapod {
             + minus_minus_grod_vx_leg4 * grod_vy_leg4
             + minus_minus_grod_vx_leg5 * grod_vy_leg5
             + minus_minus_grod_vx_leg6 * grod_vy_leg6;
-        let t336 = t293 + t322 + t334 * t257;
-        let t339 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
-            + minus_minus_grod_vy_leg2 * minus_minus_grod_vy_leg2;
-        let t348 = t334 / t256;
-        let t350 = t339 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
-            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t334 * t348;
-        ::overact::guard::platform(t350, 0.6251747370487124, "actuators")?;
-        ::overact::guard::platform(t350, 0.6251747370487124, "actuators")?;
-        let t351 = t336 / t350;
-        let t352 = grod_vy_leg3 * actuator_velocities[2];
-        let t353 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
-        let t354 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
-        let t357 = grod_vy_leg4 * actuator_velocities[3];
-        let t359 = grod_vy_leg5 * actuator_velocities[4];
-        let t361 = grod_vy_leg6 * actuator_velocities[5];
-        let t364 = t352 + t353 + t354 + t357 + t359 + t361 - t234 * t348;
-        let t377 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
+        let t336 = t293 + t322 + t334 * t256;
+        let t339 = grod_vz_leg1 * grod_vz_leg1 + grod_vz_leg2 * grod_vz_leg2;
+        let t349 = 2.0 - t339 - t95 + grod_vy_leg3 * grod_vy_leg3
+            + grod_vy_leg4 * grod_vy_leg4 + grod_vy_leg5 * grod_vy_leg5
+            + grod_vy_leg6 * grod_vy_leg6;
+        let t350 = t334 * t179;
+        let t352 = t349 - t334 * t350;
+        ::overact::guard::platform(t352, 0.6251747370487124, "actuators")?;
+        ::overact::guard::platform(t352, 0.6251747370487124, "actuators")?;
+        let t353 = t336 / t352;
+        let t354 = grod_vy_leg3 * actuator_velocities[2];
+        let t355 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
+        let t356 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
+        let t359 = grod_vy_leg4 * actuator_velocities[3];
+        let t361 = grod_vy_leg5 * actuator_velocities[4];
+        let t363 = grod_vy_leg6 * actuator_velocities[5];
+        let t366 = t354 + t355 + t356 + t359 + t361 + t363 - t244 * t350;
+        let t379 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
             - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
             + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
-        let t388 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
+        let t390 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
             + grod_vz_leg3 * minus_minus_grod_vx_leg3
             + grod_vz_leg4 * minus_minus_grod_vx_leg4
             + grod_vz_leg5 * minus_minus_grod_vx_leg5
             + grod_vz_leg6 * minus_minus_grod_vx_leg6;
-        let t401 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
+        let t403 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
             + grod_vz_leg2 * minus_minus_grod_vy_leg2 + grod_vz_leg4 * grod_vy_leg4
             + grod_vz_leg5 * grod_vy_leg5 + grod_vz_leg6 * grod_vy_leg6;
-        let t402 = t388 / t256;
-        let t404 = t401 - t334 * t402;
-        let t406 = t377 - t388 * t257 + t404 * t351;
-        let t416 = 2.0 - t248 - t339 + grod_vz_leg3 * grod_vz_leg3
-            + grod_vz_leg4 * grod_vz_leg4 + grod_vz_leg5 * grod_vz_leg5
-            + grod_vz_leg6 * grod_vz_leg6;
-        let t419 = t404 / t350;
-        let t421 = t416 - t388 * t402 - t404 * t419;
+        let t404 = t390 * t179;
+        let t406 = t403 - t334 * t404;
+        let t408 = t379 - t390 * t256 + t406 * t353;
+        let t418 = t339 + grod_vz_leg3 * grod_vz_leg3 + grod_vz_leg4 * grod_vz_leg4
+            + grod_vz_leg5 * grod_vz_leg5 + grod_vz_leg6 * grod_vz_leg6 - t390 * t404;
+        let t419 = t406 / t352;
+        let t421 = t418 - t406 * t419;
         ::overact::guard::platform(t421, 4.7496505259025765, "actuators")?;
         ::overact::guard::platform(t421, 4.7496505259025765, "actuators")?;
-        let t422 = t406 / t421;
-        let t423 = grod_vz_leg1 * actuator_velocities[0];
-        let t424 = grod_vz_leg2 * actuator_velocities[1];
-        let t426 = grod_vz_leg3 * actuator_velocities[2];
-        let t428 = grod_vz_leg4 * actuator_velocities[3];
-        let t430 = grod_vz_leg5 * actuator_velocities[4];
-        let t432 = grod_vz_leg6 * actuator_velocities[5];
-        let t437 = t423 + t424 + t426 + t428 + t430 + t432 - t234 * t402 - t419 * t364;
-        let t439 = t71 + t108 - t136 - t164 + t193 - t222 - t234 * t257 + t351 * t364
-            - t422 * t437;
-        let t450 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
+        let t422 = 1.0 / t421;
+        let t423 = t408 * t422;
+        let t424 = grod_vz_leg1 * actuator_velocities[0];
+        let t425 = grod_vz_leg2 * actuator_velocities[1];
+        let t427 = grod_vz_leg3 * actuator_velocities[2];
+        let t429 = grod_vz_leg4 * actuator_velocities[3];
+        let t431 = grod_vz_leg5 * actuator_velocities[4];
+        let t433 = grod_vz_leg6 * actuator_velocities[5];
+        let t438 = t424 + t425 + t427 + t429 + t431 + t433 - t244 * t404 - t419 * t366;
+        let t440 = t185 + t193 - t203 - t212 + t222 - t232 - t244 * t256 + t353 * t366
+            - t423 * t438;
+        let t451 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
             - grod_wx_leg3 * minus_grod_wy_leg3 - grod_wx_leg4 * minus_grod_wy_leg4
             + grod_wx_leg5 * grod_wy_leg5 - grod_wx_leg6 * minus_grod_wy_leg6;
-        let t463 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
+        let t464 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
             + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
             + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
-        let t464 = t293 / t256;
-        let t466 = t463 - t334 * t464;
-        let t479 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
+        let t465 = t293 * t179;
+        let t467 = t464 - t334 * t465;
+        let t480 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
             + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
             + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
-        let t482 = t466 / t350;
-        let t484 = t479 - t388 * t464 - t404 * t482;
-        let t486 = t450 - t293 * t257 + t466 * t351 - t484 * t422;
-        let t497 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
+        let t483 = t467 / t352;
+        let t485 = t480 - t390 * t465 - t406 * t483;
+        let t487 = t451 - t293 * t256 + t467 * t353 - t485 * t423;
+        let t498 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
             + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
             + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
-        let t502 = t484 / t421;
-        let t504 = t497 - t293 * t464 - t466 * t482 - t484 * t502;
-        ::overact::guard::platform(t504, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t504, 0.06850454637148076, "actuators")?;
-        let t505 = t486 / t504;
-        let t506 = grod_wx_leg1 * actuator_velocities[0];
-        let t507 = grod_wx_leg2 * actuator_velocities[1];
-        let t509 = grod_wx_leg3 * actuator_velocities[2];
-        let t511 = grod_wx_leg4 * actuator_velocities[3];
-        let t513 = grod_wx_leg5 * actuator_velocities[4];
-        let t515 = grod_wx_leg6 * actuator_velocities[5];
-        let t522 = t506 + t507 + t509 + t511 + t513 + t515 - t234 * t464 - t482 * t364
-            - t502 * t437;
-        let t524 = t439 - t505 * t522;
-        let t535 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
+        let t503 = t485 * t422;
+        let t505 = t498 - t293 * t465 - t467 * t483 - t485 * t503;
+        ::overact::guard::platform(t505, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t505, 0.06850454637148076, "actuators")?;
+        let t506 = t487 / t505;
+        let t507 = grod_wx_leg1 * actuator_velocities[0];
+        let t508 = grod_wx_leg2 * actuator_velocities[1];
+        let t510 = grod_wx_leg3 * actuator_velocities[2];
+        let t512 = grod_wx_leg4 * actuator_velocities[3];
+        let t514 = grod_wx_leg5 * actuator_velocities[4];
+        let t516 = grod_wx_leg6 * actuator_velocities[5];
+        let t523 = t507 + t508 + t510 + t512 + t514 + t516 - t244 * t465 - t483 * t366
+            - t503 * t438;
+        let t525 = t440 - t506 * t523;
+        let t536 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
             + minus_grod_wy_leg3 * minus_grod_wy_leg3
             + minus_grod_wy_leg4 * minus_grod_wy_leg4 + grod_wy_leg5 * grod_wy_leg5
             + minus_grod_wy_leg6 * minus_grod_wy_leg6;
-        let t543 = t535 - t245 * t257 - t336 * t351 - t406 * t422 - t486 * t505;
-        ::overact::guard::platform(t543, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t543, 0.06850454637148076, "actuators")?;
-        let t555 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
+        let t544 = t536 - t255 * t256 - t336 * t353 - t408 * t423 - t487 * t506;
+        ::overact::guard::platform(t544, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t544, 0.06850454637148076, "actuators")?;
+        let t556 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
             + minus_grod_wy_leg3 * grod_wz_leg3 + minus_grod_wy_leg4 * grod_wz_leg4
             + grod_wy_leg5 * minus_grod_wz_leg5 + minus_grod_wy_leg6 * grod_wz_leg6;
-        let t566 = minus_minus_grod_vx_leg6 * grod_wz_leg6
+        let t567 = minus_minus_grod_vx_leg6 * grod_wz_leg6
             - (minus_minus_grod_vx_leg5 * minus_grod_wz_leg5
                 + grod_vx_leg1 * minus_grod_wz_leg1 + grod_vx_leg2 * minus_grod_wz_leg2
                 - minus_minus_grod_vx_leg3 * grod_wz_leg3
                 - minus_minus_grod_vx_leg4 * grod_wz_leg4);
-        let t567 = t566 / t256;
-        let t580 = grod_vy_leg3 * grod_wz_leg3
+        let t568 = t567 * t179;
+        let t581 = grod_vy_leg3 * grod_wz_leg3
             - (minus_minus_grod_vy_leg1 * minus_grod_wz_leg1
                 + minus_minus_grod_vy_leg2 * minus_grod_wz_leg2)
             + grod_vy_leg4 * grod_wz_leg4 - grod_vy_leg5 * minus_grod_wz_leg5
             + grod_vy_leg6 * grod_wz_leg6;
-        let t582 = t580 - t334 * t567;
-        let t583 = t582 / t350;
-        let t589 = t322 - t388 * t567 - t404 * t583;
-        let t590 = t589 / t421;
-        let t603 = grod_wx_leg3 * grod_wz_leg3
+        let t583 = t581 - t334 * t568;
+        let t584 = t583 / t352;
+        let t590 = t322 - t390 * t568 - t406 * t584;
+        let t591 = t590 * t422;
+        let t604 = grod_wx_leg3 * grod_wz_leg3
             - (grod_wx_leg1 * minus_grod_wz_leg1 + grod_wx_leg2 * minus_grod_wz_leg2)
             + grod_wx_leg4 * grod_wz_leg4 - grod_wx_leg5 * minus_grod_wz_leg5
             + grod_wx_leg6 * grod_wz_leg6;
-        let t609 = t603 - t293 * t567 - t466 * t583 - t484 * t590;
-        let t610 = t609 / t504;
-        let t612 = t555 + t245 * t567 - t336 * t583 + t406 * t590 + t486 * t610;
-        let t613 = t612 / t543;
-        let t614 = grod_wz_leg3 * actuator_velocities[2];
-        let t615 = minus_grod_wz_leg1 * actuator_velocities[0];
-        let t616 = minus_grod_wz_leg2 * actuator_velocities[1];
-        let t619 = grod_wz_leg4 * actuator_velocities[3];
-        let t621 = minus_grod_wz_leg5 * actuator_velocities[4];
-        let t623 = grod_wz_leg6 * actuator_velocities[5];
-        let t630 = t614 - (t615 + t616) + t619 - t621 + t623 - t234 * t567 - t583 * t364
-            - t590 * t437;
-        let t645 = minus_grod_wz_leg1 * minus_grod_wz_leg1
+        let t610 = t604 - t293 * t568 - t467 * t584 - t485 * t591;
+        let t611 = t610 / t505;
+        let t613 = t556 + t255 * t568 - t336 * t584 + t408 * t591 + t487 * t611;
+        let t614 = t613 / t544;
+        let t615 = grod_wz_leg3 * actuator_velocities[2];
+        let t616 = minus_grod_wz_leg1 * actuator_velocities[0];
+        let t617 = minus_grod_wz_leg2 * actuator_velocities[1];
+        let t620 = grod_wz_leg4 * actuator_velocities[3];
+        let t622 = minus_grod_wz_leg5 * actuator_velocities[4];
+        let t624 = grod_wz_leg6 * actuator_velocities[5];
+        let t631 = t615 - (t616 + t617) + t620 - t622 + t624 - t244 * t568 - t584 * t366
+            - t591 * t438;
+        let t646 = minus_grod_wz_leg1 * minus_grod_wz_leg1
             + minus_grod_wz_leg2 * minus_grod_wz_leg2 + grod_wz_leg3 * grod_wz_leg3
             + grod_wz_leg4 * grod_wz_leg4 + minus_grod_wz_leg5 * minus_grod_wz_leg5
             + grod_wz_leg6 * grod_wz_leg6;
-        let t655 = t645 - t566 * t567 - t582 * t583 - t589 * t590 - t609 * t610
-            - t612 * t613;
-        ::overact::guard::platform(t655, 0.03606775827473607, "actuators")?;
-        ::overact::guard::platform(t655, 0.03606775827473607, "actuators")?;
-        let t656 = (t630 - t610 * t522 + t613 * t524) / t655;
-        let t658 = t524 / t543 + t613 * t656;
-        let t663 = t522 / t504 - t505 * t658 - t610 * t656;
-        let t664 = t658 * t663;
-        let t666 = t663 * t663;
-        let t667 = t656 * t656;
-        let t668 = t666 + t667;
-        let t669 = t20 * t668;
-        let t671 = t656 * t658;
-        let t673 = t5 * t664 - t669 + t38 * t671;
-        let t674 = 0.05176380902050415 * t673;
-        let t676 = t24 * t668;
-        let t679 = t10 * t664 - t676 + t42 * t671;
-        let t680 = 0.19318516525781368 * t679;
-        let t681 = t674 + t680;
-        let t682 = 0.19318516525781368 * t673;
-        let t683 = 0.05176380902050415 * t679;
-        let t684 = t682 + t683;
-        let t688 = t658 * t658;
-        let t689 = t688 + t667;
-        let t690 = t5 * t689;
-        let t692 = t656 * t663;
-        let t694 = t20 * t664 - t690 + t38 * t692;
-        let t695 = 0.05176380902050415 * t694;
-        let t697 = t10 * t689;
-        let t700 = t24 * t664 - t697 + t42 * t692;
-        let t701 = 0.19318516525781368 * t700;
-        let t702 = t695 + t701;
-        let t703 = 0.19318516525781368 * t694;
-        let t704 = 0.05176380902050415 * t700;
-        let t705 = t703 + t704;
-        let t711 = t5 * t663 + t20 * t658;
-        let t713 = t666 + t688;
-        let t714 = t38 * t713;
-        let t715 = t656 * t711 - t714;
-        let t716 = 0.05176380902050415 * t715;
-        let t719 = t10 * t663 + t24 * t658;
-        let t721 = t42 * t713;
-        let t722 = t656 * t719 - t721;
-        let t723 = 0.19318516525781368 * t722;
-        let t724 = t716 + t723;
-        let t725 = 0.19318516525781368 * t715;
-        let t726 = 0.05176380902050415 * t722;
-        let t727 = t725 + t726;
-        let t739 = t437 / t421 - t502 * t663 - t422 * t658 - t590 * t656;
-        let t747 = t364 / t350 - t419 * t739 - t482 * t663 + t351 * t658 - t583 * t656;
-        let t757 = t234 / t256 - t348 * t747 - t402 * t739 - t464 * t663 - t257 * t658
-            - t567 * t656;
-        let t760 = t44 * t658 - t26 * t656;
-        let t763 = t29 * t656 - t47 * t658;
-        let t765 = t757 - (t760 + t763);
-        let t767 = 0.20791169081775931 * c_cross_leg1;
-        let t770 = t12 * t656 - t44 * t663;
-        let t773 = t47 * t663 - t15 * t656;
-        let t775 = t747 - (t770 + t773);
+        let t656 = t646 - t567 * t568 - t583 * t584 - t590 * t591 - t610 * t611
+            - t613 * t614;
+        ::overact::guard::platform(t656, 0.03606775827473607, "actuators")?;
+        ::overact::guard::platform(t656, 0.03606775827473607, "actuators")?;
+        let t657 = (t631 - t611 * t523 + t614 * t525) / t656;
+        let t659 = t525 / t544 + t614 * t657;
+        let t664 = t523 / t505 - t506 * t659 - t611 * t657;
+        let t665 = t659 * t664;
+        let t667 = t664 * t664;
+        let t668 = t657 * t657;
+        let t669 = t667 + t668;
+        let t670 = t20 * t669;
+        let t672 = t657 * t659;
+        let t674 = t5 * t665 - t670 + t38 * t672;
+        let t675 = 0.05176380902050415 * t674;
+        let t677 = t24 * t669;
+        let t680 = t10 * t665 - t677 + t42 * t672;
+        let t681 = 0.19318516525781368 * t680;
+        let t682 = t675 + t681;
+        let t683 = 0.19318516525781368 * t674;
+        let t684 = 0.05176380902050415 * t680;
+        let t685 = t683 + t684;
+        let t689 = t659 * t659;
+        let t690 = t689 + t668;
+        let t691 = t5 * t690;
+        let t693 = t657 * t664;
+        let t695 = t20 * t665 - t691 + t38 * t693;
+        let t696 = 0.05176380902050415 * t695;
+        let t698 = t10 * t690;
+        let t701 = t24 * t665 - t698 + t42 * t693;
+        let t702 = 0.19318516525781368 * t701;
+        let t703 = t696 + t702;
+        let t704 = 0.19318516525781368 * t695;
+        let t705 = 0.05176380902050415 * t701;
+        let t706 = t704 + t705;
+        let t712 = t5 * t664 + t20 * t659;
+        let t714 = t667 + t689;
+        let t715 = t38 * t714;
+        let t716 = t657 * t712 - t715;
+        let t717 = 0.05176380902050415 * t716;
+        let t720 = t10 * t664 + t24 * t659;
+        let t722 = t42 * t714;
+        let t723 = t657 * t720 - t722;
+        let t724 = 0.19318516525781368 * t723;
+        let t725 = t717 + t724;
+        let t726 = 0.19318516525781368 * t716;
+        let t727 = 0.05176380902050415 * t723;
+        let t728 = t726 + t727;
+        let t740 = t422 * t438 - t503 * t664 - t423 * t659 - t591 * t657;
+        let t748 = t366 / t352 - t419 * t740 - t483 * t664 + t353 * t659 - t584 * t657;
+        let t758 = t244 * t179 - t350 * t748 - t404 * t740 - t465 * t664 - t256 * t659
+            - t568 * t657;
+        let t761 = t44 * t659 - t26 * t657;
+        let t764 = t29 * t657 - t47 * t659;
+        let t766 = t758 - (t761 + t764);
+        let t768 = 0.20791169081775931 * c_cross_leg1;
+        let t771 = t12 * t657 - t44 * t664;
+        let t774 = t47 * t664 - t15 * t657;
+        let t776 = t748 - (t771 + t774);
         let minus_s_cross_leg1 = t34 * t53;
-        let t781 = t26 * t663 - t12 * t658;
-        let t784 = t15 * t658 - t29 * t663;
-        let t786 = t739 - (t781 + t784);
-        let t788 = t55 * t765 - t767 * t775 - minus_s_cross_leg1 * t786;
-        let minus_rate_cross_leg1 = t53 * t788;
-        let t790 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t791 = t790 * t790;
+        let t782 = t26 * t664 - t12 * t659;
+        let t785 = t15 * t659 - t29 * t664;
+        let t787 = t740 - (t782 + t785);
+        let t789 = t55 * t766 - t768 * t776 - minus_s_cross_leg1 * t787;
+        let minus_rate_cross_leg1 = t53 * t789;
+        let t791 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t792 = t791 * t791;
         let minus_s_cylinder_leg1 = t59 / t62;
-        let t793 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
-        let t796 = 0.9781476007338057 * t793 - 0.20791169081775931 * c_cylinder_leg1;
-        let t800 = 0.20791169081775931 * t793 + 0.9781476007338057 * c_cylinder_leg1;
-        let t803 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t805 = t796 * t765 - t800 * t775 + t803 * t786;
-        let rate_cylinder_leg1 = t63 * t805;
-        let t807 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t808 = t791 + t807;
-        let t809 = t62 * t808;
-        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t684 - t681)
-            + grod_vx_leg1 * (t705 - t702) + grod_vz_leg1 * (t727 - t724) + t809;
-        let t811 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
-        let t813 = t683 - t682;
-        let t814 = t674 - t680;
-        let t817 = t704 - t703;
-        let t818 = t695 - t701;
-        let t822 = t726 - t725;
-        let t823 = t716 - t723;
-        let t827 = 0.9781476007338057 * c_cross_leg2;
-        let t830 = t72 * t658 - t81 * t656;
-        let t833 = t73 * t658 - t82 * t656;
-        let t835 = t757 - (t830 + t833);
-        let t837 = 0.20791169081775931 * c_cross_leg2;
-        let t840 = t75 * t656 - t72 * t663;
-        let t843 = t76 * t656 - t73 * t663;
-        let t845 = t747 - (t840 + t843);
-        let minus_s_cross_leg2 = t87 * t101;
-        let t851 = t81 * t663 - t75 * t658;
-        let t854 = t82 * t663 - t76 * t658;
-        let t856 = t739 - (t851 + t854);
-        let t858 = t827 * t835 + t837 * t845 - minus_s_cross_leg2 * t856;
-        let minus_rate_cross_leg2 = t101 * t858;
-        let t860 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t861 = t860 * t860;
-        let s_cylinder_leg2 = t94 / t97;
-        let t864 = minus_s_cross_leg2 * s_cylinder_leg2;
-        let t866 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t864;
-        let t870 = 0.20791169081775931 * t864 + 0.9781476007338057 * c_cylinder_leg2;
-        let t873 = c_cross_leg2 * s_cylinder_leg2;
-        let t875 = t866 * t835 - t870 * t845 - t873 * t856;
-        let rate_cylinder_leg2 = t103 * t875;
-        let t877 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t878 = t861 + t877;
-        let t879 = t97 * t878;
-        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t813 + t814)
-            + grod_vx_leg2 * (t817 + t818) + grod_vz_leg2 * (t822 + t823) - t879;
-        let t881 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
-        let t889 = 0.9510565162951536 * c_cross_leg3;
-        let t890 = t747 + t770;
-        let t892 = 0.30901699437494734 * c_cross_leg3;
-        let t893 = t757 + t760;
-        let minus_s_cross_leg3 = t116 / t129;
-        let t897 = t739 + t781;
-        let t899 = t889 * t890 - t892 * t893 - minus_s_cross_leg3 * t897;
-        let minus_rate_cross_leg3 = t899 / t129;
-        let t901 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t902 = t901 * t901;
-        let s_cylinder_leg3 = t123 / t126;
-        let t904 = minus_s_cross_leg3 * s_cylinder_leg3;
-        let t907 = 0.30901699437494734 * t904 + 0.9510565162951536 * c_cylinder_leg3;
-        let t911 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t904;
-        let t914 = c_cross_leg3 * s_cylinder_leg3;
-        let t916 = t907 * t893 + t911 * t890 - t914 * t897;
-        let rate_cylinder_leg3 = t131 * t916;
-        let t918 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t919 = t902 + t918;
-        let t920 = t126 * t919;
-        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t702
-            + grod_vy_leg3 * t681 + grod_vz_leg3 * t724 + t920;
-        let t922 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
-        let t930 = 0.7431448254773945 * c_cross_leg4;
-        let t931 = t747 + t840;
-        let t933 = 0.6691306063588579 * c_cross_leg4;
-        let t934 = t757 + t830;
-        let minus_s_cross_leg4 = t144 * t158;
-        let t938 = t739 + t851;
-        let t940 = t930 * t931 - t933 * t934 - minus_s_cross_leg4 * t938;
-        let minus_rate_cross_leg4 = t158 * t940;
-        let t942 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t943 = t942 * t942;
-        let t944 = 1.0 / t154;
-        let s_cylinder_leg4 = t151 / t154;
+        let t794 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
+        let t797 = 0.9781476007338057 * t794 - 0.20791169081775931 * c_cylinder_leg1;
+        let t801 = 0.20791169081775931 * t794 + 0.9781476007338057 * c_cylinder_leg1;
+        let t804 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t806 = t797 * t766 - t801 * t776 + t804 * t787;
+        let rate_cylinder_leg1 = t806 / t62;
+        let t808 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t809 = t792 + t808;
+        let t810 = t62 * t809;
+        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t685 - t682)
+            + grod_vx_leg1 * (t706 - t703) + grod_vz_leg1 * (t728 - t725) + t810;
+        let t812 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
+        let t814 = t684 - t683;
+        let t815 = t675 - t681;
+        let t818 = t705 - t704;
+        let t819 = t696 - t702;
+        let t823 = t727 - t726;
+        let t824 = t717 - t724;
+        let t828 = 0.9781476007338057 * c_cross_leg2;
+        let t831 = t80 * t659 - t72 * t657;
+        let t834 = t81 * t659 - t73 * t657;
+        let t836 = t758 - (t831 + t834);
+        let t838 = 0.20791169081775931 * c_cross_leg2;
+        let t841 = t66 * t657 - t80 * t664;
+        let t844 = t67 * t657 - t81 * t664;
+        let t846 = t748 - (t841 + t844);
+        let minus_s_cross_leg2 = t78 / t187;
+        let t852 = t72 * t664 - t66 * t659;
+        let t855 = t73 * t664 - t67 * t659;
+        let t857 = t740 - (t852 + t855);
+        let t859 = t828 * t836 + t838 * t846 - minus_s_cross_leg2 * t857;
+        let minus_rate_cross_leg2 = t859 / t187;
+        let t861 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t862 = t861 * t861;
+        let s_cylinder_leg2 = t88 / t91;
+        let t865 = minus_s_cross_leg2 * s_cylinder_leg2;
+        let t867 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t865;
+        let t871 = 0.20791169081775931 * t865 + 0.9781476007338057 * c_cylinder_leg2;
+        let t874 = c_cross_leg2 * s_cylinder_leg2;
+        let t876 = t867 * t836 - t871 * t846 - t874 * t857;
+        let rate_cylinder_leg2 = t92 * t876;
+        let t878 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t879 = t862 + t878;
+        let t880 = t91 * t879;
+        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t814 + t815)
+            + grod_vx_leg2 * (t818 + t819) + grod_vz_leg2 * (t823 + t824) - t880;
+        let t882 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
+        let t890 = 0.9510565162951536 * c_cross_leg3;
+        let t891 = t748 + t771;
+        let t893 = 0.30901699437494734 * c_cross_leg3;
+        let t894 = t758 + t761;
+        let minus_s_cross_leg3 = t102 * t197;
+        let t898 = t740 + t782;
+        let t900 = t890 * t891 - t893 * t894 - minus_s_cross_leg3 * t898;
+        let minus_rate_cross_leg3 = t197 * t900;
+        let t902 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t903 = t902 * t902;
+        let s_cylinder_leg3 = t109 / t112;
+        let t905 = minus_s_cross_leg3 * s_cylinder_leg3;
+        let t908 = 0.30901699437494734 * t905 + 0.9510565162951536 * c_cylinder_leg3;
+        let t912 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t905;
+        let t915 = c_cross_leg3 * s_cylinder_leg3;
+        let t917 = t908 * t894 + t912 * t891 - t915 * t898;
+        let rate_cylinder_leg3 = t113 * t917;
+        let t919 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t920 = t903 + t919;
+        let t921 = t112 * t920;
+        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t703
+            + grod_vy_leg3 * t682 + grod_vz_leg3 * t725 + t921;
+        let t923 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
+        let t931 = 0.7431448254773945 * c_cross_leg4;
+        let t932 = t748 + t841;
+        let t934 = 0.6691306063588579 * c_cross_leg4;
+        let t935 = t758 + t831;
+        let minus_s_cross_leg4 = t123 / t206;
+        let t939 = t740 + t852;
+        let t941 = t931 * t932 - t934 * t935 - minus_s_cross_leg4 * t939;
+        let minus_rate_cross_leg4 = t941 / t206;
+        let t943 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t944 = t943 * t943;
+        let s_cylinder_leg4 = t130 / t133;
         let t946 = minus_s_cross_leg4 * s_cylinder_leg4;
         let t949 = 0.6691306063588579 * t946 + 0.7431448254773945 * c_cylinder_leg4;
         let t953 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t946;
         let t956 = c_cross_leg4 * s_cylinder_leg4;
-        let t958 = t949 * t934 + t953 * t931 - t956 * t938;
-        let rate_cylinder_leg4 = t944 * t958;
+        let t958 = t949 * t935 + t953 * t932 - t956 * t939;
+        let rate_cylinder_leg4 = t134 * t958;
         let t960 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t961 = t943 + t960;
-        let t962 = t154 * t961;
-        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t817
-            + grod_vy_leg4 * t813 + grod_vz_leg4 * t822 + t962;
+        let t961 = t944 + t960;
+        let t962 = t133 * t961;
+        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t818
+            + grod_vy_leg4 * t814 + grod_vz_leg4 * t823 + t962;
         let t964 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
-        let s_cross_leg5 = t172 * t187;
-        let t973 = t739 + t784;
+        let s_cross_leg5 = t144 * t216;
+        let t973 = t740 + t785;
         let t975 = 0.6691306063588579 * c_cross_leg5;
-        let t976 = t757 + t763;
+        let t976 = t758 + t764;
         let t978 = 0.7431448254773945 * c_cross_leg5;
-        let t979 = t747 + t773;
+        let t979 = t748 + t774;
         let t982 = s_cross_leg5 * t973 - (t975 * t976 + t978 * t979);
-        let minus_rate_cross_leg5 = t187 * t982;
+        let minus_rate_cross_leg5 = t216 * t982;
         let t984 = c_cylinder_leg5 * minus_rate_cross_leg5;
         let t985 = t984 * t984;
-        let s_cylinder_leg5 = t179 / t182;
+        let s_cylinder_leg5 = t151 / t154;
         let t988 = s_cross_leg5 * s_cylinder_leg5;
         let t990 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t988;
         let t994 = 0.6691306063588579 * t988 + 0.7431448254773945 * c_cylinder_leg5;
         let t997 = c_cross_leg5 * s_cylinder_leg5;
         let t999 = t990 * t979 - t994 * t976 - t997 * t973;
-        let rate_cylinder_leg5 = t183 * t999;
+        let rate_cylinder_leg5 = t281 * t999;
         let t1001 = rate_cylinder_leg5 * rate_cylinder_leg5;
         let t1002 = t985 + t1001;
-        let t1003 = t182 * t1002;
-        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t684
-            + minus_minus_grod_vx_leg5 * t705 + grod_vz_leg5 * t727 - t1003;
+        let t1003 = t154 * t1002;
+        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t685
+            + minus_minus_grod_vx_leg5 * t706 + grod_vz_leg5 * t728 - t1003;
         let t1005 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
-        let s_cross_leg6 = t201 * t216;
-        let t1014 = t739 + t854;
+        let s_cross_leg6 = t164 * t226;
+        let t1014 = t740 + t855;
         let t1016 = 0.30901699437494734 * c_cross_leg6;
-        let t1017 = t757 + t833;
+        let t1017 = t758 + t834;
         let t1019 = 0.9510565162951536 * c_cross_leg6;
-        let t1020 = t747 + t843;
+        let t1020 = t748 + t844;
         let t1023 = s_cross_leg6 * t1014 - (t1016 * t1017 + t1019 * t1020);
-        let minus_rate_cross_leg6 = t216 * t1023;
+        let minus_rate_cross_leg6 = t226 * t1023;
         let t1025 = c_cylinder_leg6 * minus_rate_cross_leg6;
         let t1026 = t1025 * t1025;
-        let s_cylinder_leg6 = t208 / t211;
+        let s_cylinder_leg6 = t171 / t174;
         let t1029 = s_cross_leg6 * s_cylinder_leg6;
         let t1031 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1029;
         let t1035 = 0.30901699437494734 * t1029 + 0.9510565162951536 * c_cylinder_leg6;
         let t1038 = c_cross_leg6 * s_cylinder_leg6;
         let t1040 = t1031 * t1020 - t1035 * t1017 - t1038 * t1014;
-        let rate_cylinder_leg6 = t212 * t1040;
+        let rate_cylinder_leg6 = t175 * t1040;
         let t1042 = rate_cylinder_leg6 * rate_cylinder_leg6;
         let t1043 = t1026 + t1042;
-        let t1044 = t211 * t1043;
-        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t818
-            + grod_vy_leg6 * t814 + grod_vz_leg6 * t823 + t1044;
+        let t1044 = t174 * t1043;
+        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t819
+            + grod_vy_leg6 * t815 + grod_vz_leg6 * t824 + t1044;
         let t1046 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
-        let t1048 = grod_vx_leg1 * t811 + grod_vx_leg2 * t881
-            + minus_minus_grod_vx_leg3 * t922 + minus_minus_grod_vx_leg4 * t964
+        let t1048 = grod_vx_leg1 * t812 + grod_vx_leg2 * t882
+            + minus_minus_grod_vx_leg3 * t923 + minus_minus_grod_vx_leg4 * t964
             + minus_minus_grod_vx_leg5 * t1005 + minus_minus_grod_vx_leg6 * t1046;
-        let t1060 = grod_vy_leg3 * t922 + minus_minus_grod_vy_leg1 * t811
-            + minus_minus_grod_vy_leg2 * t881 + grod_vy_leg4 * t964
+        let t1060 = grod_vy_leg3 * t923 + minus_minus_grod_vy_leg1 * t812
+            + minus_minus_grod_vy_leg2 * t882 + grod_vy_leg4 * t964
             + grod_vy_leg5 * t1005 + grod_vy_leg6 * t1046;
-        let t1062 = t1060 - t348 * t1048;
-        let t1074 = grod_vz_leg1 * t811 + grod_vz_leg2 * t881 + grod_vz_leg3 * t922
+        let t1062 = t1060 - t350 * t1048;
+        let t1074 = grod_vz_leg1 * t812 + grod_vz_leg2 * t882 + grod_vz_leg3 * t923
             + grod_vz_leg4 * t964 + grod_vz_leg5 * t1005 + grod_vz_leg6 * t1046;
-        let t1078 = t1074 - t402 * t1048 - t419 * t1062;
-        let t1090 = grod_wx_leg1 * t811 + grod_wx_leg2 * t881 + grod_wx_leg3 * t922
+        let t1078 = t1074 - t404 * t1048 - t419 * t1062;
+        let t1090 = grod_wx_leg1 * t812 + grod_wx_leg2 * t882 + grod_wx_leg3 * t923
             + grod_wx_leg4 * t964 + grod_wx_leg5 * t1005 + grod_wx_leg6 * t1046;
-        let t1096 = t1090 - t464 * t1048 - t482 * t1062 - t502 * t1078;
-        let t1108 = grod_wy_leg1 * t811 + grod_wy_leg2 * t881 - minus_grod_wy_leg3 * t922
+        let t1096 = t1090 - t465 * t1048 - t483 * t1062 - t503 * t1078;
+        let t1108 = grod_wy_leg1 * t812 + grod_wy_leg2 * t882 - minus_grod_wy_leg3 * t923
             - minus_grod_wy_leg4 * t964 + grod_wy_leg5 * t1005
             - minus_grod_wy_leg6 * t1046;
-        let t1116 = t1108 - t257 * t1048 + t351 * t1062 - t422 * t1078 - t505 * t1096;
-        let t1128 = grod_wz_leg3 * t922
-            - (minus_grod_wz_leg1 * t811 + minus_grod_wz_leg2 * t881)
+        let t1116 = t1108 - t256 * t1048 + t353 * t1062 - t423 * t1078 - t506 * t1096;
+        let t1128 = grod_wz_leg3 * t923
+            - (minus_grod_wz_leg1 * t812 + minus_grod_wz_leg2 * t882)
             + grod_wz_leg4 * t964 - minus_grod_wz_leg5 * t1005 + grod_wz_leg6 * t1046;
-        let t1138 = t1128 - t567 * t1048 - t583 * t1062 - t590 * t1078 - t610 * t1096
-            + t613 * t1116;
-        let t1139 = t1138 / t655;
-        let t1141 = t1116 / t543 + t613 * t1139;
-        let t1145 = t1096 / t504 - t505 * t1141 - t610 * t1139;
-        let t1151 = t1078 / t421 - t502 * t1145 - t422 * t1141 - t590 * t1139;
-        let t1159 = t1062 / t350 - t419 * t1151 - t482 * t1145 + t351 * t1141
-            - t583 * t1139;
-        let t1169 = t1048 / t256 - t348 * t1159 - t402 * t1151 - t464 * t1145
-            - t257 * t1141 - t567 * t1139;
-        let t1170 = t664 - t1139;
-        let t1173 = t692 + t1141;
-        let t1175 = t20 * t1170 - t690 + t38 * t1173;
+        let t1138 = t1128 - t568 * t1048 - t584 * t1062 - t591 * t1078 - t611 * t1096
+            + t614 * t1116;
+        let t1139 = t1138 / t656;
+        let t1141 = t1116 / t544 + t614 * t1139;
+        let t1145 = t1096 / t505 - t506 * t1141 - t611 * t1139;
+        let t1151 = t422 * t1078 - t503 * t1145 - t423 * t1141 - t591 * t1139;
+        let t1159 = t1062 / t352 - t419 * t1151 - t483 * t1145 + t353 * t1141
+            - t584 * t1139;
+        let t1169 = t179 * t1048 - t350 * t1159 - t404 * t1151 - t465 * t1145
+            - t256 * t1141 - t568 * t1139;
+        let t1170 = t665 - t1139;
+        let t1173 = t693 + t1141;
+        let t1175 = t20 * t1170 - t691 + t38 * t1173;
         let t1176 = 0.05176380902050415 * t1175;
-        let t1180 = t24 * t1170 - t697 + t42 * t1173;
+        let t1180 = t24 * t1170 - t698 + t42 * t1173;
         let t1181 = 0.19318516525781368 * t1180;
         let t1182 = t1176 + t1181;
         let t1183 = 0.19318516525781368 * t1175;
         let t1184 = 0.05176380902050415 * t1180;
         let t1185 = t1183 + t1184;
         let t1187 = t1169 + t1185 - t1182;
-        let t1189 = t664 + t1139;
-        let t1192 = t671 - t1145;
-        let t1194 = t5 * t1189 - t669 + t38 * t1192;
+        let t1189 = t665 + t1139;
+        let t1192 = t672 - t1145;
+        let t1194 = t5 * t1189 - t670 + t38 * t1192;
         let t1195 = 0.05176380902050415 * t1194;
-        let t1199 = t10 * t1189 - t676 + t42 * t1192;
+        let t1199 = t10 * t1189 - t677 + t42 * t1192;
         let t1200 = 0.19318516525781368 * t1199;
         let t1201 = t1195 + t1200;
         let t1202 = 0.19318516525781368 * t1194;
         let t1203 = 0.05176380902050415 * t1199;
         let t1204 = t1202 + t1203;
         let t1206 = t1159 + t1204 - t1201;
-        let t1209 = t692 - t1141;
-        let t1211 = t671 + t1145;
-        let t1214 = t5 * t1209 + t20 * t1211 - t714;
+        let t1209 = t693 - t1141;
+        let t1211 = t672 + t1145;
+        let t1214 = t5 * t1209 + t20 * t1211 - t715;
         let t1215 = 0.05176380902050415 * t1214;
-        let t1219 = t10 * t1209 + t24 * t1211 - t721;
+        let t1219 = t10 * t1209 + t24 * t1211 - t722;
         let t1220 = 0.19318516525781368 * t1219;
         let t1221 = t1215 + t1220;
         let t1222 = 0.19318516525781368 * t1214;
@@ -6930,637 +6939,630 @@ impl Hexapod {
         let t1224 = t1222 + t1223;
         let t1225 = t1224 - t1221;
         let t1226 = t1151 + t1225;
-        let t1228 = t55 * t1187 - t767 * t1206 - minus_s_cross_leg1 * t1226;
-        let t1229 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t1230 = t1229 * t805;
-        let t1233 = 2.0 * actuator_velocities[0];
-        let minus_rate_dot_cross_leg1 = t53 * (t1228 - t1230 - t1230 - t790 * t1233);
-        let t1237 = rate_cylinder_leg1 * t790;
-        let t1238 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1240 = t1237 + t1237 - t1238;
-        let t1241 = c_cylinder_leg1 * t1240;
-        let t1242 = t53 * t59;
-        let t1243 = t1241 * t1242;
-        let t1244 = minus_rate_dot_cross_leg1 + t1243;
-        let gcylinder_vx_leg1 = t796 * t63;
-        let t1247 = t790 * t1229;
-        let t1248 = gcylinder_vx_leg1 * t1247;
-        let t1249 = minus_gcross_vx_leg1 * t1244 - t1248;
-        let minus_gcylinder_vy_leg1 = t800 * t63;
-        let t1251 = minus_gcylinder_vy_leg1 * t1247;
-        let gcross_vy_leg1 = t53 * t767;
-        let t1254 = t1251 - gcross_vy_leg1 * t1244;
+        let t1228 = t55 * t1187 - t768 * t1206 - minus_s_cross_leg1 * t1226;
+        let t1229 = 2.0 * actuator_velocities[0];
+        let t1231 = t1228 - t791 * t1229;
+        let t1232 = t1231 / t62;
+        let t1233 = c_cylinder_leg1 * t1232;
+        let gcylinder_vx_leg1 = t797 / t62;
+        let t1236 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t1237 = t791 * t1236;
+        let t1238 = gcylinder_vx_leg1 * t1237;
+        let t1239 = minus_gcross_vx_leg1 * t1233 - t1238;
+        let minus_gcylinder_vy_leg1 = t801 / t62;
+        let t1241 = minus_gcylinder_vy_leg1 * t1237;
+        let gcross_vy_leg1 = t53 * t768;
+        let t1244 = t1241 - gcross_vy_leg1 * t1233;
         let gcross_vz_leg1 = t53 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t803 * t63;
-        let t1258 = gcylinder_vz_leg1 * t1247;
-        let t1259 = gcross_vz_leg1 * t1244 + t1258;
+        let gcylinder_vz_leg1 = t804 / t62;
+        let t1248 = gcylinder_vz_leg1 * t1237;
+        let t1249 = gcross_vz_leg1 * t1233 + t1248;
         let gcross_wx_leg1 = t30 * gcross_vz_leg1 - t48 * gcross_vy_leg1;
         let gcylinder_wx_leg1 = t30 * gcylinder_vz_leg1 + t48 * minus_gcylinder_vy_leg1;
-        let t1267 = gcylinder_wx_leg1 * t1247;
-        let t1268 = gcross_wx_leg1 * t1244 + t1267;
+        let t1257 = gcylinder_wx_leg1 * t1237;
+        let t1258 = gcross_wx_leg1 * t1233 + t1257;
         let minus_gcross_wy_leg1 = t48 * minus_gcross_vx_leg1 + t16 * gcross_vz_leg1;
         let gcylinder_wy_leg1 = t48 * gcylinder_vx_leg1 - t16 * gcylinder_vz_leg1;
-        let t1276 = gcylinder_wy_leg1 * t1247;
-        let t1277 = minus_gcross_wy_leg1 * t1244 - t1276;
+        let t1266 = gcylinder_wy_leg1 * t1237;
+        let t1267 = minus_gcross_wy_leg1 * t1233 - t1266;
         let minus_gcylinder_wz_leg1 = t16 * minus_gcylinder_vy_leg1
             + t30 * gcylinder_vx_leg1;
-        let t1281 = minus_gcylinder_wz_leg1 * t1247;
+        let t1271 = minus_gcylinder_wz_leg1 * t1237;
         let gcross_wz_leg1 = t16 * gcross_vy_leg1 + t30 * minus_gcross_vx_leg1;
-        let t1286 = t1281 - gcross_wz_leg1 * t1244;
-        let t1287 = t1229 * t1229;
-        let t1288 = t791 - t1287;
-        let t1291 = t1241 - t1244 * t1242;
-        let t1293 = gcylinder_vx_leg1 * t1288 - minus_gcross_vx_leg1 * t1291;
-        let t1296 = gcross_vy_leg1 * t1291 - minus_gcylinder_vy_leg1 * t1288;
-        let t1299 = gcross_vz_leg1 * t1291 + gcylinder_vz_leg1 * t1288;
-        let t1302 = gcross_wx_leg1 * t1291 + gcylinder_wx_leg1 * t1288;
-        let t1305 = gcylinder_wy_leg1 * t1288 - minus_gcross_wy_leg1 * t1291;
-        let t1308 = gcross_wz_leg1 * t1291 - minus_gcylinder_wz_leg1 * t1288;
-        let t1313 = t796 * t1187 - t800 * t1206 + t803 * t1226;
-        let t1315 = rate_cylinder_leg1 * t1233 - t1313;
-        let t1316 = t63 * t1315;
-        let rate_dot_cylinder_leg1 = t1247 - t1316;
-        let t1318 = t1247 + rate_dot_cylinder_leg1;
-        let t1322 = c_cylinder_leg1 * t1318 + minus_s_cylinder_leg1 * (t807 - t791);
-        let t1324 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1326 = minus_gcross_vx_leg1 * t1322 + gcylinder_vx_leg1 * t1324;
-        let t1329 = gcross_vy_leg1 * t1322 + minus_gcylinder_vy_leg1 * t1324;
-        let t1332 = gcross_vz_leg1 * t1322 - gcylinder_vz_leg1 * t1324;
-        let t1335 = gcross_wx_leg1 * t1322 - gcylinder_wx_leg1 * t1324;
-        let t1338 = minus_gcross_wy_leg1 * t1322 + gcylinder_wy_leg1 * t1324;
-        let t1341 = gcross_wz_leg1 * t1322 + minus_gcylinder_wz_leg1 * t1324;
-        let t1343 = t1248 - minus_gcross_vx_leg1 * t1243;
-        let t1345 = gcross_vy_leg1 * t1243 - t1251;
-        let t1347 = gcross_vz_leg1 * t1243 + t1258;
-        let t1349 = gcross_wx_leg1 * t1243 + t1267;
-        let t1351 = t1276 - minus_gcross_wy_leg1 * t1243;
-        let t1353 = gcross_wz_leg1 * t1243 - t1281;
-        let t1357 = c_cylinder_leg1 * (t1287 - t807) - minus_s_cylinder_leg1 * t1316;
-        let t1360 = minus_gcross_vx_leg1 * t1357 + gcylinder_vx_leg1 * t1238;
-        let t1363 = gcross_vy_leg1 * t1357 + minus_gcylinder_vy_leg1 * t1238;
-        let t1366 = gcross_vz_leg1 * t1357 - gcylinder_vz_leg1 * t1238;
-        let t1369 = gcross_wx_leg1 * t1357 - gcylinder_wx_leg1 * t1238;
-        let t1372 = minus_gcross_wy_leg1 * t1357 + gcylinder_wy_leg1 * t1238;
-        let t1375 = gcross_wz_leg1 * t1357 + minus_gcylinder_wz_leg1 * t1238;
+        let t1276 = t1271 - gcross_wz_leg1 * t1233;
+        let t1277 = t1236 * t1236;
+        let t1278 = t792 - t1277;
+        let t1280 = rate_cylinder_leg1 * t791;
+        let t1281 = t1236 * t806;
+        let minus_rate_dot_cross_leg1 = t53 * (t1231 - (t1281 + t1281));
+        let t1285 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1287 = t1280 + t1280 - t1285;
+        let t1290 = c_cylinder_leg1 * t1287 - minus_s_cylinder_leg1 * t1232;
+        let t1292 = gcylinder_vx_leg1 * t1278 - minus_gcross_vx_leg1 * t1290;
+        let t1295 = gcross_vy_leg1 * t1290 - minus_gcylinder_vy_leg1 * t1278;
+        let t1298 = gcross_vz_leg1 * t1290 + gcylinder_vz_leg1 * t1278;
+        let t1301 = gcross_wx_leg1 * t1290 + gcylinder_wx_leg1 * t1278;
+        let t1304 = gcylinder_wy_leg1 * t1278 - minus_gcross_wy_leg1 * t1290;
+        let t1307 = gcross_wz_leg1 * t1290 - minus_gcylinder_wz_leg1 * t1278;
+        let t1312 = t797 * t1187 - t801 * t1206 + t804 * t1226;
+        let t1314 = rate_cylinder_leg1 * t1229 - t1312;
+        let t1315 = t1314 / t62;
+        let rate_dot_cylinder_leg1 = t1237 - t1315;
+        let t1317 = t1237 + rate_dot_cylinder_leg1;
+        let t1321 = c_cylinder_leg1 * t1317 + minus_s_cylinder_leg1 * (t808 - t792);
+        let t1323 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1325 = minus_gcross_vx_leg1 * t1321 + gcylinder_vx_leg1 * t1323;
+        let t1328 = gcross_vy_leg1 * t1321 + minus_gcylinder_vy_leg1 * t1323;
+        let t1331 = gcross_vz_leg1 * t1321 - gcylinder_vz_leg1 * t1323;
+        let t1334 = gcross_wx_leg1 * t1321 - gcylinder_wx_leg1 * t1323;
+        let t1337 = minus_gcross_wy_leg1 * t1321 + gcylinder_wy_leg1 * t1323;
+        let t1340 = gcross_wz_leg1 * t1321 + minus_gcylinder_wz_leg1 * t1323;
+        let t1341 = minus_s_cylinder_leg1 * t1287;
+        let t1343 = t1238 - minus_gcross_vx_leg1 * t1341;
+        let t1345 = gcross_vy_leg1 * t1341 - t1241;
+        let t1347 = gcross_vz_leg1 * t1341 + t1248;
+        let t1349 = gcross_wx_leg1 * t1341 + t1257;
+        let t1351 = t1266 - minus_gcross_wy_leg1 * t1341;
+        let t1353 = gcross_wz_leg1 * t1341 - t1271;
+        let t1357 = c_cylinder_leg1 * (t1277 - t808) - minus_s_cylinder_leg1 * t1315;
+        let t1360 = minus_gcross_vx_leg1 * t1357 + gcylinder_vx_leg1 * t1285;
+        let t1363 = gcross_vy_leg1 * t1357 + minus_gcylinder_vy_leg1 * t1285;
+        let t1366 = gcross_vz_leg1 * t1357 - gcylinder_vz_leg1 * t1285;
+        let t1369 = gcross_wx_leg1 * t1357 - gcylinder_wx_leg1 * t1285;
+        let t1372 = minus_gcross_wy_leg1 * t1357 + gcylinder_wy_leg1 * t1285;
+        let t1375 = gcross_wz_leg1 * t1357 + minus_gcylinder_wz_leg1 * t1285;
         let t1376 = gcylinder_vx_leg1 * rate_dot_cylinder_leg1;
         let t1377 = minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1;
         let t1378 = gcylinder_vz_leg1 * rate_dot_cylinder_leg1;
         let t1379 = gcylinder_wx_leg1 * rate_dot_cylinder_leg1;
         let t1380 = gcylinder_wy_leg1 * rate_dot_cylinder_leg1;
         let t1381 = minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1;
-        let t1382 = 9.81 * t793;
+        let t1382 = 9.81 * t794;
         let t1384 = 9.81 * grod_vz_leg1;
-        let t1402 = t63 * t1384;
+        let t1402 = t1384 / t62;
         let t1405 = 9.81 * minus_s_cross_leg1;
         let t1406 = c_cylinder_leg1 * t1405;
-        let t1408 = 9.81 * t803;
+        let t1408 = 9.81 * t804;
         let t1418 = 9.81 * c_cross_leg1;
         let t1426 = t1228 - t1405;
-        let t1428 = t52 * t1240 - minus_s_cylinder_leg1 * t1426;
-        let t1433 = actuator_accelerations[0] - (t809 - t1384);
-        let t1434 = t62 * (t1287 + t807) + t1433;
+        let t1428 = t52 * t1287 - minus_s_cylinder_leg1 * t1426;
+        let t1433 = actuator_accelerations[0] - (t810 - t1384);
+        let t1434 = t62 * (t1277 + t808) + t1433;
         let t1438 = minus_gcross_vx_leg1 * t1428 + gcylinder_vx_leg1 * t1434
-            + grod_vx_leg1 * t1318;
+            + grod_vx_leg1 * t1317;
         let t1443 = gcross_vy_leg1 * t1428 + minus_gcylinder_vy_leg1 * t1434
-            - minus_minus_grod_vy_leg1 * t1318;
+            - minus_minus_grod_vy_leg1 * t1317;
         let t1448 = gcross_vz_leg1 * t1428 - gcylinder_vz_leg1 * t1434
-            - grod_vz_leg1 * t1318;
-        let t1460 = t1313 + t1408;
-        let t1463 = t788 * minus_rate_cross_leg1 + c_cylinder_leg1 * t1433
+            - grod_vz_leg1 * t1317;
+        let t1460 = t1312 + t1408;
+        let t1463 = t789 * minus_rate_cross_leg1 + c_cylinder_leg1 * t1433
             + minus_s_cylinder_leg1 * t1460;
-        let t1468 = minus_gcross_vx_leg1 * t1463 + t796 * t1238 + grod_vx_leg1 * t1324;
-        let t1473 = gcross_vy_leg1 * t1463 + t800 * t1238
-            - minus_minus_grod_vy_leg1 * t1324;
+        let t1468 = minus_gcross_vx_leg1 * t1463 + t797 * t1285 + grod_vx_leg1 * t1323;
+        let t1473 = gcross_vy_leg1 * t1463 + t801 * t1285
+            - minus_minus_grod_vy_leg1 * t1323;
         let t1476 = gcross_vz_leg1 * t1463 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t1488 = t62 * t1244 + c_cylinder_leg1 * t1426;
-        let t1490 = t1460 - t1315;
-        let t1494 = minus_gcross_vx_leg1 * t1488 + gcylinder_vx_leg1 * t1490
-            - grod_vx_leg1 * t808;
-        let t1499 = minus_minus_grod_vy_leg1 * t808 + gcross_vy_leg1 * t1488
-            + minus_gcylinder_vy_leg1 * t1490;
-        let t1504 = gcylinder_vz_leg1 * t1490 - gcross_vz_leg1 * t1488
-            - grod_vz_leg1 * t808;
-        let t1514 = t1151 + 9.81;
-        let t1515 = t1225 + t1514;
-        let gcylinder_vx_leg2 = t866 * t103;
-        let t1538 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t1539 = t860 * t1538;
-        let t1540 = gcylinder_vx_leg2 * t1539;
-        let minus_gcross_vx_leg2 = t101 * t827;
-        let t1542 = t1184 - t1183;
-        let t1543 = t1176 - t1181;
-        let t1545 = t1169 - (t1542 + t1543);
-        let t1547 = t1203 - t1202;
-        let t1548 = t1195 - t1200;
-        let t1550 = t1159 - (t1547 + t1548);
-        let t1553 = t1223 - t1222;
-        let t1554 = t1215 - t1220;
-        let t1555 = t1553 + t1554;
-        let t1556 = t1151 - t1555;
-        let t1558 = t827 * t1545 + t837 * t1550 - minus_s_cross_leg2 * t1556;
-        let t1559 = 2.0 * actuator_velocities[1];
-        let t1561 = t1558 - t860 * t1559;
-        let t1562 = t1561 / t97;
-        let t1563 = t100 * t1562;
-        let t1564 = t1563 / t97;
-        let t1566 = t1540 + minus_gcross_vx_leg2 * t1564;
-        let minus_gcross_vy_leg2 = t101 * t837;
-        let minus_gcylinder_vy_leg2 = t870 * t103;
-        let t1570 = minus_gcylinder_vy_leg2 * t1539;
-        let t1571 = t1570 - minus_gcross_vy_leg2 * t1564;
-        let gcross_vz_leg2 = t101 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t873 * t103;
-        let t1575 = minus_gcylinder_vz_leg2 * t1539;
-        let t1576 = gcross_vz_leg2 * t1564 + t1575;
-        let minus_gcross_wx_leg2 = t83 * gcross_vz_leg2 + t74 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t83 * minus_gcylinder_vz_leg2
-            - t74 * minus_gcylinder_vy_leg2;
-        let t1584 = gcylinder_wx_leg2 * t1539;
-        let t1585 = minus_gcross_wx_leg2 * t1564 + t1584;
-        let minus_gcylinder_wy_leg2 = t74 * gcylinder_vx_leg2
-            + t77 * minus_gcylinder_vz_leg2;
-        let t1589 = minus_gcylinder_wy_leg2 * t1539;
-        let minus_minus_gcross_wy_leg2 = t74 * minus_gcross_vx_leg2
-            + t77 * gcross_vz_leg2;
-        let t1594 = t1589 + minus_minus_gcross_wy_leg2 * t1564;
-        let gcross_wz_leg2 = t77 * minus_gcross_vy_leg2 - t83 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t77 * minus_gcylinder_vy_leg2
-            + t83 * gcylinder_vx_leg2;
-        let t1602 = minus_minus_gcylinder_wz_leg2 * t1539;
-        let t1603 = t1602 - gcross_wz_leg2 * t1564;
-        let t1604 = t1538 * t1538;
-        let t1605 = t861 - t1604;
-        let t1607 = rate_cylinder_leg2 * t860;
-        let t1608 = t1538 * t875;
-        let minus_rate_dot_cross_leg2 = t101 * (t1561 + t1608 + t1608);
-        let t1612 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1614 = t1607 + t1612 + t1607;
-        let t1617 = c_cylinder_leg2 * t1614 + s_cylinder_leg2 * t1562;
-        let t1619 = gcylinder_vx_leg2 * t1605 - minus_gcross_vx_leg2 * t1617;
-        let t1622 = minus_gcross_vy_leg2 * t1617 + minus_gcylinder_vy_leg2 * t1605;
-        let t1625 = gcross_vz_leg2 * t1617 - minus_gcylinder_vz_leg2 * t1605;
-        let t1628 = gcylinder_wx_leg2 * t1605 - minus_gcross_wx_leg2 * t1617;
-        let t1631 = minus_minus_gcross_wy_leg2 * t1617 - minus_gcylinder_wy_leg2 * t1605;
-        let t1634 = gcross_wz_leg2 * t1617 + minus_minus_gcylinder_wz_leg2 * t1605;
-        let t1639 = t866 * t1545 - t870 * t1550 - t873 * t1556;
-        let t1641 = t1639 - rate_cylinder_leg2 * t1559;
-        let t1642 = t103 * t1641;
-        let rate_dot_cylinder_leg2 = t1642 - t1539;
-        let t1644 = rate_dot_cylinder_leg2 - t1539;
-        let t1648 = c_cylinder_leg2 * t1644 - s_cylinder_leg2 * (t877 - t861);
-        let t1650 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1652 = minus_gcross_vx_leg2 * t1648 + gcylinder_vx_leg2 * t1650;
-        let t1655 = minus_gcylinder_vy_leg2 * t1650 - minus_gcross_vy_leg2 * t1648;
-        let t1658 = gcross_vz_leg2 * t1648 + minus_gcylinder_vz_leg2 * t1650;
-        let t1661 = minus_gcross_wx_leg2 * t1648 + gcylinder_wx_leg2 * t1650;
-        let t1664 = minus_minus_gcross_wy_leg2 * t1648 + minus_gcylinder_wy_leg2 * t1650;
-        let t1667 = gcross_wz_leg2 * t1648 - minus_minus_gcylinder_wz_leg2 * t1650;
-        let t1668 = minus_rate_dot_cross_leg2 - t1564;
-        let t1670 = minus_gcross_vx_leg2 * t1668 - t1540;
-        let t1672 = minus_gcross_vy_leg2 * t1668 + t1570;
-        let t1674 = t1575 - gcross_vz_leg2 * t1668;
-        let t1676 = t1584 - minus_gcross_wx_leg2 * t1668;
-        let t1678 = t1589 - minus_minus_gcross_wy_leg2 * t1668;
-        let t1680 = t1602 + gcross_wz_leg2 * t1668;
-        let t1685 = c_cylinder_leg2 * (t1604 - t877) - s_cylinder_leg2 * t1642;
-        let t1687 = gcylinder_vx_leg2 * t1612 - minus_gcross_vx_leg2 * t1685;
-        let t1690 = minus_gcross_vy_leg2 * t1685 + minus_gcylinder_vy_leg2 * t1612;
-        let t1693 = gcross_vz_leg2 * t1685 - minus_gcylinder_vz_leg2 * t1612;
-        let t1696 = gcylinder_wx_leg2 * t1612 - minus_gcross_wx_leg2 * t1685;
-        let t1699 = minus_minus_gcross_wy_leg2 * t1685 - minus_gcylinder_wy_leg2 * t1612;
-        let t1702 = gcross_wz_leg2 * t1685 + minus_minus_gcylinder_wz_leg2 * t1612;
-        let t1703 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
-        let t1704 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
-        let t1705 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
-        let t1706 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
-        let t1707 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
-        let t1708 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
-        let t1709 = 9.81 * t864;
-        let t1711 = 9.81 * grod_vz_leg2;
-        let t1729 = t1711 / t97;
-        let t1732 = 9.81 * minus_s_cross_leg2;
-        let t1733 = c_cylinder_leg2 * t1732;
-        let t1735 = 9.81 * t873;
-        let t1745 = 9.81 * c_cross_leg2;
-        let t1753 = t1558 - t1732;
-        let t1755 = t100 * t1614 + s_cylinder_leg2 * t1753;
-        let t1760 = actuator_accelerations[1] - (t879 - t1711);
-        let t1761 = t97 * (t1604 + t877) + t1760;
-        let t1765 = minus_gcross_vx_leg2 * t1755 + gcylinder_vx_leg2 * t1761
-            + grod_vx_leg2 * t1644;
-        let t1770 = minus_gcylinder_vy_leg2 * t1761 - minus_gcross_vy_leg2 * t1755
-            - minus_minus_grod_vy_leg2 * t1644;
-        let t1775 = gcross_vz_leg2 * t1755 + minus_gcylinder_vz_leg2 * t1761
-            - grod_vz_leg2 * t1644;
-        let t1788 = t1639 - t1735;
-        let t1791 = t858 * minus_rate_cross_leg2 + c_cylinder_leg2 * t1760
-            - s_cylinder_leg2 * t1788;
-        let t1795 = t866 * t1612 - minus_gcross_vx_leg2 * t1791 - grod_vx_leg2 * t1650;
-        let t1800 = minus_minus_grod_vy_leg2 * t1650 + minus_gcross_vy_leg2 * t1791
-            + t870 * t1612;
-        let t1803 = gcross_vz_leg2 * t1791 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t1813 = t1641 + t1788;
-        let t1816 = t1563 + c_cylinder_leg2 * t1753;
-        let t1820 = gcylinder_vx_leg2 * t1813 + minus_gcross_vx_leg2 * t1816
-            - grod_vx_leg2 * t878;
-        let t1825 = minus_minus_grod_vy_leg2 * t878 + minus_gcylinder_vy_leg2 * t1813
-            - minus_gcross_vy_leg2 * t1816;
-        let t1830 = gcross_vz_leg2 * t1816 + minus_gcylinder_vz_leg2 * t1813
-            + grod_vz_leg2 * t878;
-        let t1840 = t1514 - t1555;
-        let gcross_vx_leg3 = t892 / t129;
-        let t1863 = t1159 + t1201;
-        let t1865 = t1169 + t1182;
-        let t1868 = t1151 + t1221;
-        let t1870 = t889 * t1863 - t892 * t1865 - minus_s_cross_leg3 * t1868;
-        let t1871 = 2.0 * actuator_velocities[2];
-        let t1873 = t1870 - t901 * t1871;
-        let t1874 = t1873 / t126;
-        let t1875 = c_cylinder_leg3 * t1874;
-        let gcylinder_vx_leg3 = t907 * t131;
-        let t1878 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1879 = t901 * t1878;
-        let t1880 = gcylinder_vx_leg3 * t1879;
-        let t1881 = t1880 - gcross_vx_leg3 * t1875;
-        let gcylinder_vy_leg3 = t911 * t131;
-        let t1883 = gcylinder_vy_leg3 * t1879;
-        let minus_gcross_vy_leg3 = t889 / t129;
-        let t1886 = t1883 + minus_gcross_vy_leg3 * t1875;
-        let gcross_vz_leg3 = minus_s_cross_leg3 / t129;
-        let minus_gcylinder_vz_leg3 = t914 * t131;
-        let t1890 = minus_gcylinder_vz_leg3 * t1879;
-        let t1891 = gcross_vz_leg3 * t1875 + t1890;
+        let t1487 = c_cylinder_leg1 * (t1426 + t1231);
+        let t1489 = t1460 - t1314;
+        let t1493 = minus_gcross_vx_leg1 * t1487 + gcylinder_vx_leg1 * t1489
+            - grod_vx_leg1 * t809;
+        let t1498 = minus_minus_grod_vy_leg1 * t809 + gcross_vy_leg1 * t1487
+            + minus_gcylinder_vy_leg1 * t1489;
+        let t1503 = gcylinder_vz_leg1 * t1489 - gcross_vz_leg1 * t1487
+            - grod_vz_leg1 * t809;
+        let t1513 = t1151 + 9.81;
+        let t1514 = t1225 + t1513;
+        let gcylinder_vx_leg2 = t867 * t92;
+        let t1537 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t1538 = t861 * t1537;
+        let t1539 = gcylinder_vx_leg2 * t1538;
+        let minus_gcross_vx_leg2 = t828 / t187;
+        let t1541 = t1184 - t1183;
+        let t1542 = t1176 - t1181;
+        let t1544 = t1169 - (t1541 + t1542);
+        let t1546 = t1203 - t1202;
+        let t1547 = t1195 - t1200;
+        let t1549 = t1159 - (t1546 + t1547);
+        let t1552 = t1223 - t1222;
+        let t1553 = t1215 - t1220;
+        let t1554 = t1552 + t1553;
+        let t1555 = t1151 - t1554;
+        let t1557 = t828 * t1544 + t838 * t1549 - minus_s_cross_leg2 * t1555;
+        let t1558 = 2.0 * actuator_velocities[1];
+        let t1560 = t1557 - t861 * t1558;
+        let t1561 = t1560 / t91;
+        let t1562 = c_cylinder_leg2 * t1561;
+        let t1564 = t1539 + minus_gcross_vx_leg2 * t1562;
+        let minus_gcross_vy_leg2 = t838 / t187;
+        let minus_gcylinder_vy_leg2 = t871 * t92;
+        let t1568 = minus_gcylinder_vy_leg2 * t1538;
+        let t1569 = t1568 - minus_gcross_vy_leg2 * t1562;
+        let gcross_vz_leg2 = minus_s_cross_leg2 / t187;
+        let minus_gcylinder_vz_leg2 = t874 * t92;
+        let t1573 = minus_gcylinder_vz_leg2 * t1538;
+        let t1574 = gcross_vz_leg2 * t1562 + t1573;
+        let minus_gcross_wx_leg2 = t74 * gcross_vz_leg2 + t82 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t74 * minus_gcylinder_vz_leg2
+            - t82 * minus_gcylinder_vy_leg2;
+        let t1582 = gcylinder_wx_leg2 * t1538;
+        let t1583 = minus_gcross_wx_leg2 * t1562 + t1582;
+        let minus_gcylinder_wy_leg2 = t82 * gcylinder_vx_leg2
+            + t68 * minus_gcylinder_vz_leg2;
+        let t1587 = minus_gcylinder_wy_leg2 * t1538;
+        let minus_minus_gcross_wy_leg2 = t82 * minus_gcross_vx_leg2
+            + t68 * gcross_vz_leg2;
+        let t1592 = t1587 + minus_minus_gcross_wy_leg2 * t1562;
+        let gcross_wz_leg2 = t68 * minus_gcross_vy_leg2 - t74 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t68 * minus_gcylinder_vy_leg2
+            + t74 * gcylinder_vx_leg2;
+        let t1600 = minus_minus_gcylinder_wz_leg2 * t1538;
+        let t1601 = t1600 - gcross_wz_leg2 * t1562;
+        let t1602 = t1537 * t1537;
+        let t1603 = t862 - t1602;
+        let t1605 = rate_cylinder_leg2 * t861;
+        let minus_rate_dot_cross_leg2 = (t1560 + 2.0 * (t1537 * t876)) / t187;
+        let t1610 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1612 = t1605 + t1610 + t1605;
+        let t1615 = c_cylinder_leg2 * t1612 + s_cylinder_leg2 * t1561;
+        let t1617 = gcylinder_vx_leg2 * t1603 - minus_gcross_vx_leg2 * t1615;
+        let t1620 = minus_gcross_vy_leg2 * t1615 + minus_gcylinder_vy_leg2 * t1603;
+        let t1623 = gcross_vz_leg2 * t1615 - minus_gcylinder_vz_leg2 * t1603;
+        let t1626 = gcylinder_wx_leg2 * t1603 - minus_gcross_wx_leg2 * t1615;
+        let t1629 = minus_minus_gcross_wy_leg2 * t1615 - minus_gcylinder_wy_leg2 * t1603;
+        let t1632 = gcross_wz_leg2 * t1615 + minus_minus_gcylinder_wz_leg2 * t1603;
+        let t1637 = t867 * t1544 - t871 * t1549 - t874 * t1555;
+        let t1639 = t1637 - rate_cylinder_leg2 * t1558;
+        let t1640 = t1639 / t91;
+        let rate_dot_cylinder_leg2 = t1640 - t1538;
+        let t1642 = rate_dot_cylinder_leg2 - t1538;
+        let t1646 = c_cylinder_leg2 * t1642 - s_cylinder_leg2 * (t878 - t862);
+        let t1648 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1650 = minus_gcross_vx_leg2 * t1646 + gcylinder_vx_leg2 * t1648;
+        let t1653 = minus_gcylinder_vy_leg2 * t1648 - minus_gcross_vy_leg2 * t1646;
+        let t1656 = gcross_vz_leg2 * t1646 + minus_gcylinder_vz_leg2 * t1648;
+        let t1659 = minus_gcross_wx_leg2 * t1646 + gcylinder_wx_leg2 * t1648;
+        let t1662 = minus_minus_gcross_wy_leg2 * t1646 + minus_gcylinder_wy_leg2 * t1648;
+        let t1665 = gcross_wz_leg2 * t1646 - minus_minus_gcylinder_wz_leg2 * t1648;
+        let t1666 = s_cylinder_leg2 * t1612;
+        let t1668 = minus_gcross_vx_leg2 * t1666 - t1539;
+        let t1670 = minus_gcross_vy_leg2 * t1666 + t1568;
+        let t1672 = t1573 - gcross_vz_leg2 * t1666;
+        let t1674 = t1582 - minus_gcross_wx_leg2 * t1666;
+        let t1676 = t1587 - minus_minus_gcross_wy_leg2 * t1666;
+        let t1678 = t1600 + gcross_wz_leg2 * t1666;
+        let t1679 = gcylinder_vx_leg2 * t1610;
+        let t1683 = c_cylinder_leg2 * (t1602 - t878) - s_cylinder_leg2 * t1640;
+        let t1685 = t1679 - minus_gcross_vx_leg2 * t1683;
+        let t1688 = minus_gcross_vy_leg2 * t1683 + minus_gcylinder_vy_leg2 * t1610;
+        let t1691 = gcross_vz_leg2 * t1683 - minus_gcylinder_vz_leg2 * t1610;
+        let t1694 = gcylinder_wx_leg2 * t1610 - minus_gcross_wx_leg2 * t1683;
+        let t1697 = minus_minus_gcross_wy_leg2 * t1683 - minus_gcylinder_wy_leg2 * t1610;
+        let t1700 = gcross_wz_leg2 * t1683 + minus_minus_gcylinder_wz_leg2 * t1610;
+        let t1701 = gcylinder_vx_leg2 * rate_dot_cylinder_leg2;
+        let t1702 = minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2;
+        let t1703 = minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2;
+        let t1704 = gcylinder_wx_leg2 * rate_dot_cylinder_leg2;
+        let t1705 = minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2;
+        let t1706 = minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2;
+        let t1707 = 9.81 * t865;
+        let t1709 = 9.81 * grod_vz_leg2;
+        let t1727 = t1709 / t91;
+        let t1730 = 9.81 * minus_s_cross_leg2;
+        let t1731 = c_cylinder_leg2 * t1730;
+        let t1733 = 9.81 * t874;
+        let t1743 = 9.81 * c_cross_leg2;
+        let t1751 = t1557 - t1730;
+        let t1753 = t187 * t1612 + s_cylinder_leg2 * t1751;
+        let t1758 = actuator_accelerations[1] - (t880 - t1709);
+        let t1759 = t91 * (t1602 + t878) + t1758;
+        let t1763 = minus_gcross_vx_leg2 * t1753 + gcylinder_vx_leg2 * t1759
+            + grod_vx_leg2 * t1642;
+        let t1768 = minus_gcylinder_vy_leg2 * t1759 - minus_gcross_vy_leg2 * t1753
+            - minus_minus_grod_vy_leg2 * t1642;
+        let t1773 = gcross_vz_leg2 * t1753 + minus_gcylinder_vz_leg2 * t1759
+            - grod_vz_leg2 * t1642;
+        let t1786 = t1637 - t1733;
+        let t1789 = t859 * minus_rate_cross_leg2 + c_cylinder_leg2 * t1758
+            - s_cylinder_leg2 * t1786;
+        let t1793 = t91 * t1679 - minus_gcross_vx_leg2 * t1789 - grod_vx_leg2 * t1648;
+        let t1798 = minus_minus_grod_vy_leg2 * t1648 + minus_gcross_vy_leg2 * t1789
+            + t871 * t1610;
+        let t1801 = gcross_vz_leg2 * t1789 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t1811 = t1639 + t1786;
+        let t1814 = c_cylinder_leg2 * (t1751 + t1560);
+        let t1818 = gcylinder_vx_leg2 * t1811 + minus_gcross_vx_leg2 * t1814
+            - grod_vx_leg2 * t879;
+        let t1823 = minus_minus_grod_vy_leg2 * t879 + minus_gcylinder_vy_leg2 * t1811
+            - minus_gcross_vy_leg2 * t1814;
+        let t1828 = gcross_vz_leg2 * t1814 + minus_gcylinder_vz_leg2 * t1811
+            + grod_vz_leg2 * t879;
+        let t1838 = t1513 - t1554;
+        let gcross_vx_leg3 = t197 * t893;
+        let t1861 = t1159 + t1201;
+        let t1863 = t1169 + t1182;
+        let t1866 = t1151 + t1221;
+        let t1868 = t890 * t1861 - t893 * t1863 - minus_s_cross_leg3 * t1866;
+        let t1869 = 2.0 * actuator_velocities[2];
+        let t1871 = t1868 - t902 * t1869;
+        let t1872 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_rate_dot_cross_leg3 = t197 * (t1871 + 2.0 * (t1872 * t917));
+        let t1877 = rate_cylinder_leg3 * t902;
+        let t1878 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1880 = t1877 + t1878 + t1877;
+        let t1881 = s_cylinder_leg3 * t1880;
+        let t1882 = t1881 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t908 * t113;
+        let t1885 = t902 * t1872;
+        let t1886 = gcylinder_vx_leg3 * t1885;
+        let t1887 = gcross_vx_leg3 * t1882 + t1886;
+        let gcylinder_vy_leg3 = t912 * t113;
+        let t1889 = gcylinder_vy_leg3 * t1885;
+        let minus_gcross_vy_leg3 = t197 * t890;
+        let t1892 = t1889 - minus_gcross_vy_leg3 * t1882;
+        let gcross_vz_leg3 = t197 * minus_s_cross_leg3;
+        let minus_gcylinder_vz_leg3 = t915 * t113;
+        let t1896 = minus_gcylinder_vz_leg3 * t1885;
+        let t1897 = gcross_vz_leg3 * t1882 - t1896;
         let gcross_wx_leg3 = t26 * gcross_vz_leg3 + t44 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t26 * minus_gcylinder_vz_leg3
             + t44 * gcylinder_vy_leg3;
-        let t1899 = minus_gcylinder_wx_leg3 * t1879;
-        let t1900 = gcross_wx_leg3 * t1875 + t1899;
+        let t1905 = minus_gcylinder_wx_leg3 * t1885;
+        let t1906 = gcross_wx_leg3 * t1882 - t1905;
         let gcross_wy_leg3 = t44 * gcross_vx_leg3 - t12 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t44 * gcylinder_vx_leg3 + t12 * minus_gcylinder_vz_leg3;
-        let t1908 = gcylinder_wy_leg3 * t1879;
-        let t1909 = t1908 - gcross_wy_leg3 * t1875;
+        let t1914 = gcylinder_wy_leg3 * t1885;
+        let t1915 = gcross_wy_leg3 * t1882 + t1914;
         let gcylinder_wz_leg3 = t12 * gcylinder_vy_leg3 - t26 * gcylinder_vx_leg3;
-        let t1913 = gcylinder_wz_leg3 * t1879;
+        let t1919 = gcylinder_wz_leg3 * t1885;
         let minus_gcross_wz_leg3 = t12 * minus_gcross_vy_leg3 + t26 * gcross_vx_leg3;
-        let t1918 = t1913 + minus_gcross_wz_leg3 * t1875;
-        let t1919 = rate_cylinder_leg3 * t901;
-        let t1920 = t1878 * t916;
-        let minus_rate_dot_cross_leg3 = (t1873 + t1920 + t1920) / t129;
-        let t1924 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1926 = t1919 + t1924 + t1919;
-        let t1929 = c_cylinder_leg3 * t1926 + s_cylinder_leg3 * t1874;
-        let t1931 = t1878 * t1878;
-        let t1932 = t902 - t1931;
-        let t1934 = gcross_vx_leg3 * t1929 + gcylinder_vx_leg3 * t1932;
-        let t1937 = gcylinder_vy_leg3 * t1932 - minus_gcross_vy_leg3 * t1929;
-        let t1940 = gcross_vz_leg3 * t1929 - minus_gcylinder_vz_leg3 * t1932;
-        let t1943 = gcross_wx_leg3 * t1929 - minus_gcylinder_wx_leg3 * t1932;
-        let t1946 = gcross_wy_leg3 * t1929 + gcylinder_wy_leg3 * t1932;
-        let t1949 = gcylinder_wz_leg3 * t1932 - minus_gcross_wz_leg3 * t1929;
-        let t1954 = t907 * t1865 + t911 * t1863 - t914 * t1868;
-        let t1956 = t1954 - rate_cylinder_leg3 * t1871;
-        let t1957 = t1956 / t126;
-        let rate_dot_cylinder_leg3 = t1957 - t1879;
-        let t1959 = rate_dot_cylinder_leg3 - t1879;
-        let t1963 = c_cylinder_leg3 * t1959 - s_cylinder_leg3 * (t918 - t902);
-        let t1965 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1967 = gcross_vx_leg3 * t1963 - gcylinder_vx_leg3 * t1965;
-        let t1970 = minus_gcross_vy_leg3 * t1963 + gcylinder_vy_leg3 * t1965;
-        let t1973 = gcross_vz_leg3 * t1963 + minus_gcylinder_vz_leg3 * t1965;
-        let t1976 = gcross_wx_leg3 * t1963 + minus_gcylinder_wx_leg3 * t1965;
-        let t1979 = gcross_wy_leg3 * t1963 - gcylinder_wy_leg3 * t1965;
-        let t1982 = minus_gcross_wz_leg3 * t1963 + gcylinder_wz_leg3 * t1965;
-        let t1983 = s_cylinder_leg3 * t1926;
-        let t1985 = gcross_vx_leg3 * t1983 + t1880;
-        let t1987 = minus_gcross_vy_leg3 * t1983 - t1883;
-        let t1989 = t1890 - gcross_vz_leg3 * t1983;
-        let t1991 = t1899 - gcross_wx_leg3 * t1983;
-        let t1993 = gcross_wy_leg3 * t1983 + t1908;
-        let t1995 = minus_gcross_wz_leg3 * t1983 - t1913;
-        let t1999 = c_cylinder_leg3 * (t1931 - t918) - s_cylinder_leg3 * t1957;
-        let t2001 = gcylinder_vx_leg3 * t1924;
-        let t2002 = gcross_vx_leg3 * t1999 + t2001;
-        let t2003 = gcylinder_vy_leg3 * t1924;
-        let t2005 = t2003 - minus_gcross_vy_leg3 * t1999;
-        let t2008 = gcross_vz_leg3 * t1999 - minus_gcylinder_vz_leg3 * t1924;
-        let t2011 = gcross_wx_leg3 * t1999 - minus_gcylinder_wx_leg3 * t1924;
-        let t2014 = gcross_wy_leg3 * t1999 + gcylinder_wy_leg3 * t1924;
-        let t2017 = gcylinder_wz_leg3 * t1924 - minus_gcross_wz_leg3 * t1999;
-        let t2018 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
-        let t2019 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
-        let t2020 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
-        let t2021 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
-        let t2022 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
-        let t2023 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
-        let t2024 = 9.81 * t904;
-        let t2026 = 9.81 * grod_vz_leg3;
-        let t2044 = t2026 / t126;
-        let t2047 = 9.81 * minus_s_cross_leg3;
-        let t2048 = c_cylinder_leg3 * t2047;
-        let t2050 = 9.81 * t914;
-        let t2060 = 9.81 * c_cross_leg3;
-        let t2068 = t1870 - t2047;
-        let t2070 = t129 * t1926 + s_cylinder_leg3 * t2068;
-        let t2075 = actuator_accelerations[2] - (t920 - t2026);
-        let t2076 = t126 * (t1931 + t918) + t2075;
-        let t2080 = gcross_vx_leg3 * t2070 - gcylinder_vx_leg3 * t2076
-            - minus_minus_grod_vx_leg3 * t1959;
-        let t2085 = minus_gcross_vy_leg3 * t2070 + gcylinder_vy_leg3 * t2076
-            + grod_vy_leg3 * t1959;
-        let t2090 = gcross_vz_leg3 * t2070 + minus_gcylinder_vz_leg3 * t2076
-            - grod_vz_leg3 * t1959;
-        let t2102 = t1954 - t2050;
-        let t2105 = t899 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2075
-            - s_cylinder_leg3 * t2102;
-        let t2110 = gcross_vx_leg3 * t2105 + t126 * t2001
-            - minus_minus_grod_vx_leg3 * t1965;
-        let t2115 = t126 * t2003 - minus_gcross_vy_leg3 * t2105 - grod_vy_leg3 * t1965;
-        let t2118 = gcross_vz_leg3 * t2105 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2129 = c_cylinder_leg3 * (t2068 + t1873);
-        let t2131 = t1956 + t2102;
-        let t2135 = gcylinder_vx_leg3 * t2131 - gcross_vx_leg3 * t2129
-            - minus_minus_grod_vx_leg3 * t919;
-        let t2140 = gcylinder_vy_leg3 * t2131 + minus_gcross_vy_leg3 * t2129
-            - grod_vy_leg3 * t919;
-        let t2145 = gcross_vz_leg3 * t2129 + minus_gcylinder_vz_leg3 * t2131
-            + grod_vz_leg3 * t919;
-        let t2155 = 9.81 + t1868;
-        let gcross_vx_leg4 = t158 * t933;
-        let t2178 = t1159 + t1547;
-        let t2180 = t1169 + t1542;
-        let t2183 = t1151 + t1553;
-        let t2185 = t930 * t2178 - t933 * t2180 - minus_s_cross_leg4 * t2183;
-        let t2186 = actuator_velocities[3] + actuator_velocities[3];
-        let t2188 = t2185 - t942 * t2186;
-        let t2189 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t2190 = t2189 * t958;
-        let minus_rate_dot_cross_leg4 = t158 * (t2188 + t2190 + t2190);
-        let t2194 = rate_cylinder_leg4 * t942;
-        let t2195 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t2197 = t2194 + t2195 + t2194;
-        let t2198 = s_cylinder_leg4 * t2197;
-        let t2199 = t2198 - minus_rate_dot_cross_leg4;
-        let gcylinder_vx_leg4 = t949 * t944;
-        let t2202 = t942 * t2189;
-        let t2203 = gcylinder_vx_leg4 * t2202;
-        let t2204 = gcross_vx_leg4 * t2199 + t2203;
-        let gcylinder_vy_leg4 = t953 * t944;
-        let t2206 = gcylinder_vy_leg4 * t2202;
-        let minus_gcross_vy_leg4 = t158 * t930;
-        let t2209 = t2206 - minus_gcross_vy_leg4 * t2199;
-        let gcross_vz_leg4 = t158 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t956 * t944;
-        let t2213 = minus_gcylinder_vz_leg4 * t2202;
-        let t2214 = gcross_vz_leg4 * t2199 - t2213;
-        let gcross_wx_leg4 = t81 * gcross_vz_leg4 + t72 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t81 * minus_gcylinder_vz_leg4
-            + t72 * gcylinder_vy_leg4;
-        let t2222 = minus_gcylinder_wx_leg4 * t2202;
-        let t2223 = gcross_wx_leg4 * t2199 - t2222;
-        let gcross_wy_leg4 = t72 * gcross_vx_leg4 - t75 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t72 * gcylinder_vx_leg4 + t75 * minus_gcylinder_vz_leg4;
-        let t2231 = gcylinder_wy_leg4 * t2202;
-        let t2232 = gcross_wy_leg4 * t2199 + t2231;
-        let gcylinder_wz_leg4 = t75 * gcylinder_vy_leg4 - t81 * gcylinder_vx_leg4;
-        let t2236 = gcylinder_wz_leg4 * t2202;
-        let minus_gcross_wz_leg4 = t75 * minus_gcross_vy_leg4 + t81 * gcross_vx_leg4;
-        let t2241 = t2236 - minus_gcross_wz_leg4 * t2199;
-        let t2245 = c_cylinder_leg4 * t2197 + s_cylinder_leg4 * (t2188 / t154);
-        let t2247 = t2189 * t2189;
-        let t2248 = t943 - t2247;
-        let t2250 = gcross_vx_leg4 * t2245 + gcylinder_vx_leg4 * t2248;
-        let t2253 = gcylinder_vy_leg4 * t2248 - minus_gcross_vy_leg4 * t2245;
-        let t2256 = gcross_vz_leg4 * t2245 - minus_gcylinder_vz_leg4 * t2248;
-        let t2259 = gcross_wx_leg4 * t2245 - minus_gcylinder_wx_leg4 * t2248;
-        let t2262 = gcross_wy_leg4 * t2245 + gcylinder_wy_leg4 * t2248;
-        let t2265 = gcylinder_wz_leg4 * t2248 - minus_gcross_wz_leg4 * t2245;
-        let t2270 = t949 * t2180 + t953 * t2178 - t956 * t2183;
-        let t2272 = t2270 - rate_cylinder_leg4 * t2186;
-        let t2273 = t2272 / t154;
-        let rate_dot_cylinder_leg4 = t2273 - t2202;
-        let t2275 = rate_dot_cylinder_leg4 - t2202;
-        let t2279 = c_cylinder_leg4 * t2275 - s_cylinder_leg4 * (t960 - t943);
-        let t2281 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t2283 = gcross_vx_leg4 * t2279 - gcylinder_vx_leg4 * t2281;
-        let t2286 = minus_gcross_vy_leg4 * t2279 + gcylinder_vy_leg4 * t2281;
-        let t2289 = gcross_vz_leg4 * t2279 + minus_gcylinder_vz_leg4 * t2281;
-        let t2292 = gcross_wx_leg4 * t2279 + minus_gcylinder_wx_leg4 * t2281;
-        let t2295 = gcross_wy_leg4 * t2279 - gcylinder_wy_leg4 * t2281;
-        let t2298 = minus_gcross_wz_leg4 * t2279 + gcylinder_wz_leg4 * t2281;
-        let t2300 = gcross_vx_leg4 * t2198 + t2203;
-        let t2302 = minus_gcross_vy_leg4 * t2198 - t2206;
-        let t2304 = t2213 - gcross_vz_leg4 * t2198;
-        let t2306 = t2222 - gcross_wx_leg4 * t2198;
-        let t2308 = gcross_wy_leg4 * t2198 + t2231;
-        let t2310 = minus_gcross_wz_leg4 * t2198 - t2236;
-        let t2314 = c_cylinder_leg4 * (t2247 - t960) - s_cylinder_leg4 * t2273;
-        let t2317 = gcross_vx_leg4 * t2314 + gcylinder_vx_leg4 * t2195;
-        let t2318 = gcylinder_vy_leg4 * t2195;
-        let t2320 = t2318 - minus_gcross_vy_leg4 * t2314;
-        let t2323 = gcross_vz_leg4 * t2314 - minus_gcylinder_vz_leg4 * t2195;
-        let t2326 = gcross_wx_leg4 * t2314 - minus_gcylinder_wx_leg4 * t2195;
-        let t2329 = gcross_wy_leg4 * t2314 + gcylinder_wy_leg4 * t2195;
-        let t2332 = gcylinder_wz_leg4 * t2195 - minus_gcross_wz_leg4 * t2314;
-        let t2333 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
-        let t2334 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
-        let t2335 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
-        let t2336 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
-        let t2337 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
-        let t2338 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
-        let t2339 = 9.81 * t946;
-        let t2341 = 9.81 * grod_vz_leg4;
-        let t2359 = t944 * t2341;
-        let t2362 = 9.81 * minus_s_cross_leg4;
-        let t2363 = c_cylinder_leg4 * t2362;
-        let t2365 = 9.81 * t956;
-        let t2375 = 9.81 * c_cross_leg4;
-        let t2383 = t2185 - t2362;
-        let t2385 = t157 * t2197 + s_cylinder_leg4 * t2383;
-        let t2390 = actuator_accelerations[3] - (t962 - t2341);
-        let t2391 = t154 * (t2247 + t960) + t2390;
-        let t2395 = gcross_vx_leg4 * t2385 - gcylinder_vx_leg4 * t2391
-            - minus_minus_grod_vx_leg4 * t2275;
-        let t2400 = minus_gcross_vy_leg4 * t2385 + gcylinder_vy_leg4 * t2391
-            + grod_vy_leg4 * t2275;
-        let t2405 = gcross_vz_leg4 * t2385 + minus_gcylinder_vz_leg4 * t2391
-            - grod_vz_leg4 * t2275;
-        let t2417 = t2270 - t2365;
-        let t2420 = t940 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2390
-            - s_cylinder_leg4 * t2417;
-        let t2425 = gcross_vx_leg4 * t2420 + t949 * t2195
-            - minus_minus_grod_vx_leg4 * t2281;
-        let t2430 = t154 * t2318 - minus_gcross_vy_leg4 * t2420 - grod_vy_leg4 * t2281;
-        let t2433 = gcross_vz_leg4 * t2420 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2444 = c_cylinder_leg4 * (t2383 + t2188);
-        let t2446 = t2272 + t2417;
-        let t2450 = gcylinder_vx_leg4 * t2446 - gcross_vx_leg4 * t2444
+        let t1924 = t1919 - minus_gcross_wz_leg3 * t1882;
+        let t1928 = c_cylinder_leg3 * t1880 + t1871 * (s_cylinder_leg3 / t112);
+        let t1930 = t1872 * t1872;
+        let t1931 = t903 - t1930;
+        let t1933 = gcross_vx_leg3 * t1928 + gcylinder_vx_leg3 * t1931;
+        let t1936 = gcylinder_vy_leg3 * t1931 - minus_gcross_vy_leg3 * t1928;
+        let t1939 = gcross_vz_leg3 * t1928 - minus_gcylinder_vz_leg3 * t1931;
+        let t1942 = gcross_wx_leg3 * t1928 - minus_gcylinder_wx_leg3 * t1931;
+        let t1945 = gcross_wy_leg3 * t1928 + gcylinder_wy_leg3 * t1931;
+        let t1948 = gcylinder_wz_leg3 * t1931 - minus_gcross_wz_leg3 * t1928;
+        let t1953 = t908 * t1863 + t912 * t1861 - t915 * t1866;
+        let t1955 = t1953 - rate_cylinder_leg3 * t1869;
+        let t1956 = t113 * t1955;
+        let rate_dot_cylinder_leg3 = t1956 - t1885;
+        let t1958 = rate_dot_cylinder_leg3 - t1885;
+        let t1962 = c_cylinder_leg3 * t1958 - s_cylinder_leg3 * (t919 - t903);
+        let t1964 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1966 = gcross_vx_leg3 * t1962 - gcylinder_vx_leg3 * t1964;
+        let t1969 = minus_gcross_vy_leg3 * t1962 + gcylinder_vy_leg3 * t1964;
+        let t1972 = gcross_vz_leg3 * t1962 + minus_gcylinder_vz_leg3 * t1964;
+        let t1975 = gcross_wx_leg3 * t1962 + minus_gcylinder_wx_leg3 * t1964;
+        let t1978 = gcross_wy_leg3 * t1962 - gcylinder_wy_leg3 * t1964;
+        let t1981 = minus_gcross_wz_leg3 * t1962 + gcylinder_wz_leg3 * t1964;
+        let t1983 = gcross_vx_leg3 * t1881 + t1886;
+        let t1985 = minus_gcross_vy_leg3 * t1881 - t1889;
+        let t1987 = t1896 - gcross_vz_leg3 * t1881;
+        let t1989 = t1905 - gcross_wx_leg3 * t1881;
+        let t1991 = gcross_wy_leg3 * t1881 + t1914;
+        let t1993 = minus_gcross_wz_leg3 * t1881 - t1919;
+        let t1997 = c_cylinder_leg3 * (t1930 - t919) - s_cylinder_leg3 * t1956;
+        let t1999 = gcylinder_vx_leg3 * t1878;
+        let t2000 = gcross_vx_leg3 * t1997 + t1999;
+        let t2003 = gcylinder_vy_leg3 * t1878 - minus_gcross_vy_leg3 * t1997;
+        let t2006 = gcross_vz_leg3 * t1997 - minus_gcylinder_vz_leg3 * t1878;
+        let t2009 = gcross_wx_leg3 * t1997 - minus_gcylinder_wx_leg3 * t1878;
+        let t2012 = gcross_wy_leg3 * t1997 + gcylinder_wy_leg3 * t1878;
+        let t2015 = gcylinder_wz_leg3 * t1878 - minus_gcross_wz_leg3 * t1997;
+        let t2016 = gcylinder_vx_leg3 * rate_dot_cylinder_leg3;
+        let t2017 = gcylinder_vy_leg3 * rate_dot_cylinder_leg3;
+        let t2018 = minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3;
+        let t2019 = minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3;
+        let t2020 = gcylinder_wy_leg3 * rate_dot_cylinder_leg3;
+        let t2021 = gcylinder_wz_leg3 * rate_dot_cylinder_leg3;
+        let t2022 = 9.81 * t905;
+        let t2024 = 9.81 * grod_vz_leg3;
+        let t2042 = t2024 / t112;
+        let t2045 = 9.81 * minus_s_cross_leg3;
+        let t2046 = c_cylinder_leg3 * t2045;
+        let t2048 = 9.81 * t915;
+        let t2058 = 9.81 * c_cross_leg3;
+        let t2066 = t1868 - t2045;
+        let t2068 = t196 * t1880 + s_cylinder_leg3 * t2066;
+        let t2073 = actuator_accelerations[2] - (t921 - t2024);
+        let t2074 = t112 * (t1930 + t919) + t2073;
+        let t2078 = gcross_vx_leg3 * t2068 - gcylinder_vx_leg3 * t2074
+            - minus_minus_grod_vx_leg3 * t1958;
+        let t2083 = minus_gcross_vy_leg3 * t2068 + gcylinder_vy_leg3 * t2074
+            + grod_vy_leg3 * t1958;
+        let t2088 = gcross_vz_leg3 * t2068 + minus_gcylinder_vz_leg3 * t2074
+            - grod_vz_leg3 * t1958;
+        let t2100 = t1953 - t2048;
+        let t2103 = t900 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2073
+            - s_cylinder_leg3 * t2100;
+        let t2108 = gcross_vx_leg3 * t2103 + t112 * t1999
+            - minus_minus_grod_vx_leg3 * t1964;
+        let t2113 = t912 * t1878 - minus_gcross_vy_leg3 * t2103 - grod_vy_leg3 * t1964;
+        let t2116 = gcross_vz_leg3 * t2103 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2127 = c_cylinder_leg3 * (t2066 + t1871);
+        let t2129 = t1955 + t2100;
+        let t2133 = gcylinder_vx_leg3 * t2129 - gcross_vx_leg3 * t2127
+            - minus_minus_grod_vx_leg3 * t920;
+        let t2138 = gcylinder_vy_leg3 * t2129 + minus_gcross_vy_leg3 * t2127
+            - grod_vy_leg3 * t920;
+        let t2143 = gcross_vz_leg3 * t2127 + minus_gcylinder_vz_leg3 * t2129
+            + grod_vz_leg3 * t920;
+        let t2153 = t1221 + t1513;
+        let gcross_vx_leg4 = t934 / t206;
+        let t2176 = t1159 + t1546;
+        let t2178 = t1169 + t1541;
+        let t2181 = t1151 + t1552;
+        let t2183 = t931 * t2176 - t934 * t2178 - minus_s_cross_leg4 * t2181;
+        let t2184 = actuator_velocities[3] + actuator_velocities[3];
+        let t2186 = t2183 - t943 * t2184;
+        let t2187 = t134 * t2186;
+        let t2188 = c_cylinder_leg4 * t2187;
+        let gcylinder_vx_leg4 = t949 * t134;
+        let t2191 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t2192 = t943 * t2191;
+        let t2193 = gcylinder_vx_leg4 * t2192;
+        let t2194 = t2193 - gcross_vx_leg4 * t2188;
+        let gcylinder_vy_leg4 = t953 * t134;
+        let t2196 = gcylinder_vy_leg4 * t2192;
+        let minus_gcross_vy_leg4 = t931 / t206;
+        let t2199 = t2196 + minus_gcross_vy_leg4 * t2188;
+        let gcross_vz_leg4 = minus_s_cross_leg4 / t206;
+        let minus_gcylinder_vz_leg4 = t956 * t134;
+        let t2203 = minus_gcylinder_vz_leg4 * t2192;
+        let t2204 = gcross_vz_leg4 * t2188 + t2203;
+        let gcross_wx_leg4 = t72 * gcross_vz_leg4 + t80 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t72 * minus_gcylinder_vz_leg4
+            + t80 * gcylinder_vy_leg4;
+        let t2212 = minus_gcylinder_wx_leg4 * t2192;
+        let t2213 = gcross_wx_leg4 * t2188 + t2212;
+        let gcross_wy_leg4 = t80 * gcross_vx_leg4 - t66 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t80 * gcylinder_vx_leg4 + t66 * minus_gcylinder_vz_leg4;
+        let t2221 = gcylinder_wy_leg4 * t2192;
+        let t2222 = t2221 - gcross_wy_leg4 * t2188;
+        let gcylinder_wz_leg4 = t66 * gcylinder_vy_leg4 - t72 * gcylinder_vx_leg4;
+        let t2226 = gcylinder_wz_leg4 * t2192;
+        let minus_gcross_wz_leg4 = t66 * minus_gcross_vy_leg4 + t72 * gcross_vx_leg4;
+        let t2231 = t2226 + minus_gcross_wz_leg4 * t2188;
+        let t2232 = rate_cylinder_leg4 * t943;
+        let minus_rate_dot_cross_leg4 = (t2186 + 2.0 * (t2191 * t958)) / t206;
+        let t2237 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2239 = t2232 + t2237 + t2232;
+        let t2242 = c_cylinder_leg4 * t2239 + s_cylinder_leg4 * t2187;
+        let t2244 = t2191 * t2191;
+        let t2245 = t944 - t2244;
+        let t2247 = gcross_vx_leg4 * t2242 + gcylinder_vx_leg4 * t2245;
+        let t2250 = gcylinder_vy_leg4 * t2245 - minus_gcross_vy_leg4 * t2242;
+        let t2253 = gcross_vz_leg4 * t2242 - minus_gcylinder_vz_leg4 * t2245;
+        let t2256 = gcross_wx_leg4 * t2242 - minus_gcylinder_wx_leg4 * t2245;
+        let t2259 = gcross_wy_leg4 * t2242 + gcylinder_wy_leg4 * t2245;
+        let t2262 = gcylinder_wz_leg4 * t2245 - minus_gcross_wz_leg4 * t2242;
+        let t2267 = t949 * t2178 + t953 * t2176 - t956 * t2181;
+        let t2269 = t2267 - rate_cylinder_leg4 * t2184;
+        let t2270 = t2269 / t133;
+        let rate_dot_cylinder_leg4 = t2270 - t2192;
+        let t2272 = rate_dot_cylinder_leg4 - t2192;
+        let t2276 = c_cylinder_leg4 * t2272 - s_cylinder_leg4 * (t960 - t944);
+        let t2278 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2280 = gcross_vx_leg4 * t2276 - gcylinder_vx_leg4 * t2278;
+        let t2283 = minus_gcross_vy_leg4 * t2276 + gcylinder_vy_leg4 * t2278;
+        let t2286 = gcross_vz_leg4 * t2276 + minus_gcylinder_vz_leg4 * t2278;
+        let t2289 = gcross_wx_leg4 * t2276 + minus_gcylinder_wx_leg4 * t2278;
+        let t2292 = gcross_wy_leg4 * t2276 - gcylinder_wy_leg4 * t2278;
+        let t2295 = minus_gcross_wz_leg4 * t2276 + gcylinder_wz_leg4 * t2278;
+        let t2296 = s_cylinder_leg4 * t2239;
+        let t2298 = gcross_vx_leg4 * t2296 + t2193;
+        let t2300 = minus_gcross_vy_leg4 * t2296 - t2196;
+        let t2302 = t2203 - gcross_vz_leg4 * t2296;
+        let t2304 = t2212 - gcross_wx_leg4 * t2296;
+        let t2306 = gcross_wy_leg4 * t2296 + t2221;
+        let t2308 = minus_gcross_wz_leg4 * t2296 - t2226;
+        let t2312 = c_cylinder_leg4 * (t2244 - t960) - s_cylinder_leg4 * t2270;
+        let t2315 = gcross_vx_leg4 * t2312 + gcylinder_vx_leg4 * t2237;
+        let t2318 = gcylinder_vy_leg4 * t2237 - minus_gcross_vy_leg4 * t2312;
+        let t2321 = gcross_vz_leg4 * t2312 - minus_gcylinder_vz_leg4 * t2237;
+        let t2324 = gcross_wx_leg4 * t2312 - minus_gcylinder_wx_leg4 * t2237;
+        let t2327 = gcross_wy_leg4 * t2312 + gcylinder_wy_leg4 * t2237;
+        let t2330 = gcylinder_wz_leg4 * t2237 - minus_gcross_wz_leg4 * t2312;
+        let t2331 = gcylinder_vx_leg4 * rate_dot_cylinder_leg4;
+        let t2332 = gcylinder_vy_leg4 * rate_dot_cylinder_leg4;
+        let t2333 = minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4;
+        let t2334 = minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4;
+        let t2335 = gcylinder_wy_leg4 * rate_dot_cylinder_leg4;
+        let t2336 = gcylinder_wz_leg4 * rate_dot_cylinder_leg4;
+        let t2337 = 9.81 * t946;
+        let t2339 = 9.81 * grod_vz_leg4;
+        let t2357 = t2339 / t133;
+        let t2360 = 9.81 * minus_s_cross_leg4;
+        let t2361 = c_cylinder_leg4 * t2360;
+        let t2363 = 9.81 * t956;
+        let t2373 = 9.81 * c_cross_leg4;
+        let t2381 = t2183 - t2360;
+        let t2383 = t206 * t2239 + s_cylinder_leg4 * t2381;
+        let t2388 = actuator_accelerations[3] - (t962 - t2339);
+        let t2389 = t133 * (t2244 + t960) + t2388;
+        let t2393 = gcross_vx_leg4 * t2383 - gcylinder_vx_leg4 * t2389
+            - minus_minus_grod_vx_leg4 * t2272;
+        let t2398 = minus_gcross_vy_leg4 * t2383 + gcylinder_vy_leg4 * t2389
+            + grod_vy_leg4 * t2272;
+        let t2403 = gcross_vz_leg4 * t2383 + minus_gcylinder_vz_leg4 * t2389
+            - grod_vz_leg4 * t2272;
+        let t2415 = t2267 - t2363;
+        let t2418 = t941 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2388
+            - s_cylinder_leg4 * t2415;
+        let t2423 = gcross_vx_leg4 * t2418 + t949 * t2237
+            - minus_minus_grod_vx_leg4 * t2278;
+        let t2428 = t953 * t2237 - minus_gcross_vy_leg4 * t2418 - grod_vy_leg4 * t2278;
+        let t2431 = gcross_vz_leg4 * t2418 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2442 = c_cylinder_leg4 * (t2381 + t2186);
+        let t2444 = t2269 + t2415;
+        let t2448 = gcylinder_vx_leg4 * t2444 - gcross_vx_leg4 * t2442
             - minus_minus_grod_vx_leg4 * t961;
-        let t2455 = gcylinder_vy_leg4 * t2446 + minus_gcross_vy_leg4 * t2444
+        let t2453 = gcylinder_vy_leg4 * t2444 + minus_gcross_vy_leg4 * t2442
             - grod_vy_leg4 * t961;
-        let t2460 = gcross_vz_leg4 * t2444 + minus_gcylinder_vz_leg4 * t2446
+        let t2458 = gcross_vz_leg4 * t2442 + minus_gcylinder_vz_leg4 * t2444
             + grod_vz_leg4 * t961;
-        let t2470 = 9.81 + t2183;
-        let gcross_vx_leg5 = t187 * t975;
-        let t2493 = t1151 - t1224;
-        let t2495 = t1169 - t1185;
-        let t2497 = t1159 - t1204;
-        let t2500 = s_cross_leg5 * t2493 - (t975 * t2495 + t978 * t2497);
-        let t2501 = 2.0 * actuator_velocities[4];
-        let t2503 = t2500 - t984 * t2501;
-        let t2504 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_rate_dot_cross_leg5 = t187 * (t2503 + 2.0 * (t2504 * t999));
-        let t2509 = rate_cylinder_leg5 * t984;
-        let t2510 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t2512 = t2509 + t2510 + t2509;
-        let t2513 = s_cylinder_leg5 * t2512;
-        let t2514 = t2513 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t994 * t183;
-        let t2517 = t984 * t2504;
-        let t2518 = minus_gcylinder_vx_leg5 * t2517;
-        let t2519 = gcross_vx_leg5 * t2514 - t2518;
-        let gcross_vy_leg5 = t187 * t978;
-        let gcylinder_vy_leg5 = t990 * t183;
-        let t2523 = gcylinder_vy_leg5 * t2517;
-        let t2524 = gcross_vy_leg5 * t2514 + t2523;
-        let minus_gcross_vz_leg5 = t187 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t997 * t183;
-        let t2528 = minus_gcylinder_vz_leg5 * t2517;
-        let t2529 = minus_gcross_vz_leg5 * t2514 + t2528;
+        let t2468 = 9.81 + t2181;
+        let gcross_vx_leg5 = t216 * t975;
+        let t2491 = t1151 - t1224;
+        let t2493 = t1169 - t1185;
+        let t2495 = t1159 - t1204;
+        let t2498 = s_cross_leg5 * t2491 - (t975 * t2493 + t978 * t2495);
+        let t2499 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t2500 = t2499 * t999;
+        let t2503 = actuator_velocities[4] + actuator_velocities[4];
+        let minus_rate_dot_cross_leg5 = t216 * (t2498 + t2500 + t2500 - t984 * t2503);
+        let t2507 = rate_cylinder_leg5 * t984;
+        let t2508 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2510 = t2507 + t2508 + t2507;
+        let t2511 = s_cylinder_leg5 * t2510;
+        let t2512 = t2511 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t994 * t281;
+        let t2515 = t984 * t2499;
+        let t2516 = minus_gcylinder_vx_leg5 * t2515;
+        let t2517 = gcross_vx_leg5 * t2512 - t2516;
+        let gcross_vy_leg5 = t216 * t978;
+        let gcylinder_vy_leg5 = t990 * t281;
+        let t2521 = gcylinder_vy_leg5 * t2515;
+        let t2522 = gcross_vy_leg5 * t2512 + t2521;
+        let minus_gcross_vz_leg5 = t216 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t997 * t281;
+        let t2526 = minus_gcylinder_vz_leg5 * t2515;
+        let t2527 = minus_gcross_vz_leg5 * t2512 + t2526;
         let gcross_wx_leg5 = t29 * minus_gcross_vz_leg5 + t47 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t29 * minus_gcylinder_vz_leg5 + t47 * gcylinder_vy_leg5;
-        let t2537 = gcylinder_wx_leg5 * t2517;
-        let t2538 = gcross_wx_leg5 * t2514 + t2537;
+        let t2535 = gcylinder_wx_leg5 * t2515;
+        let t2536 = gcross_wx_leg5 * t2512 + t2535;
         let gcylinder_wy_leg5 = t47 * minus_gcylinder_vx_leg5
             - t15 * minus_gcylinder_vz_leg5;
-        let t2542 = gcylinder_wy_leg5 * t2517;
+        let t2540 = gcylinder_wy_leg5 * t2515;
         let minus_gcross_wy_leg5 = t47 * gcross_vx_leg5 + t15 * minus_gcross_vz_leg5;
-        let t2547 = t2542 - minus_gcross_wy_leg5 * t2514;
+        let t2545 = t2540 - minus_gcross_wy_leg5 * t2512;
         let gcross_wz_leg5 = t29 * gcross_vx_leg5 - t15 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t15 * gcylinder_vy_leg5
             + t29 * minus_gcylinder_vx_leg5;
-        let t2555 = minus_gcylinder_wz_leg5 * t2517;
-        let t2556 = gcross_wz_leg5 * t2514 - t2555;
-        let t2560 = c_cylinder_leg5 * t2512 + s_cylinder_leg5 * (t183 * t2503);
-        let t2562 = t2504 * t2504;
-        let t2563 = t985 - t2562;
-        let t2565 = gcross_vx_leg5 * t2560 - minus_gcylinder_vx_leg5 * t2563;
-        let t2568 = gcross_vy_leg5 * t2560 + gcylinder_vy_leg5 * t2563;
-        let t2571 = minus_gcross_vz_leg5 * t2560 + minus_gcylinder_vz_leg5 * t2563;
-        let t2574 = gcross_wx_leg5 * t2560 + gcylinder_wx_leg5 * t2563;
-        let t2577 = gcylinder_wy_leg5 * t2563 - minus_gcross_wy_leg5 * t2560;
-        let t2580 = gcross_wz_leg5 * t2560 - minus_gcylinder_wz_leg5 * t2563;
-        let t2585 = t990 * t2497 - t994 * t2495 - t997 * t2493;
-        let t2587 = t2585 - rate_cylinder_leg5 * t2501;
-        let t2588 = t183 * t2587;
-        let rate_dot_cylinder_leg5 = t2588 - t2517;
-        let t2590 = rate_dot_cylinder_leg5 - t2517;
-        let t2594 = c_cylinder_leg5 * t2590 - s_cylinder_leg5 * (t1001 - t985);
-        let t2596 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t2598 = gcross_vx_leg5 * t2594 + minus_gcylinder_vx_leg5 * t2596;
-        let t2601 = gcross_vy_leg5 * t2594 - gcylinder_vy_leg5 * t2596;
-        let t2604 = minus_gcylinder_vz_leg5 * t2596 - minus_gcross_vz_leg5 * t2594;
-        let t2607 = gcross_wx_leg5 * t2594 - gcylinder_wx_leg5 * t2596;
-        let t2610 = minus_gcross_wy_leg5 * t2594 + gcylinder_wy_leg5 * t2596;
-        let t2613 = gcross_wz_leg5 * t2594 + minus_gcylinder_wz_leg5 * t2596;
-        let t2615 = t2518 - gcross_vx_leg5 * t2513;
-        let t2617 = gcross_vy_leg5 * t2513 + t2523;
-        let t2619 = minus_gcross_vz_leg5 * t2513 + t2528;
-        let t2621 = gcross_wx_leg5 * t2513 + t2537;
-        let t2623 = minus_gcross_wy_leg5 * t2513 - t2542;
-        let t2625 = t2555 - gcross_wz_leg5 * t2513;
-        let t2629 = c_cylinder_leg5 * (t2562 - t1001) - s_cylinder_leg5 * t2588;
-        let t2631 = minus_gcylinder_vx_leg5 * t2510;
-        let t2632 = gcross_vx_leg5 * t2629 - t2631;
-        let t2634 = gcylinder_vy_leg5 * t2510;
-        let t2635 = gcross_vy_leg5 * t2629 + t2634;
-        let t2638 = minus_gcross_vz_leg5 * t2629 + minus_gcylinder_vz_leg5 * t2510;
-        let t2641 = gcross_wx_leg5 * t2629 + gcylinder_wx_leg5 * t2510;
-        let t2644 = gcylinder_wy_leg5 * t2510 - minus_gcross_wy_leg5 * t2629;
-        let t2647 = gcross_wz_leg5 * t2629 - minus_gcylinder_wz_leg5 * t2510;
-        let t2648 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
-        let t2649 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
-        let t2650 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
-        let t2651 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
-        let t2652 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
-        let t2653 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
-        let t2654 = 9.81 * t988;
-        let t2656 = 9.81 * grod_vz_leg5;
-        let t2674 = t2656 / t182;
-        let t2677 = 9.81 * s_cross_leg5;
-        let t2678 = c_cylinder_leg5 * t2677;
-        let t2680 = 9.81 * t997;
-        let t2690 = 9.81 * c_cross_leg5;
-        let t2698 = t2500 + t2677;
-        let t2700 = t186 * t2512 + s_cylinder_leg5 * t2698;
-        let t2705 = actuator_accelerations[4] - (t1003 - t2656);
-        let t2706 = t182 * (t2562 + t1001) + t2705;
-        let t2710 = gcross_vx_leg5 * t2700 + minus_gcylinder_vx_leg5 * t2706
-            - minus_minus_grod_vx_leg5 * t2590;
-        let t2715 = gcross_vy_leg5 * t2700 - gcylinder_vy_leg5 * t2706
-            - grod_vy_leg5 * t2590;
-        let t2720 = minus_gcylinder_vz_leg5 * t2706 - minus_gcross_vz_leg5 * t2700
-            - grod_vz_leg5 * t2590;
-        let t2732 = t2585 - t2680;
-        let t2735 = t982 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2705
-            - s_cylinder_leg5 * t2732;
-        let t2740 = gcross_vx_leg5 * t2735 - t182 * t2631
-            - minus_minus_grod_vx_leg5 * t2596;
-        let t2745 = gcross_vy_leg5 * t2735 + t182 * t2634 - grod_vy_leg5 * t2596;
-        let t2748 = minus_gcross_vz_leg5 * t2735
+        let t2553 = minus_gcylinder_wz_leg5 * t2515;
+        let t2554 = gcross_wz_leg5 * t2512 - t2553;
+        let t2556 = t154 * t2512;
+        let t2559 = c_cylinder_leg5 * t2510 - s_cylinder_leg5 * (t216 * t2556);
+        let t2561 = t2499 * t2499;
+        let t2562 = t985 - t2561;
+        let t2564 = gcross_vx_leg5 * t2559 - minus_gcylinder_vx_leg5 * t2562;
+        let t2567 = gcross_vy_leg5 * t2559 + gcylinder_vy_leg5 * t2562;
+        let t2570 = minus_gcross_vz_leg5 * t2559 + minus_gcylinder_vz_leg5 * t2562;
+        let t2573 = gcross_wx_leg5 * t2559 + gcylinder_wx_leg5 * t2562;
+        let t2576 = gcylinder_wy_leg5 * t2562 - minus_gcross_wy_leg5 * t2559;
+        let t2579 = gcross_wz_leg5 * t2559 - minus_gcylinder_wz_leg5 * t2562;
+        let t2584 = t990 * t2495 - t994 * t2493 - t997 * t2491;
+        let t2586 = t2584 - rate_cylinder_leg5 * t2503;
+        let t2587 = t281 * t2586;
+        let rate_dot_cylinder_leg5 = t2587 - t2515;
+        let t2589 = rate_dot_cylinder_leg5 - t2515;
+        let t2593 = c_cylinder_leg5 * t2589 - s_cylinder_leg5 * (t1001 - t985);
+        let t2595 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2597 = gcross_vx_leg5 * t2593 + minus_gcylinder_vx_leg5 * t2595;
+        let t2600 = gcross_vy_leg5 * t2593 - gcylinder_vy_leg5 * t2595;
+        let t2603 = minus_gcylinder_vz_leg5 * t2595 - minus_gcross_vz_leg5 * t2593;
+        let t2606 = gcross_wx_leg5 * t2593 - gcylinder_wx_leg5 * t2595;
+        let t2609 = minus_gcross_wy_leg5 * t2593 + gcylinder_wy_leg5 * t2595;
+        let t2612 = gcross_wz_leg5 * t2593 + minus_gcylinder_wz_leg5 * t2595;
+        let t2614 = t2516 - gcross_vx_leg5 * t2511;
+        let t2616 = gcross_vy_leg5 * t2511 + t2521;
+        let t2618 = minus_gcross_vz_leg5 * t2511 + t2526;
+        let t2620 = gcross_wx_leg5 * t2511 + t2535;
+        let t2622 = minus_gcross_wy_leg5 * t2511 - t2540;
+        let t2624 = t2553 - gcross_wz_leg5 * t2511;
+        let t2628 = c_cylinder_leg5 * (t2561 - t1001) - s_cylinder_leg5 * t2587;
+        let t2631 = gcross_vx_leg5 * t2628 - minus_gcylinder_vx_leg5 * t2508;
+        let t2634 = gcross_vy_leg5 * t2628 + gcylinder_vy_leg5 * t2508;
+        let t2637 = minus_gcross_vz_leg5 * t2628 + minus_gcylinder_vz_leg5 * t2508;
+        let t2640 = gcross_wx_leg5 * t2628 + gcylinder_wx_leg5 * t2508;
+        let t2643 = gcylinder_wy_leg5 * t2508 - minus_gcross_wy_leg5 * t2628;
+        let t2646 = gcross_wz_leg5 * t2628 - minus_gcylinder_wz_leg5 * t2508;
+        let t2647 = minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5;
+        let t2648 = gcylinder_vy_leg5 * rate_dot_cylinder_leg5;
+        let t2649 = minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5;
+        let t2650 = gcylinder_wx_leg5 * rate_dot_cylinder_leg5;
+        let t2651 = gcylinder_wy_leg5 * rate_dot_cylinder_leg5;
+        let t2652 = minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5;
+        let t2653 = 9.81 * t988;
+        let t2655 = 9.81 * grod_vz_leg5;
+        let t2673 = t2655 / t154;
+        let t2676 = 9.81 * s_cross_leg5;
+        let t2677 = c_cylinder_leg5 * t2676;
+        let t2679 = 9.81 * t997;
+        let t2689 = 9.81 * c_cross_leg5;
+        let t2697 = t2498 + t2676;
+        let t2699 = t215 * t2510 + s_cylinder_leg5 * t2697;
+        let t2704 = actuator_accelerations[4] - (t1003 - t2655);
+        let t2705 = t154 * (t2561 + t1001) + t2704;
+        let t2709 = gcross_vx_leg5 * t2699 + minus_gcylinder_vx_leg5 * t2705
+            - minus_minus_grod_vx_leg5 * t2589;
+        let t2714 = gcross_vy_leg5 * t2699 - gcylinder_vy_leg5 * t2705
+            - grod_vy_leg5 * t2589;
+        let t2719 = minus_gcylinder_vz_leg5 * t2705 - minus_gcross_vz_leg5 * t2699
+            - grod_vz_leg5 * t2589;
+        let t2731 = t2584 - t2679;
+        let t2734 = t982 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2704
+            - s_cylinder_leg5 * t2731;
+        let t2739 = gcross_vx_leg5 * t2734 - t994 * t2508
+            - minus_minus_grod_vx_leg5 * t2595;
+        let t2744 = gcross_vy_leg5 * t2734 + t990 * t2508 - grod_vy_leg5 * t2595;
+        let t2747 = minus_gcross_vz_leg5 * t2734
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2759 = c_cylinder_leg5 * (t2698 + t2503);
-        let t2761 = t2587 + t2732;
-        let t2765 = gcross_vx_leg5 * t2759 + minus_gcylinder_vx_leg5 * t2761
-            + minus_minus_grod_vx_leg5 * t1002;
-        let t2770 = gcylinder_vy_leg5 * t2761 - gcross_vy_leg5 * t2759
+        let t2758 = t2556 - c_cylinder_leg5 * t2697;
+        let t2760 = t2586 + t2731;
+        let t2764 = gcross_vx_leg5 * t2758 - minus_gcylinder_vx_leg5 * t2760
+            - minus_minus_grod_vx_leg5 * t1002;
+        let t2769 = gcross_vy_leg5 * t2758 + gcylinder_vy_leg5 * t2760
             - grod_vy_leg5 * t1002;
-        let t2775 = minus_gcylinder_vz_leg5 * t2761 - minus_gcross_vz_leg5 * t2759
+        let t2774 = minus_gcross_vz_leg5 * t2758 + minus_gcylinder_vz_leg5 * t2760
             + grod_vz_leg5 * t1002;
-        let t2785 = 9.81 + t2493;
-        let gcross_vx_leg6 = t216 * t1016;
-        let t2808 = t1151 + t1554;
-        let t2810 = t1169 + t1543;
-        let t2812 = t1159 + t1548;
-        let t2815 = s_cross_leg6 * t2808 - (t1016 * t2810 + t1019 * t2812);
-        let t2816 = 2.0 * actuator_velocities[5];
-        let t2818 = t2815 - t1025 * t2816;
-        let t2819 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t2820 = t2819 * t1040;
-        let minus_rate_dot_cross_leg6 = t216 * (t2818 + t2820 + t2820);
-        let t2824 = rate_cylinder_leg6 * t1025;
-        let t2825 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2827 = t2824 + t2825 + t2824;
-        let t2828 = s_cylinder_leg6 * t2827;
-        let t2829 = t2828 - minus_rate_dot_cross_leg6;
-        let minus_gcylinder_vx_leg6 = t1035 * t212;
-        let t2832 = t1025 * t2819;
-        let t2833 = minus_gcylinder_vx_leg6 * t2832;
-        let t2834 = gcross_vx_leg6 * t2829 - t2833;
-        let gcross_vy_leg6 = t216 * t1019;
-        let gcylinder_vy_leg6 = t1031 * t212;
-        let t2838 = gcylinder_vy_leg6 * t2832;
-        let t2839 = gcross_vy_leg6 * t2829 + t2838;
-        let minus_gcross_vz_leg6 = t216 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t1038 * t212;
-        let t2843 = minus_gcylinder_vz_leg6 * t2832;
-        let t2844 = minus_gcross_vz_leg6 * t2829 + t2843;
-        let minus_gcross_wx_leg6 = t82 * minus_gcross_vz_leg6 + t73 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t82 * minus_gcylinder_vz_leg6
-            + t73 * gcylinder_vy_leg6;
-        let t2852 = minus_gcylinder_wx_leg6 * t2832;
-        let t2853 = minus_gcross_wx_leg6 * t2829 + t2852;
-        let gcross_wy_leg6 = t73 * gcross_vx_leg6 + t76 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t76 * minus_gcylinder_vz_leg6
-            - t73 * minus_gcylinder_vx_leg6;
-        let t2861 = gcylinder_wy_leg6 * t2832;
-        let t2862 = gcross_wy_leg6 * t2829 + t2861;
-        let gcross_wz_leg6 = t76 * gcross_vy_leg6 - t82 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t76 * gcylinder_vy_leg6 + t82 * minus_gcylinder_vx_leg6;
-        let t2870 = gcylinder_wz_leg6 * t2832;
-        let t2871 = gcross_wz_leg6 * t2829 + t2870;
-        let t2873 = s_cylinder_leg6 / t211;
-        let t2875 = c_cylinder_leg6 * t2827 + t2818 * t2873;
-        let t2877 = t2819 * t2819;
+        let t2784 = 9.81 + t2491;
+        let gcross_vx_leg6 = t226 * t1016;
+        let t2807 = t1151 + t1553;
+        let t2809 = t1169 + t1542;
+        let t2811 = t1159 + t1547;
+        let t2814 = s_cross_leg6 * t2807 - (t1016 * t2809 + t1019 * t2811);
+        let t2815 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t2816 = t2815 * t1040;
+        let t2819 = 2.0 * actuator_velocities[5];
+        let minus_rate_dot_cross_leg6 = t226 * (t2814 + t2816 + t2816 - t1025 * t2819);
+        let t2823 = rate_cylinder_leg6 * t1025;
+        let t2824 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t2826 = t2823 + t2824 + t2823;
+        let t2827 = s_cylinder_leg6 * t2826;
+        let t2828 = t2827 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t1035 * t175;
+        let t2831 = t1025 * t2815;
+        let t2832 = minus_gcylinder_vx_leg6 * t2831;
+        let t2833 = gcross_vx_leg6 * t2828 - t2832;
+        let gcross_vy_leg6 = t226 * t1019;
+        let gcylinder_vy_leg6 = t1031 * t175;
+        let t2837 = gcylinder_vy_leg6 * t2831;
+        let t2838 = gcross_vy_leg6 * t2828 + t2837;
+        let minus_gcross_vz_leg6 = t226 * s_cross_leg6;
+        let minus_gcylinder_vz_leg6 = t1038 * t175;
+        let t2842 = minus_gcylinder_vz_leg6 * t2831;
+        let t2843 = minus_gcross_vz_leg6 * t2828 + t2842;
+        let minus_gcross_wx_leg6 = t73 * minus_gcross_vz_leg6 + t81 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t73 * minus_gcylinder_vz_leg6
+            + t81 * gcylinder_vy_leg6;
+        let t2851 = minus_gcylinder_wx_leg6 * t2831;
+        let t2852 = minus_gcross_wx_leg6 * t2828 + t2851;
+        let gcross_wy_leg6 = t81 * gcross_vx_leg6 + t67 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t67 * minus_gcylinder_vz_leg6
+            - t81 * minus_gcylinder_vx_leg6;
+        let t2860 = gcylinder_wy_leg6 * t2831;
+        let t2861 = gcross_wy_leg6 * t2828 + t2860;
+        let gcross_wz_leg6 = t67 * gcross_vy_leg6 - t73 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t67 * gcylinder_vy_leg6 + t73 * minus_gcylinder_vx_leg6;
+        let t2869 = gcylinder_wz_leg6 * t2831;
+        let t2870 = gcross_wz_leg6 * t2828 + t2869;
+        let t2872 = t174 * t2828;
+        let t2875 = c_cylinder_leg6 * t2826 - s_cylinder_leg6 * (t2872 / t225);
+        let t2877 = t2815 * t2815;
         let t2878 = t1026 - t2877;
         let t2880 = gcross_vx_leg6 * t2875 - minus_gcylinder_vx_leg6 * t2878;
         let t2883 = gcross_vy_leg6 * t2875 + gcylinder_vy_leg6 * t2878;
@@ -7568,10 +7570,11 @@ impl Hexapod {
         let t2889 = minus_gcross_wx_leg6 * t2875 + minus_gcylinder_wx_leg6 * t2878;
         let t2892 = gcross_wy_leg6 * t2875 + gcylinder_wy_leg6 * t2878;
         let t2895 = gcross_wz_leg6 * t2875 + gcylinder_wz_leg6 * t2878;
-        let t2900 = t1031 * t2812 - t1035 * t2810 - t1038 * t2808;
-        let t2902 = t2900 - rate_cylinder_leg6 * t2816;
-        let rate_dot_cylinder_leg6 = t2902 / t211 - t2832;
-        let t2905 = rate_dot_cylinder_leg6 - t2832;
+        let t2900 = t1031 * t2811 - t1035 * t2809 - t1038 * t2807;
+        let t2902 = t2900 - rate_cylinder_leg6 * t2819;
+        let t2903 = t175 * t2902;
+        let rate_dot_cylinder_leg6 = t2903 - t2831;
+        let t2905 = rate_dot_cylinder_leg6 - t2831;
         let t2909 = c_cylinder_leg6 * t2905 - s_cylinder_leg6 * (t1042 - t1026);
         let t2911 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
         let t2913 = gcross_vx_leg6 * t2909 + minus_gcylinder_vx_leg6 * t2911;
@@ -7580,19 +7583,20 @@ impl Hexapod {
         let t2922 = minus_gcylinder_wx_leg6 * t2911 - minus_gcross_wx_leg6 * t2909;
         let t2925 = gcross_wy_leg6 * t2909 - gcylinder_wy_leg6 * t2911;
         let t2928 = gcross_wz_leg6 * t2909 - gcylinder_wz_leg6 * t2911;
-        let t2930 = t2833 - gcross_vx_leg6 * t2828;
-        let t2932 = gcross_vy_leg6 * t2828 + t2838;
-        let t2934 = minus_gcross_vz_leg6 * t2828 + t2843;
-        let t2936 = minus_gcross_wx_leg6 * t2828 + t2852;
-        let t2938 = gcross_wy_leg6 * t2828 + t2861;
-        let t2940 = gcross_wz_leg6 * t2828 + t2870;
-        let t2944 = c_cylinder_leg6 * (t2877 - t1042) - t2902 * t2873;
-        let t2947 = gcross_vx_leg6 * t2944 - minus_gcylinder_vx_leg6 * t2825;
-        let t2950 = gcross_vy_leg6 * t2944 + gcylinder_vy_leg6 * t2825;
-        let t2953 = minus_gcross_vz_leg6 * t2944 + minus_gcylinder_vz_leg6 * t2825;
-        let t2956 = minus_gcross_wx_leg6 * t2944 + minus_gcylinder_wx_leg6 * t2825;
-        let t2959 = gcross_wy_leg6 * t2944 + gcylinder_wy_leg6 * t2825;
-        let t2962 = gcross_wz_leg6 * t2944 + gcylinder_wz_leg6 * t2825;
+        let t2930 = t2832 - gcross_vx_leg6 * t2827;
+        let t2932 = gcross_vy_leg6 * t2827 + t2837;
+        let t2934 = minus_gcross_vz_leg6 * t2827 + t2842;
+        let t2936 = minus_gcross_wx_leg6 * t2827 + t2851;
+        let t2938 = gcross_wy_leg6 * t2827 + t2860;
+        let t2940 = gcross_wz_leg6 * t2827 + t2869;
+        let t2944 = c_cylinder_leg6 * (t2877 - t1042) - s_cylinder_leg6 * t2903;
+        let t2947 = gcross_vx_leg6 * t2944 - minus_gcylinder_vx_leg6 * t2824;
+        let t2949 = gcylinder_vy_leg6 * t2824;
+        let t2950 = gcross_vy_leg6 * t2944 + t2949;
+        let t2953 = minus_gcross_vz_leg6 * t2944 + minus_gcylinder_vz_leg6 * t2824;
+        let t2956 = minus_gcross_wx_leg6 * t2944 + minus_gcylinder_wx_leg6 * t2824;
+        let t2959 = gcross_wy_leg6 * t2944 + gcylinder_wy_leg6 * t2824;
+        let t2962 = gcross_wz_leg6 * t2944 + gcylinder_wz_leg6 * t2824;
         let t2963 = minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6;
         let t2964 = gcylinder_vy_leg6 * rate_dot_cylinder_leg6;
         let t2965 = minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6;
@@ -7601,15 +7605,15 @@ impl Hexapod {
         let t2968 = gcylinder_wz_leg6 * rate_dot_cylinder_leg6;
         let t2969 = 9.81 * t1029;
         let t2971 = 9.81 * grod_vz_leg6;
-        let t2989 = t212 * t2971;
+        let t2989 = t2971 / t174;
         let t2992 = 9.81 * s_cross_leg6;
         let t2993 = c_cylinder_leg6 * t2992;
         let t2995 = 9.81 * t1038;
         let t3005 = 9.81 * c_cross_leg6;
-        let t3013 = t2815 + t2992;
-        let t3015 = t215 * t2827 + s_cylinder_leg6 * t3013;
+        let t3013 = t2814 + t2992;
+        let t3015 = t225 * t2826 + s_cylinder_leg6 * t3013;
         let t3020 = actuator_accelerations[5] - (t1044 - t2971);
-        let t3021 = t211 * (t2877 + t1042) + t3020;
+        let t3021 = t174 * (t2877 + t1042) + t3020;
         let t3025 = gcross_vx_leg6 * t3015 + minus_gcylinder_vx_leg6 * t3021
             - minus_minus_grod_vx_leg6 * t2905;
         let t3030 = gcross_vy_leg6 * t3015 - gcylinder_vy_leg6 * t3021
@@ -7619,29 +7623,29 @@ impl Hexapod {
         let t3047 = t2900 - t2995;
         let t3050 = t1023 * minus_rate_cross_leg6 + c_cylinder_leg6 * t3020
             - s_cylinder_leg6 * t3047;
-        let t3055 = gcross_vx_leg6 * t3050 - t1035 * t2825
+        let t3055 = gcross_vx_leg6 * t3050 - t1035 * t2824
             - minus_minus_grod_vx_leg6 * t2911;
-        let t3060 = gcross_vy_leg6 * t3050 + t1031 * t2825 - grod_vy_leg6 * t2911;
+        let t3060 = gcross_vy_leg6 * t3050 + t174 * t2949 - grod_vy_leg6 * t2911;
         let t3063 = minus_gcross_vz_leg6 * t3050
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t3074 = c_cylinder_leg6 * (t3013 + t2818);
+        let t3074 = t2872 - c_cylinder_leg6 * t3013;
         let t3076 = t2902 + t3047;
-        let t3080 = gcross_vx_leg6 * t3074 + minus_gcylinder_vx_leg6 * t3076
-            + minus_minus_grod_vx_leg6 * t1043;
-        let t3085 = gcylinder_vy_leg6 * t3076 - gcross_vy_leg6 * t3074
+        let t3080 = gcross_vx_leg6 * t3074 - minus_gcylinder_vx_leg6 * t3076
+            - minus_minus_grod_vx_leg6 * t1043;
+        let t3085 = gcross_vy_leg6 * t3074 + gcylinder_vy_leg6 * t3076
             - grod_vy_leg6 * t1043;
-        let t3090 = minus_gcylinder_vz_leg6 * t3076 - minus_gcross_vz_leg6 * t3074
+        let t3090 = minus_gcross_vz_leg6 * t3074 + minus_gcylinder_vz_leg6 * t3076
             + grod_vz_leg6 * t1043;
-        let t3100 = t1554 + t1514;
+        let t3100 = 9.81 + t2807;
         let t3126 = t5 * t1145 + t20 * t1141 + t38 * t1139;
-        let t3129 = t711 + t38 * t656;
+        let t3129 = t712 + t38 * t657;
         let t3130 = t36 + t37;
         let t3132 = t40 - t41;
         let t3135 = t23 - t1;
-        let t3137 = t3130 * t663 + t3132 * t658 + t3135 * t656;
+        let t3137 = t3130 * t664 + t3132 * t659 + t3135 * t657;
         let t3138 = t3129 * t3137;
         let t3139 = t10 * t3138;
-        let t3142 = t719 + t42 * t656;
+        let t3142 = t720 + t42 * t657;
         let t3143 = t3129 * t3142;
         let t3144 = t3130 * t3143;
         let t3147 = t24 * t3138;
@@ -7668,79 +7672,79 @@ impl Hexapod {
         let t3223 = t3160 + t3138;
         Ok([
             [
-                t1249, t1293, -t1326, t1343, -t1360, t1376,
+                t1239, t1292, -t1325, t1343, -t1360, t1376,
                 -(minus_gcross_vx_leg1 * t1382 + gcylinder_vx_leg1 * t1384), grod_vx_leg1 * t1402,
-                -(minus_gcross_vx_leg1 * t1418), t1249, -t1326, -t1293, t1376, t1360, t1343, -t1438,
-                -t1468, t1494, t1187, grod_vx_leg1 * actuator_accelerations[0], t224,
-                ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]), grod_vx_leg1, t1566,
-                t1619, -t1652, t1670, t1687, t1703,
-                minus_gcross_vx_leg2 * t1709 - gcylinder_vx_leg2 * t1711, grod_vx_leg2 * t1729,
-                -(minus_gcross_vx_leg2 * t1745), t1566, -t1652, -t1619, t1703, -t1687, t1670,
-                -t1765, t1795, t1820, t1545, grod_vx_leg2 * actuator_accelerations[1], t225,
-                ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]), grod_vx_leg2, t1881,
-                t1934, t1967, -t1985, t2002, t2018,
-                -(gcross_vx_leg3 * t2024 + gcylinder_vx_leg3 * t2026),
-                minus_minus_grod_vx_leg3 * t2044, gcross_vx_leg3 * t2060, t1881, t1967, -t1934,
-                t2018, -t2002, -t1985, t2080, t2110, t2135, t1865,
-                minus_minus_grod_vx_leg3 * actuator_accelerations[2], t227,
+                -(minus_gcross_vx_leg1 * t1418), t1239, -t1325, -t1292, t1376, t1360, t1343, -t1438,
+                -t1468, t1493, t1187, grod_vx_leg1 * actuator_accelerations[0], t234,
+                ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]), grod_vx_leg1, t1564,
+                t1617, -t1650, t1668, t1685, t1701,
+                minus_gcross_vx_leg2 * t1707 - gcylinder_vx_leg2 * t1709, grod_vx_leg2 * t1727,
+                -(minus_gcross_vx_leg2 * t1743), t1564, -t1650, -t1617, t1701, -t1685, t1668,
+                -t1763, t1793, t1818, t1544, grod_vx_leg2 * actuator_accelerations[1], t235,
+                ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]), grod_vx_leg2, t1887,
+                t1933, t1966, -t1983, t2000, t2016,
+                -(gcross_vx_leg3 * t2022 + gcylinder_vx_leg3 * t2024),
+                minus_minus_grod_vx_leg3 * t2042, gcross_vx_leg3 * t2058, t1887, t1966, -t1933,
+                t2016, -t2000, -t1983, t2078, t2108, t2133, t1863,
+                minus_minus_grod_vx_leg3 * actuator_accelerations[2], t237,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg3,
                     actuator_velocities[2],
                 ),
                 minus_minus_grod_vx_leg3,
-                t2204,
-                t2250,
-                t2283,
-                -t2300,
-                t2317,
-                t2333,
-                -(gcross_vx_leg4 * t2339 + gcylinder_vx_leg4 * t2341),
-                minus_minus_grod_vx_leg4 * t2359,
-                gcross_vx_leg4 * t2375,
-                t2204,
-                t2283,
-                -t2250,
-                t2333,
-                -t2317,
-                -t2300,
-                t2395,
-                t2425,
-                t2450,
-                t2180,
+                t2194,
+                t2247,
+                t2280,
+                -t2298,
+                t2315,
+                t2331,
+                -(gcross_vx_leg4 * t2337 + gcylinder_vx_leg4 * t2339),
+                minus_minus_grod_vx_leg4 * t2357,
+                gcross_vx_leg4 * t2373,
+                t2194,
+                t2280,
+                -t2247,
+                t2331,
+                -t2315,
+                -t2298,
+                t2393,
+                t2423,
+                t2448,
+                t2178,
                 minus_minus_grod_vx_leg4 * actuator_accelerations[3],
-                t229,
+                t239,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg4,
                     actuator_velocities[3],
                 ),
                 minus_minus_grod_vx_leg4,
-                t2519,
-                t2565,
-                t2598,
-                t2615,
-                t2632,
-                -t2648,
-                gcross_vx_leg5 * t2654 + minus_gcylinder_vx_leg5 * t2656,
-                minus_minus_grod_vx_leg5 * t2674,
-                gcross_vx_leg5 * t2690,
-                t2519,
-                t2598,
-                -t2565,
-                -t2648,
-                -t2632,
-                t2615,
-                t2710,
-                t2740,
-                -t2765,
-                t2495,
+                t2517,
+                t2564,
+                t2597,
+                t2614,
+                t2631,
+                -t2647,
+                gcross_vx_leg5 * t2653 + minus_gcylinder_vx_leg5 * t2655,
+                minus_minus_grod_vx_leg5 * t2673,
+                gcross_vx_leg5 * t2689,
+                t2517,
+                t2597,
+                -t2564,
+                -t2647,
+                -t2631,
+                t2614,
+                t2709,
+                t2739,
+                t2764,
+                t2493,
                 minus_minus_grod_vx_leg5 * actuator_accelerations[4],
-                t231,
+                t241,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg5,
                     actuator_velocities[4],
                 ),
                 minus_minus_grod_vx_leg5,
-                t2834,
+                t2833,
                 t2880,
                 t2913,
                 t2930,
@@ -7749,7 +7753,7 @@ impl Hexapod {
                 gcross_vx_leg6 * t2969 + minus_gcylinder_vx_leg6 * t2971,
                 minus_minus_grod_vx_leg6 * t2989,
                 gcross_vx_leg6 * t3005,
-                t2834,
+                t2833,
                 t2913,
                 -t2880,
                 -t2963,
@@ -7757,10 +7761,10 @@ impl Hexapod {
                 t2930,
                 t3025,
                 t3055,
-                -t3080,
-                t2810,
+                t3080,
+                t2809,
                 minus_minus_grod_vx_leg6 * actuator_accelerations[5],
-                t233,
+                t243,
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg6,
                     actuator_velocities[5],
@@ -7774,116 +7778,116 @@ impl Hexapod {
                 0.0,
                 t1175,
                 t1180,
-                t3132 * t1170 - t3130 * t689 + t3135 * t1173,
+                t3132 * t1170 - t3130 * t690 + t3135 * t1173,
                 t1169,
             ],
             [
-                t1254, t1296, t1329, t1345, t1363, -t1377,
+                t1244, t1295, t1328, t1345, t1363, -t1377,
                 gcross_vy_leg1 * t1382 + minus_gcylinder_vy_leg1 * t1384,
-                minus_minus_grod_vy_leg1 * t1402, gcross_vy_leg1 * t1418, t1254, t1329, -t1296,
-                -t1377, -t1363, t1345, t1443, t1473, -t1499, t1206,
-                minus_minus_grod_vy_leg1 * actuator_accelerations[0], t353,
+                minus_minus_grod_vy_leg1 * t1402, gcross_vy_leg1 * t1418, t1244, t1328, -t1295,
+                -t1377, -t1363, t1345, t1443, t1473, -t1498, t1206,
+                minus_minus_grod_vy_leg1 * actuator_accelerations[0], t355,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg1,
                     actuator_velocities[0],
                 ),
                 minus_minus_grod_vy_leg1,
-                -t1571,
-                -t1622,
-                t1655,
-                t1672,
-                -t1690,
-                -t1704,
-                minus_gcross_vy_leg2 * t1709 + minus_gcylinder_vy_leg2 * t1711,
-                minus_minus_grod_vy_leg2 * t1729,
-                -(minus_gcross_vy_leg2 * t1745),
-                -t1571,
-                t1655,
-                t1622,
-                -t1704,
-                t1690,
-                t1672,
-                t1770,
-                -t1800,
-                -t1825,
-                t1550,
+                -t1569,
+                -t1620,
+                t1653,
+                t1670,
+                -t1688,
+                -t1702,
+                minus_gcross_vy_leg2 * t1707 + minus_gcylinder_vy_leg2 * t1709,
+                minus_minus_grod_vy_leg2 * t1727,
+                -(minus_gcross_vy_leg2 * t1743),
+                -t1569,
+                t1653,
+                t1620,
+                -t1702,
+                t1688,
+                t1670,
+                t1768,
+                -t1798,
+                -t1823,
+                t1549,
                 minus_minus_grod_vy_leg2 * actuator_accelerations[1],
-                t354,
+                t356,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg2,
                     actuator_velocities[1],
                 ),
                 minus_minus_grod_vy_leg2,
-                t1886,
-                t1937,
-                -t1970,
-                t1987,
-                t2005,
-                t2019,
-                minus_gcross_vy_leg3 * t2024 - gcylinder_vy_leg3 * t2026,
-                grod_vy_leg3 * t2044,
-                -(minus_gcross_vy_leg3 * t2060),
-                t1886,
-                -t1970,
-                -t1937,
-                t2019,
-                -t2005,
-                t1987,
-                -t2085,
-                t2115,
-                t2140,
-                t1863,
+                t1892,
+                t1936,
+                -t1969,
+                t1985,
+                t2003,
+                t2017,
+                minus_gcross_vy_leg3 * t2022 - gcylinder_vy_leg3 * t2024,
+                grod_vy_leg3 * t2042,
+                -(minus_gcross_vy_leg3 * t2058),
+                t1892,
+                -t1969,
+                -t1936,
+                t2017,
+                -t2003,
+                t1985,
+                -t2083,
+                t2113,
+                t2138,
+                t1861,
                 grod_vy_leg3 * actuator_accelerations[2],
-                t352,
+                t354,
                 ::overact::math::signed(grod_vy_leg3, actuator_velocities[2]),
                 grod_vy_leg3,
-                t2209,
-                t2253,
-                -t2286,
-                t2302,
-                t2320,
-                t2334,
-                minus_gcross_vy_leg4 * t2339 - gcylinder_vy_leg4 * t2341,
-                grod_vy_leg4 * t2359,
-                -(minus_gcross_vy_leg4 * t2375),
-                t2209,
-                -t2286,
-                -t2253,
-                t2334,
-                -t2320,
-                t2302,
-                -t2400,
-                t2430,
-                t2455,
-                t2178,
+                t2199,
+                t2250,
+                -t2283,
+                t2300,
+                t2318,
+                t2332,
+                minus_gcross_vy_leg4 * t2337 - gcylinder_vy_leg4 * t2339,
+                grod_vy_leg4 * t2357,
+                -(minus_gcross_vy_leg4 * t2373),
+                t2199,
+                -t2283,
+                -t2250,
+                t2332,
+                -t2318,
+                t2300,
+                -t2398,
+                t2428,
+                t2453,
+                t2176,
                 grod_vy_leg4 * actuator_accelerations[3],
-                t357,
+                t359,
                 ::overact::math::signed(grod_vy_leg4, actuator_velocities[3]),
                 grod_vy_leg4,
-                t2524,
-                t2568,
-                t2601,
-                -t2617,
-                t2635,
-                t2649,
-                gcross_vy_leg5 * t2654 - gcylinder_vy_leg5 * t2656,
-                grod_vy_leg5 * t2674,
-                gcross_vy_leg5 * t2690,
-                t2524,
-                t2601,
-                -t2568,
-                t2649,
-                -t2635,
-                -t2617,
-                t2715,
-                t2745,
-                t2770,
-                t2497,
+                t2522,
+                t2567,
+                t2600,
+                -t2616,
+                t2634,
+                t2648,
+                gcross_vy_leg5 * t2653 - gcylinder_vy_leg5 * t2655,
+                grod_vy_leg5 * t2673,
+                gcross_vy_leg5 * t2689,
+                t2522,
+                t2600,
+                -t2567,
+                t2648,
+                -t2634,
+                -t2616,
+                t2714,
+                t2744,
+                t2769,
+                t2495,
                 grod_vy_leg5 * actuator_accelerations[4],
-                t359,
+                t361,
                 ::overact::math::signed(grod_vy_leg5, actuator_velocities[4]),
                 grod_vy_leg5,
-                t2839,
+                t2838,
                 t2883,
                 t2916,
                 -t2932,
@@ -7892,7 +7896,7 @@ impl Hexapod {
                 gcross_vy_leg6 * t2969 - gcylinder_vy_leg6 * t2971,
                 grod_vy_leg6 * t2989,
                 gcross_vy_leg6 * t3005,
-                t2839,
+                t2838,
                 t2916,
                 -t2883,
                 t2964,
@@ -7901,9 +7905,9 @@ impl Hexapod {
                 t3030,
                 t3060,
                 t3085,
-                t2812,
+                t2811,
                 grod_vy_leg6 * actuator_accelerations[5],
-                t361,
+                t363,
                 ::overact::math::signed(grod_vy_leg6, actuator_velocities[5]),
                 grod_vy_leg6,
                 0.0,
@@ -7914,190 +7918,190 @@ impl Hexapod {
                 0.0,
                 t1194,
                 t1199,
-                t3130 * t1189 - t3132 * t668 + t3135 * t1192,
+                t3130 * t1189 - t3132 * t669 + t3135 * t1192,
                 t1159,
             ],
             [
-                -t1259, t1299, t1332, t1347, t1366, t1378,
+                -t1249, t1298, t1331, t1347, t1366, t1378,
                 gcross_vz_leg1 * t1382 - gcylinder_vz_leg1 * t1384,
                 -(gcross_vz_leg1 * t1406 + gcylinder_vz_leg1 * t1408), gcross_vz_leg1 * t1418,
-                -t1259, t1332, -t1299, t1378, -t1366, t1347, t1448, t1476, t1504, t1515,
-                grod_vz_leg1 * actuator_accelerations[0], t423,
-                ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]), grod_vz_leg1, -t1576,
-                t1625, t1658, t1674, t1693, -t1705,
-                minus_gcylinder_vz_leg2 * t1711 - gcross_vz_leg2 * t1709,
-                -(gcross_vz_leg2 * t1733 + minus_gcylinder_vz_leg2 * t1735), gcross_vz_leg2 * t1745,
-                -t1576, t1658, -t1625, -t1705, -t1693, t1674, t1775, t1803, -t1830, t1840,
-                grod_vz_leg2 * actuator_accelerations[1], t424,
-                ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]), grod_vz_leg2, -t1891,
-                t1940, t1973, t1989, t2008, -t2020,
-                minus_gcylinder_vz_leg3 * t2026 - gcross_vz_leg3 * t2024,
-                -(gcross_vz_leg3 * t2048 + minus_gcylinder_vz_leg3 * t2050), gcross_vz_leg3 * t2060,
-                -t1891, t1973, -t1940, -t2020, -t2008, t1989, t2090, t2118, -t2145, t2155,
-                grod_vz_leg3 * actuator_accelerations[2], t426,
-                ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]), grod_vz_leg3, t2214,
-                t2256, t2289, t2304, t2323, -t2335,
-                minus_gcylinder_vz_leg4 * t2341 - gcross_vz_leg4 * t2339,
-                -(gcross_vz_leg4 * t2363 + minus_gcylinder_vz_leg4 * t2365), gcross_vz_leg4 * t2375,
-                t2214, t2289, -t2256, -t2335, -t2323, t2304, t2405, t2433, -t2460, t2470,
-                grod_vz_leg4 * actuator_accelerations[3], t428,
-                ::overact::math::signed(grod_vz_leg4, actuator_velocities[3]), grod_vz_leg4, -t2529,
-                -t2571, t2604, t2619, -t2638, -t2650,
-                minus_gcylinder_vz_leg5 * t2656 - minus_gcross_vz_leg5 * t2654,
-                -(minus_gcross_vz_leg5 * t2678 + minus_gcylinder_vz_leg5 * t2680),
-                -(minus_gcross_vz_leg5 * t2690), -t2529, t2604, t2571, -t2650, t2638, t2619, t2720,
-                -t2748, -t2775, t2785, grod_vz_leg5 * actuator_accelerations[4], t430,
-                ::overact::math::signed(grod_vz_leg5, actuator_velocities[4]), grod_vz_leg5, -t2844,
+                -t1249, t1331, -t1298, t1378, -t1366, t1347, t1448, t1476, t1503, t1514,
+                grod_vz_leg1 * actuator_accelerations[0], t424,
+                ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]), grod_vz_leg1, -t1574,
+                t1623, t1656, t1672, t1691, -t1703,
+                minus_gcylinder_vz_leg2 * t1709 - gcross_vz_leg2 * t1707,
+                -(gcross_vz_leg2 * t1731 + minus_gcylinder_vz_leg2 * t1733), gcross_vz_leg2 * t1743,
+                -t1574, t1656, -t1623, -t1703, -t1691, t1672, t1773, t1801, -t1828, t1838,
+                grod_vz_leg2 * actuator_accelerations[1], t425,
+                ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]), grod_vz_leg2, t1897,
+                t1939, t1972, t1987, t2006, -t2018,
+                minus_gcylinder_vz_leg3 * t2024 - gcross_vz_leg3 * t2022,
+                -(gcross_vz_leg3 * t2046 + minus_gcylinder_vz_leg3 * t2048), gcross_vz_leg3 * t2058,
+                t1897, t1972, -t1939, -t2018, -t2006, t1987, t2088, t2116, -t2143, t2153,
+                grod_vz_leg3 * actuator_accelerations[2], t427,
+                ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]), grod_vz_leg3, -t2204,
+                t2253, t2286, t2302, t2321, -t2333,
+                minus_gcylinder_vz_leg4 * t2339 - gcross_vz_leg4 * t2337,
+                -(gcross_vz_leg4 * t2361 + minus_gcylinder_vz_leg4 * t2363), gcross_vz_leg4 * t2373,
+                -t2204, t2286, -t2253, -t2333, -t2321, t2302, t2403, t2431, -t2458, t2468,
+                grod_vz_leg4 * actuator_accelerations[3], t429,
+                ::overact::math::signed(grod_vz_leg4, actuator_velocities[3]), grod_vz_leg4, -t2527,
+                -t2570, t2603, t2618, -t2637, -t2649,
+                minus_gcylinder_vz_leg5 * t2655 - minus_gcross_vz_leg5 * t2653,
+                -(minus_gcross_vz_leg5 * t2677 + minus_gcylinder_vz_leg5 * t2679),
+                -(minus_gcross_vz_leg5 * t2689), -t2527, t2603, t2570, -t2649, t2637, t2618, t2719,
+                -t2747, -t2774, t2784, grod_vz_leg5 * actuator_accelerations[4], t431,
+                ::overact::math::signed(grod_vz_leg5, actuator_velocities[4]), grod_vz_leg5, -t2843,
                 -t2886, t2919, t2934, -t2953, -t2965,
                 minus_gcylinder_vz_leg6 * t2971 - minus_gcross_vz_leg6 * t2969,
                 -(minus_gcross_vz_leg6 * t2993 + minus_gcylinder_vz_leg6 * t2995),
-                -(minus_gcross_vz_leg6 * t3005), -t2844, t2919, t2886, -t2965, t2953, t2934, t3035,
-                -t3063, -t3090, t3100, grod_vz_leg6 * actuator_accelerations[5], t432,
+                -(minus_gcross_vz_leg6 * t3005), -t2843, t2919, t2886, -t2965, t2953, t2934, t3035,
+                -t3063, -t3090, t3100, grod_vz_leg6 * actuator_accelerations[5], t433,
                 ::overact::math::signed(grod_vz_leg6, actuator_velocities[5]), grod_vz_leg6, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t1214, t1219, t3130 * t1209 + t3132 * t1211 - t3135 * t713,
-                t1514,
+                0.0, 0.0, 0.0, 0.0, 0.0, t1214, t1219, t3130 * t1209 + t3132 * t1211 - t3135 * t714,
+                t1513,
             ],
             [
-                -t1268, t1302, t1335, t1349, t1369, t1379,
+                -t1258, t1301, t1334, t1349, t1369, t1379,
                 gcross_wx_leg1 * t1382 - gcylinder_wx_leg1 * t1384,
                 -(gcross_wx_leg1 * t1406 + gcylinder_wx_leg1 * t1408), gcross_wx_leg1 * t1418,
-                -t1268, t1335, -t1302, t1379, -t1369, t1349, t30 * t1448 - t48 * t1443,
-                t30 * t1476 - t48 * t1473, t30 * t1504 + t48 * t1499, t30 * t1515 - t48 * t1206,
-                grod_wx_leg1 * actuator_accelerations[0], t506,
-                ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]), grod_wx_leg1, t1585,
-                t1628, -t1661, -t1676, t1696, t1706,
-                -(gcylinder_wx_leg2 * t1711 - minus_gcross_wx_leg2 * t1709),
-                gcylinder_wx_leg2 * t1735 + minus_gcross_wx_leg2 * t1733,
-                -(minus_gcross_wx_leg2 * t1745), t1585, -t1661, -t1628, t1706, -t1696, -t1676,
-                t74 * t1770 - t83 * t1775, -(t83 * t1803 + t74 * t1800), t83 * t1830 - t74 * t1825,
-                t74 * t1550 - t83 * t1840, grod_wx_leg2 * actuator_accelerations[1], t507,
-                ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]), grod_wx_leg2, -t1900,
-                t1943, t1976, t1991, t2011, -t2021,
-                minus_gcylinder_wx_leg3 * t2026 - gcross_wx_leg3 * t2024,
-                -(gcross_wx_leg3 * t2048 + minus_gcylinder_wx_leg3 * t2050), gcross_wx_leg3 * t2060,
-                -t1900, t1976, -t1943, -t2021, -t2011, t1991, t26 * t2090 + t44 * t2085,
-                t26 * t2118 - t44 * t2115, -(t26 * t2145 + t44 * t2140), t26 * t2155 - t44 * t1863,
-                grod_wx_leg3 * actuator_accelerations[2], t509,
-                ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]), grod_wx_leg3, t2223,
-                t2259, t2292, t2306, t2326, -t2336,
-                minus_gcylinder_wx_leg4 * t2341 - gcross_wx_leg4 * t2339,
-                -(gcross_wx_leg4 * t2363 + minus_gcylinder_wx_leg4 * t2365), gcross_wx_leg4 * t2375,
-                t2223, t2292, -t2259, -t2336, -t2326, t2306, t81 * t2405 + t72 * t2400,
-                t81 * t2433 - t72 * t2430, -(t81 * t2460 + t72 * t2455), t81 * t2470 - t72 * t2178,
-                grod_wx_leg4 * actuator_accelerations[3], t511,
-                ::overact::math::signed(grod_wx_leg4, actuator_velocities[3]), grod_wx_leg4, t2538,
-                t2574, t2607, -t2621, t2641, t2651,
-                gcross_wx_leg5 * t2654 - gcylinder_wx_leg5 * t2656,
-                gcross_wx_leg5 * t2678 + gcylinder_wx_leg5 * t2680, gcross_wx_leg5 * t2690, t2538,
-                t2607, -t2574, t2651, -t2641, -t2621, t47 * t2715 - t29 * t2720,
-                t29 * t2748 + t47 * t2745, t29 * t2775 + t47 * t2770, t47 * t2497 - t29 * t2785,
-                grod_wx_leg5 * actuator_accelerations[4], t513,
-                ::overact::math::signed(grod_wx_leg5, actuator_velocities[4]), grod_wx_leg5, -t2853,
+                -t1258, t1334, -t1301, t1379, -t1369, t1349, t30 * t1448 - t48 * t1443,
+                t30 * t1476 - t48 * t1473, t30 * t1503 + t48 * t1498, t30 * t1514 - t48 * t1206,
+                grod_wx_leg1 * actuator_accelerations[0], t507,
+                ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]), grod_wx_leg1, t1583,
+                t1626, -t1659, -t1674, t1694, t1704,
+                -(gcylinder_wx_leg2 * t1709 - minus_gcross_wx_leg2 * t1707),
+                gcylinder_wx_leg2 * t1733 + minus_gcross_wx_leg2 * t1731,
+                -(minus_gcross_wx_leg2 * t1743), t1583, -t1659, -t1626, t1704, -t1694, -t1674,
+                t82 * t1768 - t74 * t1773, -(t74 * t1801 + t82 * t1798), t74 * t1828 - t82 * t1823,
+                t82 * t1549 - t74 * t1838, grod_wx_leg2 * actuator_accelerations[1], t508,
+                ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]), grod_wx_leg2, t1906,
+                t1942, t1975, t1989, t2009, -t2019,
+                minus_gcylinder_wx_leg3 * t2024 - gcross_wx_leg3 * t2022,
+                -(gcross_wx_leg3 * t2046 + minus_gcylinder_wx_leg3 * t2048), gcross_wx_leg3 * t2058,
+                t1906, t1975, -t1942, -t2019, -t2009, t1989, t26 * t2088 + t44 * t2083,
+                t26 * t2116 - t44 * t2113, -(t26 * t2143 + t44 * t2138), t26 * t2153 - t44 * t1861,
+                grod_wx_leg3 * actuator_accelerations[2], t510,
+                ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]), grod_wx_leg3, -t2213,
+                t2256, t2289, t2304, t2324, -t2334,
+                minus_gcylinder_wx_leg4 * t2339 - gcross_wx_leg4 * t2337,
+                -(gcross_wx_leg4 * t2361 + minus_gcylinder_wx_leg4 * t2363), gcross_wx_leg4 * t2373,
+                -t2213, t2289, -t2256, -t2334, -t2324, t2304, t72 * t2403 + t80 * t2398,
+                t72 * t2431 - t80 * t2428, -(t72 * t2458 + t80 * t2453), t72 * t2468 - t80 * t2176,
+                grod_wx_leg4 * actuator_accelerations[3], t512,
+                ::overact::math::signed(grod_wx_leg4, actuator_velocities[3]), grod_wx_leg4, t2536,
+                t2573, t2606, -t2620, t2640, t2650,
+                gcross_wx_leg5 * t2653 - gcylinder_wx_leg5 * t2655,
+                gcross_wx_leg5 * t2677 + gcylinder_wx_leg5 * t2679, gcross_wx_leg5 * t2689, t2536,
+                t2606, -t2573, t2650, -t2640, -t2620, t47 * t2714 - t29 * t2719,
+                t29 * t2747 + t47 * t2744, t29 * t2774 + t47 * t2769, t47 * t2495 - t29 * t2784,
+                grod_wx_leg5 * actuator_accelerations[4], t514,
+                ::overact::math::signed(grod_wx_leg5, actuator_velocities[4]), grod_wx_leg5, -t2852,
                 -t2889, t2922, t2936, -t2956, -t2966,
                 minus_gcylinder_wx_leg6 * t2971 - minus_gcross_wx_leg6 * t2969,
                 -(minus_gcross_wx_leg6 * t2993 + minus_gcylinder_wx_leg6 * t2995),
-                -(minus_gcross_wx_leg6 * t3005), -t2853, t2922, t2889, -t2966, t2956, t2936,
-                t82 * t3035 - t73 * t3030, -(t82 * t3063 + t73 * t3060),
-                -(t82 * t3090 + t73 * t3085), t82 * t3100 - t73 * t2812,
-                grod_wx_leg6 * actuator_accelerations[5], t515,
+                -(minus_gcross_wx_leg6 * t3005), -t2852, t2922, t2889, -t2966, t2956, t2936,
+                t73 * t3035 - t81 * t3030, -(t73 * t3063 + t81 * t3060),
+                -(t73 * t3090 + t81 * t3085), t73 * t3100 - t81 * t2811,
+                grod_wx_leg6 * actuator_accelerations[5], t516,
                 ::overact::math::signed(grod_wx_leg6, actuator_velocities[5]), grod_wx_leg6,
                 t5 * t3126 + t3139 - t3144, t5 * t3161 + t10 * t3164 + t3130 * t3169,
                 t5 * t3187 + t10 * t3190 + t3130 * t3193, t10 * t3160 - t3207 + t3144,
                 t5 * t3218 + t10 * t3220 + t3130 * t3223, t3207 - t3139 + t3130 * t3186,
-                t20 * t1514 - t38 * t1159, t24 * t1514 - t42 * t1159, t3132 * t1514 - t3135 * t1159,
+                t20 * t1513 - t38 * t1159, t24 * t1513 - t42 * t1159, t3132 * t1513 - t3135 * t1159,
                 0.0,
             ],
             [
-                t1277, t1305, -t1338, t1351, -t1372, t1380,
+                t1267, t1304, -t1337, t1351, -t1372, t1380,
                 -(minus_gcross_wy_leg1 * t1382 + gcylinder_wy_leg1 * t1384),
                 minus_gcross_wy_leg1 * t1406 - gcylinder_wy_leg1 * t1408,
-                -(minus_gcross_wy_leg1 * t1418), t1277, -t1338, -t1305, t1380, t1372, t1351,
+                -(minus_gcross_wy_leg1 * t1418), t1267, -t1337, -t1304, t1380, t1372, t1351,
                 -(t48 * t1438 + t16 * t1448), -(t48 * t1468 + t16 * t1476),
-                t48 * t1494 - t16 * t1504, t48 * t1187 - t16 * t1515,
-                grod_wy_leg1 * actuator_accelerations[0], t71,
-                ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]), grod_wy_leg1, -t1594,
-                t1631, t1664, t1678, t1699, -t1707,
-                minus_gcylinder_wy_leg2 * t1711 - minus_minus_gcross_wy_leg2 * t1709,
-                -(minus_minus_gcross_wy_leg2 * t1733 + minus_gcylinder_wy_leg2 * t1735),
-                minus_minus_gcross_wy_leg2 * t1745, -t1594, t1664, -t1631, -t1707, -t1699, t1678,
-                t74 * t1765 + t77 * t1775, t77 * t1803 - t74 * t1795, -(t74 * t1820 + t77 * t1830),
-                t77 * t1840 - t74 * t1545, grod_wy_leg2 * actuator_accelerations[1], t108,
-                ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]), grod_wy_leg2, t1909,
-                t1946, t1979, -t1993, t2014, t2022,
-                -(gcross_wy_leg3 * t2024 + gcylinder_wy_leg3 * t2026),
-                gcylinder_wy_leg3 * t2050 - gcross_wy_leg3 * t2048, gcross_wy_leg3 * t2060, t1909,
-                t1979, -t1946, t2022, -t2014, -t1993, t44 * t2080 - t12 * t2090,
-                t44 * t2110 - t12 * t2118, t44 * t2135 + t12 * t2145, t44 * t1865 - t12 * t2155,
-                -(minus_grod_wy_leg3 * actuator_accelerations[2]), -t136,
+                t48 * t1493 - t16 * t1503, t48 * t1187 - t16 * t1514,
+                grod_wy_leg1 * actuator_accelerations[0], t185,
+                ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]), grod_wy_leg1, -t1592,
+                t1629, t1662, t1676, t1697, -t1705,
+                minus_gcylinder_wy_leg2 * t1709 - minus_minus_gcross_wy_leg2 * t1707,
+                -(minus_minus_gcross_wy_leg2 * t1731 + minus_gcylinder_wy_leg2 * t1733),
+                minus_minus_gcross_wy_leg2 * t1743, -t1592, t1662, -t1629, -t1705, -t1697, t1676,
+                t82 * t1763 + t68 * t1773, t68 * t1801 - t82 * t1793, -(t82 * t1818 + t68 * t1828),
+                t68 * t1838 - t82 * t1544, grod_wy_leg2 * actuator_accelerations[1], t193,
+                ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]), grod_wy_leg2, t1915,
+                t1945, t1978, -t1991, t2012, t2020,
+                -(gcross_wy_leg3 * t2022 + gcylinder_wy_leg3 * t2024),
+                gcylinder_wy_leg3 * t2048 - gcross_wy_leg3 * t2046, gcross_wy_leg3 * t2058, t1915,
+                t1978, -t1945, t2020, -t2012, -t1991, t44 * t2078 - t12 * t2088,
+                t44 * t2108 - t12 * t2116, t44 * t2133 + t12 * t2143, t44 * t1863 - t12 * t2153,
+                -(minus_grod_wy_leg3 * actuator_accelerations[2]), -t203,
                 -::overact::math::signed(minus_grod_wy_leg3, actuator_velocities[2]),
-                -minus_grod_wy_leg3, t2232, t2262, t2295, -t2308, t2329, t2337,
-                -(gcross_wy_leg4 * t2339 + gcylinder_wy_leg4 * t2341),
-                gcylinder_wy_leg4 * t2365 - gcross_wy_leg4 * t2363, gcross_wy_leg4 * t2375, t2232,
-                t2295, -t2262, t2337, -t2329, -t2308, t72 * t2395 - t75 * t2405,
-                t72 * t2425 - t75 * t2433, t72 * t2450 + t75 * t2460, t72 * t2180 - t75 * t2470,
-                -(minus_grod_wy_leg4 * actuator_accelerations[3]), -t164,
+                -minus_grod_wy_leg3, t2222, t2259, t2292, -t2306, t2327, t2335,
+                -(gcross_wy_leg4 * t2337 + gcylinder_wy_leg4 * t2339),
+                gcylinder_wy_leg4 * t2363 - gcross_wy_leg4 * t2361, gcross_wy_leg4 * t2373, t2222,
+                t2292, -t2259, t2335, -t2327, -t2306, t80 * t2393 - t66 * t2403,
+                t80 * t2423 - t66 * t2431, t80 * t2448 + t66 * t2458, t80 * t2178 - t66 * t2468,
+                -(minus_grod_wy_leg4 * actuator_accelerations[3]), -t212,
                 -::overact::math::signed(minus_grod_wy_leg4, actuator_velocities[3]),
-                -minus_grod_wy_leg4, t2547, t2577, -t2610, t2623, t2644, t2652,
-                -(minus_gcross_wy_leg5 * t2654 + gcylinder_wy_leg5 * t2656),
-                gcylinder_wy_leg5 * t2680 - minus_gcross_wy_leg5 * t2678,
-                -(minus_gcross_wy_leg5 * t2690), t2547, -t2610, -t2577, t2652, -t2644, t2623,
-                t15 * t2720 - t47 * t2710, -(t47 * t2740 + t15 * t2748),
-                -(t15 * t2775 - t47 * t2765), t15 * t2785 - t47 * t2495,
-                grod_wy_leg5 * actuator_accelerations[4], t193,
-                ::overact::math::signed(grod_wy_leg5, actuator_velocities[4]), grod_wy_leg5, t2862,
+                -minus_grod_wy_leg4, t2545, t2576, -t2609, t2622, t2643, t2651,
+                -(minus_gcross_wy_leg5 * t2653 + gcylinder_wy_leg5 * t2655),
+                gcylinder_wy_leg5 * t2679 - minus_gcross_wy_leg5 * t2677,
+                -(minus_gcross_wy_leg5 * t2689), t2545, -t2609, -t2576, t2651, -t2643, t2622,
+                t15 * t2719 - t47 * t2709, -(t47 * t2739 + t15 * t2747),
+                -(t47 * t2764 + t15 * t2774), t15 * t2784 - t47 * t2493,
+                grod_wy_leg5 * actuator_accelerations[4], t222,
+                ::overact::math::signed(grod_wy_leg5, actuator_velocities[4]), grod_wy_leg5, t2861,
                 t2892, t2925, -t2938, t2959, t2967,
                 gcross_wy_leg6 * t2969 - gcylinder_wy_leg6 * t2971,
-                gcross_wy_leg6 * t2993 + gcylinder_wy_leg6 * t2995, gcross_wy_leg6 * t3005, t2862,
-                t2925, -t2892, t2967, -t2959, -t2938, t73 * t3025 - t76 * t3035,
-                t73 * t3055 + t76 * t3063, t76 * t3090 - t73 * t3080, t73 * t2810 - t76 * t3100,
-                -(minus_grod_wy_leg6 * actuator_accelerations[5]), -t222,
+                gcross_wy_leg6 * t2993 + gcylinder_wy_leg6 * t2995, gcross_wy_leg6 * t3005, t2861,
+                t2925, -t2892, t2967, -t2959, -t2938, t81 * t3025 - t67 * t3035,
+                t81 * t3055 + t67 * t3063, t81 * t3080 + t67 * t3090, t81 * t2809 - t67 * t3100,
+                -(minus_grod_wy_leg6 * actuator_accelerations[5]), -t232,
                 -::overact::math::signed(minus_grod_wy_leg6, actuator_velocities[5]),
                 -minus_grod_wy_leg6, t20 * t3126 + t3147 - t3149,
                 t20 * t3161 + t24 * t3164 + t3132 * t3169,
                 t20 * t3187 + t24 * t3190 + t3132 * t3193, t24 * t3160 - t3211 + t3149,
                 t20 * t3218 + t24 * t3220 + t3132 * t3223, t3211 - t3147 + t3132 * t3186,
-                t38 * t1169 - t5 * t1514, t42 * t1169 - t10 * t1514, t3135 * t1169 - t3130 * t1514,
+                t38 * t1169 - t5 * t1513, t42 * t1169 - t10 * t1513, t3135 * t1169 - t3130 * t1513,
                 0.0,
             ],
             [
-                t1286, t1308, t1341, t1353, t1375, -t1381,
+                t1276, t1307, t1340, t1353, t1375, -t1381,
                 gcross_wz_leg1 * t1382 + minus_gcylinder_wz_leg1 * t1384,
-                -(minus_grod_wz_leg1 * t1402), gcross_wz_leg1 * t1418, t1286, t1341, -t1308, -t1381,
+                -(minus_grod_wz_leg1 * t1402), gcross_wz_leg1 * t1418, t1276, t1340, -t1307, -t1381,
                 -t1375, t1353, t16 * t1443 + t30 * t1438, t16 * t1473 + t30 * t1468,
-                -(t16 * t1499 + t30 * t1494), t16 * t1206 - t30 * t1187,
-                -(minus_grod_wz_leg1 * actuator_accelerations[0]), -t615,
+                -(t16 * t1498 + t30 * t1493), t16 * t1206 - t30 * t1187,
+                -(minus_grod_wz_leg1 * actuator_accelerations[0]), -t616,
                 -::overact::math::signed(minus_grod_wz_leg1, actuator_velocities[0]),
-                -minus_grod_wz_leg1, t1603, t1634, t1667, -t1680, t1702, t1708,
-                -(minus_minus_gcylinder_wz_leg2 * t1711 + gcross_wz_leg2 * t1709),
-                -(minus_grod_wz_leg2 * t1729), gcross_wz_leg2 * t1745, t1603, t1667, -t1634, t1708,
-                -t1702, -t1680, -(t77 * t1770 + t83 * t1765), t77 * t1800 + t83 * t1795,
-                t77 * t1825 + t83 * t1820, t83 * t1545 - t77 * t1550,
-                -(minus_grod_wz_leg2 * actuator_accelerations[1]), -t616,
+                -minus_grod_wz_leg1, t1601, t1632, t1665, -t1678, t1700, t1706,
+                -(minus_minus_gcylinder_wz_leg2 * t1709 + gcross_wz_leg2 * t1707),
+                -(minus_grod_wz_leg2 * t1727), gcross_wz_leg2 * t1743, t1601, t1665, -t1632, t1706,
+                -t1700, -t1678, -(t68 * t1768 + t74 * t1763), t68 * t1798 + t74 * t1793,
+                t68 * t1823 + t74 * t1818, t74 * t1544 - t68 * t1549,
+                -(minus_grod_wz_leg2 * actuator_accelerations[1]), -t617,
                 -::overact::math::signed(minus_grod_wz_leg2, actuator_velocities[1]),
-                -minus_grod_wz_leg2, t1918, t1949, -t1982, t1995, t2017, t2023,
-                minus_gcross_wz_leg3 * t2024 - gcylinder_wz_leg3 * t2026, grod_wz_leg3 * t2044,
-                -(minus_gcross_wz_leg3 * t2060), t1918, -t1982, -t1949, t2023, -t2017, t1995,
-                -(t12 * t2085 + t26 * t2080), t12 * t2115 - t26 * t2110, t12 * t2140 - t26 * t2135,
-                t12 * t1863 - t26 * t1865, grod_wz_leg3 * actuator_accelerations[2], t614,
-                ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]), grod_wz_leg3, t2241,
-                t2265, -t2298, t2310, t2332, t2338,
-                minus_gcross_wz_leg4 * t2339 - gcylinder_wz_leg4 * t2341, grod_wz_leg4 * t2359,
-                -(minus_gcross_wz_leg4 * t2375), t2241, -t2298, -t2265, t2338, -t2332, t2310,
-                -(t75 * t2400 + t81 * t2395), t75 * t2430 - t81 * t2425, t75 * t2455 - t81 * t2450,
-                t75 * t2178 - t81 * t2180, grod_wz_leg4 * actuator_accelerations[3], t619,
-                ::overact::math::signed(grod_wz_leg4, actuator_velocities[3]), grod_wz_leg4, t2556,
-                t2580, t2613, t2625, t2647, -t2653,
-                gcross_wz_leg5 * t2654 + minus_gcylinder_wz_leg5 * t2656,
-                -(minus_grod_wz_leg5 * t2674), gcross_wz_leg5 * t2690, t2556, t2613, -t2580, -t2653,
-                -t2647, t2625, t29 * t2710 - t15 * t2715, t29 * t2740 - t15 * t2745,
-                -(t29 * t2765 + t15 * t2770), t29 * t2495 - t15 * t2497,
-                -(minus_grod_wz_leg5 * actuator_accelerations[4]), -t621,
+                -minus_grod_wz_leg2, t1924, t1948, -t1981, t1993, t2015, t2021,
+                minus_gcross_wz_leg3 * t2022 - gcylinder_wz_leg3 * t2024, grod_wz_leg3 * t2042,
+                -(minus_gcross_wz_leg3 * t2058), t1924, -t1981, -t1948, t2021, -t2015, t1993,
+                -(t12 * t2083 + t26 * t2078), t12 * t2113 - t26 * t2108, t12 * t2138 - t26 * t2133,
+                t12 * t1861 - t26 * t1863, grod_wz_leg3 * actuator_accelerations[2], t615,
+                ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]), grod_wz_leg3, t2231,
+                t2262, -t2295, t2308, t2330, t2336,
+                minus_gcross_wz_leg4 * t2337 - gcylinder_wz_leg4 * t2339, grod_wz_leg4 * t2357,
+                -(minus_gcross_wz_leg4 * t2373), t2231, -t2295, -t2262, t2336, -t2330, t2308,
+                -(t66 * t2398 + t72 * t2393), t66 * t2428 - t72 * t2423, t66 * t2453 - t72 * t2448,
+                t66 * t2176 - t72 * t2178, grod_wz_leg4 * actuator_accelerations[3], t620,
+                ::overact::math::signed(grod_wz_leg4, actuator_velocities[3]), grod_wz_leg4, t2554,
+                t2579, t2612, t2624, t2646, -t2652,
+                gcross_wz_leg5 * t2653 + minus_gcylinder_wz_leg5 * t2655,
+                -(minus_grod_wz_leg5 * t2673), gcross_wz_leg5 * t2689, t2554, t2612, -t2579, -t2652,
+                -t2646, t2624, t29 * t2709 - t15 * t2714, t29 * t2739 - t15 * t2744,
+                t29 * t2764 - t15 * t2769, t29 * t2493 - t15 * t2495,
+                -(minus_grod_wz_leg5 * actuator_accelerations[4]), -t622,
                 -::overact::math::signed(minus_grod_wz_leg5, actuator_velocities[4]),
-                -minus_grod_wz_leg5, t2871, t2895, t2928, -t2940, t2962, t2968,
+                -minus_grod_wz_leg5, t2870, t2895, t2928, -t2940, t2962, t2968,
                 gcross_wz_leg6 * t2969 - gcylinder_wz_leg6 * t2971, grod_wz_leg6 * t2989,
-                gcross_wz_leg6 * t3005, t2871, t2928, -t2895, t2968, -t2962, -t2940,
-                t76 * t3030 - t82 * t3025, t76 * t3060 - t82 * t3055, t76 * t3085 + t82 * t3080,
-                t76 * t2812 - t82 * t2810, grod_wz_leg6 * actuator_accelerations[5], t623,
+                gcross_wz_leg6 * t3005, t2870, t2928, -t2895, t2968, -t2962, -t2940,
+                t67 * t3030 - t73 * t3025, t67 * t3060 - t73 * t3055, t67 * t3085 - t73 * t3080,
+                t67 * t2811 - t73 * t2809, grod_wz_leg6 * actuator_accelerations[5], t624,
                 ::overact::math::signed(grod_wz_leg6, actuator_velocities[5]), grod_wz_leg6,
                 t38 * t3126 + t3152 - t3154, t38 * t3161 + t42 * t3164 + t3135 * t3169,
                 t38 * t3187 + t42 * t3190 + t3135 * t3193, t42 * t3160 - t3215 + t3154,
@@ -13274,7 +13278,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 2595 operations (927 additions, 1619 multiplications, 49 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2036 intermediates.
+    /// 2599 operations (931 additions, 1604 multiplications, 64 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2040 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -13356,875 +13360,872 @@ impl Hexapod {
         let t193 = t41 * t150 - t19 * t154 + t44 * t158;
         let t198 = t19 * t161 - t41 * t164 + t44 * t168;
         let t203 = t19 * t171 + t41 * t173 - t44 * t176;
-        let t237 = 0.05176380902050415 * t5;
-        let t238 = 0.19318516525781368 * t19;
+        let t237 = 0.05176380902050415 * t15;
+        let t238 = 0.19318516525781368 * t44;
         let t239 = t237 + t238;
-        let t240 = 0.19318516525781368 * t5;
-        let t241 = 0.05176380902050415 * t19;
+        let t240 = 0.19318516525781368 * t15;
+        let t241 = 0.05176380902050415 * t44;
         let t242 = t240 + t241;
         let t243 = t242 - t239;
-        let t245 = pose[0] + t243 - 0.3912590402935223;
-        let t247 = 0.05176380902050415 * t10;
-        let t248 = 0.19318516525781368 * t41;
-        let t249 = t247 + t248;
-        let t250 = 0.19318516525781368 * t10;
-        let t251 = 0.05176380902050415 * t41;
-        let t252 = t250 + t251;
-        let t253 = t252 - t249;
-        let t255 = pose[1] + t253 + 0.08316467632710373;
-        let t257 = 0.9781476007338057 * t245 - 0.20791169081775931 * t255;
-        let t259 = 0.05176380902050415 * t15;
-        let t260 = 0.19318516525781368 * t44;
-        let t261 = t259 + t260;
-        let t262 = 0.19318516525781368 * t15;
-        let t263 = 0.05176380902050415 * t44;
-        let t264 = t262 + t263;
-        let t265 = t264 - t261;
-        let t266 = pose[2] + t265;
-        let t268 = t257 * t257 + t266 * t266;
+        let t244 = pose[2] + t243;
+        let t245 = 0.05176380902050415 * t5;
+        let t246 = 0.19318516525781368 * t19;
+        let t247 = t245 + t246;
+        let t248 = 0.19318516525781368 * t5;
+        let t249 = 0.05176380902050415 * t19;
+        let t250 = t248 + t249;
+        let t251 = t250 - t247;
+        let t253 = pose[0] + t251 - 0.3912590402935223;
+        let t255 = 0.05176380902050415 * t10;
+        let t256 = 0.19318516525781368 * t41;
+        let t257 = t255 + t256;
+        let t258 = 0.19318516525781368 * t10;
+        let t259 = 0.05176380902050415 * t41;
+        let t260 = t258 + t259;
+        let t261 = t260 - t257;
+        let t263 = pose[1] + t261 + 0.08316467632710373;
+        let t265 = 0.9781476007338057 * t253 - 0.20791169081775931 * t263;
+        let t268 = t265 * t265 + t244 * t244;
         let t269 = ::overact::math::sqrt(t268);
         ::overact::guard::leg(t269, 0.5513142860385972, "leg1")?;
-        let t270 = 1.0 / t269;
-        let c_cross_leg1 = t266 * t270;
-        let t272 = 0.9781476007338057 * c_cross_leg1;
-        let minus_gcross_vx_leg1 = t270 * t272;
-        let t274 = 0.05176380902050415 * t160;
-        let t275 = 0.19318516525781368 * t193;
-        let t276 = t274 + t275;
-        let t277 = 0.19318516525781368 * t160;
-        let t278 = 0.05176380902050415 * t193;
-        let t279 = t277 + t278;
-        let t281 = acceleration[0] + t279 - t276;
-        let t283 = 0.20791169081775931 * c_cross_leg1;
-        let t284 = 0.05176380902050415 * t170;
-        let t285 = 0.19318516525781368 * t198;
-        let t286 = t284 + t285;
-        let t287 = 0.19318516525781368 * t170;
-        let t288 = 0.05176380902050415 * t198;
-        let t289 = t287 + t288;
-        let t291 = acceleration[1] + t289 - t286;
-        let minus_s_cross_leg1 = t257 * t270;
-        let t295 = 0.05176380902050415 * t178;
-        let t296 = 0.19318516525781368 * t203;
-        let t297 = t295 + t296;
-        let t298 = 0.19318516525781368 * t178;
-        let t299 = 0.05176380902050415 * t203;
-        let t300 = t298 + t299;
-        let t302 = acceleration[2] + t300 - t297;
-        let t304 = t272 * t281 - t283 * t291 - minus_s_cross_leg1 * t302;
-        let t305 = 0.9781476007338057 * minus_s_cross_leg1;
-        let t308 = 0.20791169081775931 * t245 + 0.9781476007338057 * t255;
-        let t310 = t268 + t308 * t308;
-        ::overact::guard::reach(t310, "leg1")?;
-        let t311 = ::overact::math::sqrt(t310);
-        ::overact::guard::leg(t311, 0.5619721604570214, "leg1")?;
-        let minus_s_cylinder_leg1 = t308 / t311;
-        let c_cylinder_leg1 = t269 / t311;
-        let t316 = t305 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
-        let t319 = t261 * twist[4] - t249 * twist[5];
-        let t322 = t252 * twist[5] - t264 * twist[4];
-        let t324 = twist[0] - (t319 + t322);
-        let t326 = 0.20791169081775931 * minus_s_cross_leg1;
-        let t329 = t326 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
-        let t332 = t239 * twist[5] - t261 * twist[3];
-        let t335 = t264 * twist[3] - t242 * twist[5];
-        let t337 = twist[1] - (t332 + t335);
-        let t340 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t343 = t249 * twist[3] - t239 * twist[4];
-        let t346 = t242 * twist[4] - t252 * twist[3];
-        let t348 = twist[2] - (t343 + t346);
-        let t350 = t316 * t324 - t329 * t337 + t340 * t348;
-        let t355 = t272 * t324 - t283 * t337 - minus_s_cross_leg1 * t348;
-        let minus_rate_cross_leg1 = t270 * t355;
-        let t357 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t358 = t350 * t357;
-        let t361 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let minus_minus_grod_vy_leg1 = t255 / t311;
-        let grod_vx_leg1 = t245 / t311;
+        let c_cross_leg1 = t244 / t269;
+        let t271 = 0.9781476007338057 * c_cross_leg1;
+        let minus_gcross_vx_leg1 = t271 / t269;
+        let t273 = 0.05176380902050415 * t160;
+        let t274 = 0.19318516525781368 * t193;
+        let t275 = t273 + t274;
+        let t276 = 0.19318516525781368 * t160;
+        let t277 = 0.05176380902050415 * t193;
+        let t278 = t276 + t277;
+        let t280 = acceleration[0] + t278 - t275;
+        let t282 = 0.20791169081775931 * c_cross_leg1;
+        let t283 = 0.05176380902050415 * t170;
+        let t284 = 0.19318516525781368 * t198;
+        let t285 = t283 + t284;
+        let t286 = 0.19318516525781368 * t170;
+        let t287 = 0.05176380902050415 * t198;
+        let t288 = t286 + t287;
+        let t290 = acceleration[1] + t288 - t285;
+        let minus_s_cross_leg1 = t265 / t269;
+        let t294 = 0.05176380902050415 * t178;
+        let t295 = 0.19318516525781368 * t203;
+        let t296 = t294 + t295;
+        let t297 = 0.19318516525781368 * t178;
+        let t298 = 0.05176380902050415 * t203;
+        let t299 = t297 + t298;
+        let t301 = acceleration[2] + t299 - t296;
+        let t303 = t271 * t280 - t282 * t290 - minus_s_cross_leg1 * t301;
+        let t306 = 0.20791169081775931 * t253 + 0.9781476007338057 * t263;
+        let t308 = t268 + t306 * t306;
+        ::overact::guard::reach(t308, "leg1")?;
+        let t309 = ::overact::math::sqrt(t308);
+        ::overact::guard::leg(t309, 0.5619721604570214, "leg1")?;
+        let c_cylinder_leg1 = t269 / t309;
+        let t313 = t239 * twist[4] - t257 * twist[5];
+        let t316 = t260 * twist[5] - t242 * twist[4];
+        let t318 = twist[0] - (t313 + t316);
+        let t322 = t247 * twist[5] - t239 * twist[3];
+        let t325 = t242 * twist[3] - t250 * twist[5];
+        let t327 = twist[1] - (t322 + t325);
+        let t332 = t257 * twist[3] - t247 * twist[4];
+        let t335 = t250 * twist[4] - t260 * twist[3];
+        let t337 = twist[2] - (t332 + t335);
+        let t339 = t271 * t318 - t282 * t327 - minus_s_cross_leg1 * t337;
+        let minus_rate_cross_leg1 = t339 / t269;
+        let t341 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let minus_minus_grod_vy_leg1 = t263 / t309;
+        let grod_vx_leg1 = t253 / t309;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t337
-            + grod_vx_leg1 * t324 + grod_vz_leg1 * t348;
-        let t370 = 2.0 * minus_minus_rate_rod_leg1;
-        let minus_rate_dot_cross_leg1 = t270 * (t304 - t358 - t358 - t361 * t370);
-        let t374 = 1.0 / t311;
-        let rate_cylinder_leg1 = t374 * t350;
-        let t376 = rate_cylinder_leg1 * t361;
-        let t377 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t379 = t376 + t376 - t377;
-        let t380 = minus_s_cylinder_leg1 * t379;
-        let t381 = minus_rate_dot_cross_leg1 + t380;
-        let gcylinder_vx_leg1 = t316 * t374;
-        let t384 = t361 * t357;
-        let t385 = gcylinder_vx_leg1 * t384;
-        let minus_gcylinder_vy_leg1 = t329 * t374;
-        let t388 = minus_gcylinder_vy_leg1 * t384;
-        let gcross_vy_leg1 = t270 * t283;
-        let gcross_vz_leg1 = t270 * minus_s_cross_leg1;
-        let gcylinder_vz_leg1 = t340 * t374;
-        let t395 = gcylinder_vz_leg1 * t384;
-        let gcross_wx_leg1 = t253 * gcross_vz_leg1 - t265 * gcross_vy_leg1;
-        let gcylinder_wx_leg1 = t253 * gcylinder_vz_leg1
-            + t265 * minus_gcylinder_vy_leg1;
-        let t404 = gcylinder_wx_leg1 * t384;
-        let minus_gcross_wy_leg1 = t265 * minus_gcross_vx_leg1 + t243 * gcross_vz_leg1;
-        let gcylinder_wy_leg1 = t265 * gcylinder_vx_leg1 - t243 * gcylinder_vz_leg1;
-        let t413 = gcylinder_wy_leg1 * t384;
-        let minus_gcylinder_wz_leg1 = t243 * minus_gcylinder_vy_leg1
-            + t253 * gcylinder_vx_leg1;
-        let t418 = minus_gcylinder_wz_leg1 * t384;
-        let gcross_wz_leg1 = t243 * gcross_vy_leg1 + t253 * minus_gcross_vx_leg1;
-        let t424 = t241 - t240;
-        let t425 = t237 - t238;
-        let t426 = t424 + t425;
-        let t428 = pose[0] - t426 - 0.3912590402935223;
-        let t430 = t251 - t250;
-        let t431 = t247 - t248;
-        let t432 = t430 + t431;
-        let t434 = pose[1] - t432 - 0.08316467632710373;
-        let t436 = 0.9781476007338057 * t428 + 0.20791169081775931 * t434;
-        let t438 = t263 - t262;
-        let t439 = t259 - t260;
-        let t440 = t438 + t439;
-        let t441 = pose[2] - t440;
-        let t443 = t436 * t436 + t441 * t441;
-        let t444 = ::overact::math::sqrt(t443);
-        ::overact::guard::leg(t444, 0.5513142860385972, "leg2")?;
-        let t447 = 0.20791169081775931 * t428 - 0.9781476007338057 * t434;
-        let t449 = t443 + t447 * t447;
-        ::overact::guard::reach(t449, "leg2")?;
-        let t450 = ::overact::math::sqrt(t449);
-        ::overact::guard::leg(t450, 0.5619721604570214, "leg2")?;
-        let t451 = 1.0 / t450;
-        let c_cylinder_leg2 = t444 * t451;
-        let t454 = 1.0 / t444;
-        let minus_s_cross_leg2 = t436 * t454;
-        let t456 = 0.9781476007338057 * minus_s_cross_leg2;
-        let s_cylinder_leg2 = t447 / t450;
-        let t459 = 0.20791169081775931 * c_cylinder_leg2 - t456 * s_cylinder_leg2;
-        let gcylinder_vx_leg2 = t459 * t451;
-        let c_cross_leg2 = t441 * t454;
-        let t462 = 0.9781476007338057 * c_cross_leg2;
-        let t465 = t438 * twist[4] - t430 * twist[5];
-        let t468 = t439 * twist[4] - t431 * twist[5];
-        let t470 = twist[0] - (t465 + t468);
-        let t472 = 0.20791169081775931 * c_cross_leg2;
-        let t475 = t424 * twist[5] - t438 * twist[3];
-        let t478 = t425 * twist[5] - t439 * twist[3];
-        let t480 = twist[1] - (t475 + t478);
-        let t485 = t430 * twist[3] - t424 * twist[4];
-        let t488 = t431 * twist[3] - t425 * twist[4];
-        let t490 = twist[2] - (t485 + t488);
-        let t492 = t462 * t470 + t472 * t480 - minus_s_cross_leg2 * t490;
-        let minus_rate_cross_leg2 = t454 * t492;
-        let t494 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t495 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t496 = t494 * t495;
-        let t497 = gcylinder_vx_leg2 * t496;
-        let minus_gcross_vx_leg2 = t454 * t462;
-        let t499 = t278 - t277;
-        let t500 = t274 - t275;
-        let t502 = acceleration[0] - (t499 + t500);
-        let t504 = t288 - t287;
-        let t505 = t284 - t285;
-        let t507 = acceleration[1] - (t504 + t505);
-        let t510 = t299 - t298;
-        let t511 = t295 - t296;
-        let t513 = acceleration[2] - (t510 + t511);
-        let t515 = t462 * t502 + t472 * t507 - minus_s_cross_leg2 * t513;
-        let minus_minus_grod_vy_leg2 = t434 / t450;
-        let grod_vx_leg2 = t428 * t451;
+        let minus_minus_rate_rod_leg1 = minus_minus_grod_vy_leg1 * t327
+            + grod_vx_leg1 * t318 + grod_vz_leg1 * t337;
+        let t350 = 2.0 * minus_minus_rate_rod_leg1;
+        let t352 = t303 - t341 * t350;
+        let t353 = 0.9781476007338057 * minus_s_cross_leg1;
+        let minus_s_cylinder_leg1 = t306 / t309;
+        let t357 = t353 * minus_s_cylinder_leg1 - 0.20791169081775931 * c_cylinder_leg1;
+        let t359 = 0.20791169081775931 * minus_s_cross_leg1;
+        let t362 = t359 * minus_s_cylinder_leg1 + 0.9781476007338057 * c_cylinder_leg1;
+        let t365 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t367 = t357 * t318 - t362 * t327 + t365 * t337;
+        let t368 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t369 = t367 * t368;
+        let minus_rate_dot_cross_leg1 = (t352 - (t369 + t369)) / t269;
+        let rate_cylinder_leg1 = t367 / t309;
+        let t374 = rate_cylinder_leg1 * t341;
+        let t375 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t377 = t374 + t374 - t375;
+        let t378 = minus_s_cylinder_leg1 * t377;
+        let t379 = minus_rate_dot_cross_leg1 + t378;
+        let gcylinder_vx_leg1 = t357 / t309;
+        let t382 = t341 * t368;
+        let t383 = gcylinder_vx_leg1 * t382;
+        let minus_gcylinder_vy_leg1 = t362 / t309;
+        let t386 = minus_gcylinder_vy_leg1 * t382;
+        let gcross_vy_leg1 = t282 / t269;
+        let gcross_vz_leg1 = minus_s_cross_leg1 / t269;
+        let t392 = minus_s_cylinder_leg1 / t309;
+        let gcylinder_vz_leg1 = c_cross_leg1 * t392;
+        let t394 = gcylinder_vz_leg1 * t382;
+        let gcross_wx_leg1 = t261 * gcross_vz_leg1 - t243 * gcross_vy_leg1;
+        let gcylinder_wx_leg1 = t261 * gcylinder_vz_leg1
+            + t243 * minus_gcylinder_vy_leg1;
+        let t403 = gcylinder_wx_leg1 * t382;
+        let minus_gcross_wy_leg1 = t243 * minus_gcross_vx_leg1 + t251 * gcross_vz_leg1;
+        let gcylinder_wy_leg1 = t243 * gcylinder_vx_leg1 - t251 * gcylinder_vz_leg1;
+        let t412 = gcylinder_wy_leg1 * t382;
+        let minus_gcylinder_wz_leg1 = t251 * minus_gcylinder_vy_leg1
+            + t261 * gcylinder_vx_leg1;
+        let t417 = minus_gcylinder_wz_leg1 * t382;
+        let gcross_wz_leg1 = t251 * gcross_vy_leg1 + t261 * minus_gcross_vx_leg1;
+        let t423 = t249 - t248;
+        let t424 = t245 - t246;
+        let t425 = t423 + t424;
+        let t427 = pose[0] - t425 - 0.3912590402935223;
+        let t429 = t259 - t258;
+        let t430 = t255 - t256;
+        let t431 = t429 + t430;
+        let t433 = pose[1] - t431 - 0.08316467632710373;
+        let t435 = 0.9781476007338057 * t427 + 0.20791169081775931 * t433;
+        let t437 = t241 - t240;
+        let t438 = t237 - t238;
+        let t439 = t437 + t438;
+        let t440 = pose[2] - t439;
+        let t442 = t435 * t435 + t440 * t440;
+        let t443 = ::overact::math::sqrt(t442);
+        ::overact::guard::leg(t443, 0.5513142860385972, "leg2")?;
+        let t446 = 0.20791169081775931 * t427 - 0.9781476007338057 * t433;
+        let t448 = t442 + t446 * t446;
+        ::overact::guard::reach(t448, "leg2")?;
+        let t449 = ::overact::math::sqrt(t448);
+        ::overact::guard::leg(t449, 0.5619721604570214, "leg2")?;
+        let c_cylinder_leg2 = t443 / t449;
+        let minus_s_cross_leg2 = t435 / t443;
+        let t453 = 0.9781476007338057 * minus_s_cross_leg2;
+        let s_cylinder_leg2 = t446 / t449;
+        let t456 = 0.20791169081775931 * c_cylinder_leg2 - t453 * s_cylinder_leg2;
+        let t457 = 1.0 / t449;
+        let gcylinder_vx_leg2 = t456 * t457;
+        let c_cross_leg2 = t440 / t443;
+        let t460 = 0.9781476007338057 * c_cross_leg2;
+        let t463 = t437 * twist[4] - t429 * twist[5];
+        let t466 = t438 * twist[4] - t430 * twist[5];
+        let t468 = twist[0] - (t463 + t466);
+        let t470 = 0.20791169081775931 * c_cross_leg2;
+        let t473 = t423 * twist[5] - t437 * twist[3];
+        let t476 = t424 * twist[5] - t438 * twist[3];
+        let t478 = twist[1] - (t473 + t476);
+        let t483 = t429 * twist[3] - t423 * twist[4];
+        let t486 = t430 * twist[3] - t424 * twist[4];
+        let t488 = twist[2] - (t483 + t486);
+        let t490 = t460 * t468 + t470 * t478 - minus_s_cross_leg2 * t488;
+        let minus_rate_cross_leg2 = t490 / t443;
+        let t492 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t493 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t494 = t492 * t493;
+        let t495 = gcylinder_vx_leg2 * t494;
+        let minus_gcross_vx_leg2 = t460 / t443;
+        let t497 = t277 - t276;
+        let t498 = t273 - t274;
+        let t500 = acceleration[0] - (t497 + t498);
+        let t502 = t287 - t286;
+        let t503 = t283 - t284;
+        let t505 = acceleration[1] - (t502 + t503);
+        let t508 = t298 - t297;
+        let t509 = t294 - t295;
+        let t511 = acceleration[2] - (t508 + t509);
+        let t513 = t460 * t500 + t470 * t505 - minus_s_cross_leg2 * t511;
+        let minus_minus_grod_vy_leg2 = t433 * t457;
+        let grod_vx_leg2 = t427 * t457;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t480
-            + grod_vx_leg2 * t470 + grod_vz_leg2 * t490;
-        let t524 = minus_minus_rate_rod_leg2 + minus_minus_rate_rod_leg2;
-        let t526 = t515 - t494 * t524;
-        let t528 = 0.20791169081775931 * minus_s_cross_leg2;
-        let t531 = t528 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
-        let t534 = c_cross_leg2 * s_cylinder_leg2;
-        let t536 = t459 * t470 - t531 * t480 - t534 * t490;
-        let t537 = t495 * t536;
-        let minus_rate_dot_cross_leg2 = t454 * (t526 + t537 + t537);
-        let rate_cylinder_leg2 = t451 * t536;
-        let t542 = rate_cylinder_leg2 * t494;
-        let t543 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t545 = t542 + t543 + t542;
-        let t546 = s_cylinder_leg2 * t545;
-        let t547 = t546 - minus_rate_dot_cross_leg2;
-        let minus_gcross_vy_leg2 = t454 * t472;
-        let minus_gcylinder_vy_leg2 = t531 * t451;
-        let t553 = minus_gcylinder_vy_leg2 * t496;
-        let gcross_vz_leg2 = t454 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t534 * t451;
-        let t558 = minus_gcylinder_vz_leg2 * t496;
-        let minus_gcross_wx_leg2 = t432 * gcross_vz_leg2 + t440 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t432 * minus_gcylinder_vz_leg2
-            - t440 * minus_gcylinder_vy_leg2;
-        let t567 = gcylinder_wx_leg2 * t496;
-        let minus_gcylinder_wy_leg2 = t440 * gcylinder_vx_leg2
-            + t426 * minus_gcylinder_vz_leg2;
-        let t572 = minus_gcylinder_wy_leg2 * t496;
-        let minus_minus_gcross_wy_leg2 = t440 * minus_gcross_vx_leg2
-            + t426 * gcross_vz_leg2;
-        let gcross_wz_leg2 = t426 * minus_gcross_vy_leg2 - t432 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t426 * minus_gcylinder_vy_leg2
-            + t432 * gcylinder_vx_leg2;
-        let t585 = minus_minus_gcylinder_wz_leg2 * t496;
-        let t587 = pose[2] + t261;
-        let t589 = pose[1] + t249 - 0.3804226065180615;
-        let t592 = pose[0] + t239 + 0.12360679774997894;
-        let t594 = 0.9510565162951536 * t589 - 0.30901699437494734 * t592;
-        let t597 = t594 * t594 + t587 * t587;
-        let t598 = ::overact::math::sqrt(t597);
-        ::overact::guard::leg(t598, 0.5513142860385972, "leg3")?;
-        let c_cross_leg3 = t587 / t598;
-        let t600 = 0.30901699437494734 * c_cross_leg3;
-        let gcross_vx_leg3 = t600 / t598;
-        let t604 = 0.9510565162951536 * t592 + 0.30901699437494734 * t589;
-        let t606 = t597 + t604 * t604;
-        ::overact::guard::reach(t606, "leg3")?;
-        let t607 = ::overact::math::sqrt(t606);
-        ::overact::guard::leg(t607, 0.5619721604570214, "leg3")?;
-        let c_cylinder_leg3 = t598 / t607;
-        let t609 = 1.0 / t607;
-        let t610 = 0.9510565162951536 * c_cross_leg3;
-        let t611 = acceleration[1] + t286;
-        let t613 = acceleration[0] + t276;
-        let minus_s_cross_leg3 = t594 / t598;
-        let t617 = acceleration[2] + t297;
-        let t619 = t610 * t611 - t600 * t613 - minus_s_cross_leg3 * t617;
-        let t620 = twist[1] + t332;
-        let t622 = twist[0] + t319;
-        let t625 = twist[2] + t343;
-        let t627 = t610 * t620 - t600 * t622 - minus_s_cross_leg3 * t625;
-        let minus_rate_cross_leg3 = t627 / t598;
-        let t629 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_minus_grod_vx_leg3 = t592 * t609;
-        let grod_vy_leg3 = t589 / t607;
+        let minus_minus_rate_rod_leg2 = minus_minus_grod_vy_leg2 * t478
+            + grod_vx_leg2 * t468 + grod_vz_leg2 * t488;
+        let t522 = minus_minus_rate_rod_leg2 + minus_minus_rate_rod_leg2;
+        let t524 = t513 - t492 * t522;
+        let t526 = 0.20791169081775931 * minus_s_cross_leg2;
+        let t529 = t526 * s_cylinder_leg2 + 0.9781476007338057 * c_cylinder_leg2;
+        let t532 = c_cross_leg2 * s_cylinder_leg2;
+        let t534 = t456 * t468 - t529 * t478 - t532 * t488;
+        let t535 = t493 * t534;
+        let minus_rate_dot_cross_leg2 = (t524 + t535 + t535) / t443;
+        let rate_cylinder_leg2 = t457 * t534;
+        let t540 = rate_cylinder_leg2 * t492;
+        let t541 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t543 = t540 + t541 + t540;
+        let t544 = s_cylinder_leg2 * t543;
+        let t545 = t544 - minus_rate_dot_cross_leg2;
+        let minus_gcross_vy_leg2 = t470 / t443;
+        let minus_gcylinder_vy_leg2 = t529 * t457;
+        let t551 = minus_gcylinder_vy_leg2 * t494;
+        let gcross_vz_leg2 = minus_s_cross_leg2 / t443;
+        let minus_gcylinder_vz_leg2 = t532 * t457;
+        let t556 = minus_gcylinder_vz_leg2 * t494;
+        let minus_gcross_wx_leg2 = t431 * gcross_vz_leg2 + t439 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t431 * minus_gcylinder_vz_leg2
+            - t439 * minus_gcylinder_vy_leg2;
+        let t565 = gcylinder_wx_leg2 * t494;
+        let minus_gcylinder_wy_leg2 = t439 * gcylinder_vx_leg2
+            + t425 * minus_gcylinder_vz_leg2;
+        let t570 = minus_gcylinder_wy_leg2 * t494;
+        let minus_minus_gcross_wy_leg2 = t439 * minus_gcross_vx_leg2
+            + t425 * gcross_vz_leg2;
+        let gcross_wz_leg2 = t425 * minus_gcross_vy_leg2 - t431 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t425 * minus_gcylinder_vy_leg2
+            + t431 * gcylinder_vx_leg2;
+        let t583 = minus_minus_gcylinder_wz_leg2 * t494;
+        let t585 = pose[2] + t239;
+        let t587 = pose[1] + t257 - 0.3804226065180615;
+        let t590 = pose[0] + t247 + 0.12360679774997894;
+        let t592 = 0.9510565162951536 * t587 - 0.30901699437494734 * t590;
+        let t595 = t592 * t592 + t585 * t585;
+        let t596 = ::overact::math::sqrt(t595);
+        ::overact::guard::leg(t596, 0.5513142860385972, "leg3")?;
+        let c_cross_leg3 = t585 / t596;
+        let t598 = 0.30901699437494734 * c_cross_leg3;
+        let gcross_vx_leg3 = t598 / t596;
+        let t602 = 0.9510565162951536 * t590 + 0.30901699437494734 * t587;
+        let t604 = t595 + t602 * t602;
+        ::overact::guard::reach(t604, "leg3")?;
+        let t605 = ::overact::math::sqrt(t604);
+        ::overact::guard::leg(t605, 0.5619721604570214, "leg3")?;
+        let t606 = 1.0 / t605;
+        let c_cylinder_leg3 = t596 * t606;
+        let t608 = 0.9510565162951536 * c_cross_leg3;
+        let t609 = acceleration[1] + t285;
+        let t611 = acceleration[0] + t275;
+        let minus_s_cross_leg3 = t592 / t596;
+        let t615 = acceleration[2] + t296;
+        let t617 = t608 * t609 - t598 * t611 - minus_s_cross_leg3 * t615;
+        let t618 = twist[1] + t322;
+        let t620 = twist[0] + t313;
+        let t623 = twist[2] + t332;
+        let t625 = t608 * t618 - t598 * t620 - minus_s_cross_leg3 * t623;
+        let minus_rate_cross_leg3 = t625 / t596;
+        let t627 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_minus_grod_vx_leg3 = t590 * t606;
+        let grod_vy_leg3 = t587 * t606;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t622
-            + grod_vy_leg3 * t620 + grod_vz_leg3 * t625;
-        let t638 = minus_minus_rate_rod_leg3 + minus_minus_rate_rod_leg3;
-        let t640 = t619 - t629 * t638;
-        let t641 = t609 * t640;
-        let t642 = c_cylinder_leg3 * t641;
-        let t644 = 0.30901699437494734 * minus_s_cross_leg3;
-        let s_cylinder_leg3 = t604 / t607;
-        let t648 = t644 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
-        let gcylinder_vx_leg3 = t648 * t609;
-        let t650 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t651 = t629 * t650;
-        let t652 = gcylinder_vx_leg3 * t651;
-        let t655 = 0.9510565162951536 * minus_s_cross_leg3;
-        let t657 = 0.30901699437494734 * c_cylinder_leg3 - t655 * s_cylinder_leg3;
-        let gcylinder_vy_leg3 = t657 * t609;
-        let t659 = gcylinder_vy_leg3 * t651;
-        let minus_gcross_vy_leg3 = t610 / t598;
-        let gcross_vz_leg3 = minus_s_cross_leg3 / t598;
-        let t665 = c_cross_leg3 * s_cylinder_leg3;
-        let minus_gcylinder_vz_leg3 = t665 * t609;
-        let t667 = minus_gcylinder_vz_leg3 * t651;
-        let gcross_wx_leg3 = t249 * gcross_vz_leg3 + t261 * minus_gcross_vy_leg3;
-        let minus_gcylinder_wx_leg3 = t249 * minus_gcylinder_vz_leg3
-            + t261 * gcylinder_vy_leg3;
-        let t676 = minus_gcylinder_wx_leg3 * t651;
-        let gcross_wy_leg3 = t261 * gcross_vx_leg3 - t239 * gcross_vz_leg3;
-        let gcylinder_wy_leg3 = t261 * gcylinder_vx_leg3
-            + t239 * minus_gcylinder_vz_leg3;
-        let t685 = gcylinder_wy_leg3 * t651;
-        let gcylinder_wz_leg3 = t239 * gcylinder_vy_leg3 - t249 * gcylinder_vx_leg3;
-        let t690 = gcylinder_wz_leg3 * t651;
-        let minus_gcross_wz_leg3 = t239 * minus_gcross_vy_leg3 + t249 * gcross_vx_leg3;
-        let t697 = pose[1] + t430 - 0.2972579301909578;
-        let t700 = pose[0] + t424 + 0.2676522425435432;
-        let t702 = 0.7431448254773945 * t697 - 0.6691306063588579 * t700;
-        let t704 = pose[2] + t438;
-        let t706 = t702 * t702 + t704 * t704;
-        let t707 = ::overact::math::sqrt(t706);
-        ::overact::guard::leg(t707, 0.5513142860385972, "leg4")?;
-        let t708 = 1.0 / t707;
-        let c_cross_leg4 = t704 * t708;
-        let t710 = 0.6691306063588579 * c_cross_leg4;
-        let gcross_vx_leg4 = t708 * t710;
-        let t714 = 0.7431448254773945 * t700 + 0.6691306063588579 * t697;
-        let t716 = t706 + t714 * t714;
-        ::overact::guard::reach(t716, "leg4")?;
-        let t717 = ::overact::math::sqrt(t716);
-        ::overact::guard::leg(t717, 0.5619721604570214, "leg4")?;
-        let t718 = 1.0 / t717;
-        let c_cylinder_leg4 = t707 * t718;
-        let t720 = 0.7431448254773945 * c_cross_leg4;
-        let t721 = acceleration[1] + t504;
-        let t723 = acceleration[0] + t499;
-        let minus_s_cross_leg4 = t702 * t708;
-        let t727 = acceleration[2] + t510;
-        let t729 = t720 * t721 - t710 * t723 - minus_s_cross_leg4 * t727;
-        let t730 = twist[1] + t475;
-        let t732 = twist[0] + t465;
-        let t735 = twist[2] + t485;
-        let t737 = t720 * t730 - t710 * t732 - minus_s_cross_leg4 * t735;
-        let minus_rate_cross_leg4 = t708 * t737;
-        let t739 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_minus_grod_vx_leg4 = t700 * t718;
-        let grod_vy_leg4 = t697 / t717;
+        let minus_minus_rate_rod_leg3 = minus_minus_grod_vx_leg3 * t620
+            + grod_vy_leg3 * t618 + grod_vz_leg3 * t623;
+        let t636 = 2.0 * minus_minus_rate_rod_leg3;
+        let t638 = t617 - t627 * t636;
+        let t639 = t606 * t638;
+        let t640 = c_cylinder_leg3 * t639;
+        let t642 = 0.30901699437494734 * minus_s_cross_leg3;
+        let s_cylinder_leg3 = t602 / t605;
+        let t646 = t642 * s_cylinder_leg3 + 0.9510565162951536 * c_cylinder_leg3;
+        let gcylinder_vx_leg3 = t646 * t606;
+        let t648 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t649 = t627 * t648;
+        let t650 = gcylinder_vx_leg3 * t649;
+        let t653 = 0.9510565162951536 * minus_s_cross_leg3;
+        let t655 = 0.30901699437494734 * c_cylinder_leg3 - t653 * s_cylinder_leg3;
+        let gcylinder_vy_leg3 = t655 * t606;
+        let t657 = gcylinder_vy_leg3 * t649;
+        let minus_gcross_vy_leg3 = t608 / t596;
+        let gcross_vz_leg3 = minus_s_cross_leg3 / t596;
+        let t663 = c_cross_leg3 * s_cylinder_leg3;
+        let minus_gcylinder_vz_leg3 = t663 * t606;
+        let t665 = minus_gcylinder_vz_leg3 * t649;
+        let gcross_wx_leg3 = t257 * gcross_vz_leg3 + t239 * minus_gcross_vy_leg3;
+        let minus_gcylinder_wx_leg3 = t257 * minus_gcylinder_vz_leg3
+            + t239 * gcylinder_vy_leg3;
+        let t674 = minus_gcylinder_wx_leg3 * t649;
+        let gcross_wy_leg3 = t239 * gcross_vx_leg3 - t247 * gcross_vz_leg3;
+        let gcylinder_wy_leg3 = t239 * gcylinder_vx_leg3
+            + t247 * minus_gcylinder_vz_leg3;
+        let t683 = gcylinder_wy_leg3 * t649;
+        let gcylinder_wz_leg3 = t247 * gcylinder_vy_leg3 - t257 * gcylinder_vx_leg3;
+        let t688 = gcylinder_wz_leg3 * t649;
+        let minus_gcross_wz_leg3 = t247 * minus_gcross_vy_leg3 + t257 * gcross_vx_leg3;
+        let t695 = pose[1] + t429 - 0.2972579301909578;
+        let t698 = pose[0] + t423 + 0.2676522425435432;
+        let t700 = 0.7431448254773945 * t695 - 0.6691306063588579 * t698;
+        let t702 = pose[2] + t437;
+        let t704 = t700 * t700 + t702 * t702;
+        let t705 = ::overact::math::sqrt(t704);
+        ::overact::guard::leg(t705, 0.5513142860385972, "leg4")?;
+        let t706 = 1.0 / t705;
+        let c_cross_leg4 = t702 * t706;
+        let t708 = 0.6691306063588579 * c_cross_leg4;
+        let gcross_vx_leg4 = t706 * t708;
+        let t712 = 0.7431448254773945 * t698 + 0.6691306063588579 * t695;
+        let t714 = t704 + t712 * t712;
+        ::overact::guard::reach(t714, "leg4")?;
+        let t715 = ::overact::math::sqrt(t714);
+        ::overact::guard::leg(t715, 0.5619721604570214, "leg4")?;
+        let c_cylinder_leg4 = t705 / t715;
+        let t717 = 1.0 / t715;
+        let minus_s_cross_leg4 = t700 * t706;
+        let t719 = 0.6691306063588579 * minus_s_cross_leg4;
+        let s_cylinder_leg4 = t712 / t715;
+        let t723 = t719 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
+        let t724 = twist[0] + t463;
+        let t727 = 0.7431448254773945 * minus_s_cross_leg4;
+        let t729 = 0.6691306063588579 * c_cylinder_leg4 - t727 * s_cylinder_leg4;
+        let t730 = twist[1] + t473;
+        let t733 = c_cross_leg4 * s_cylinder_leg4;
+        let t734 = twist[2] + t483;
+        let rate_cylinder_leg4 = t717 * (t723 * t724 + t729 * t730 - t733 * t734);
+        let t738 = 0.7431448254773945 * c_cross_leg4;
+        let t743 = t738 * t730 - t708 * t724 - minus_s_cross_leg4 * t734;
+        let minus_rate_cross_leg4 = t706 * t743;
+        let t745 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t746 = rate_cylinder_leg4 * t745;
+        let t747 = acceleration[1] + t502;
+        let t749 = acceleration[0] + t497;
+        let t752 = acceleration[2] + t508;
+        let t754 = t738 * t747 - t708 * t749 - minus_s_cross_leg4 * t752;
+        let t755 = t715 * t746;
+        let t758 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_minus_grod_vx_leg4 = t698 / t715;
+        let grod_vy_leg4 = t695 * t717;
         let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t732
-            + grod_vy_leg4 * t730 + grod_vz_leg4 * t735;
-        let t748 = minus_minus_rate_rod_leg4 + minus_minus_rate_rod_leg4;
-        let t750 = t729 - t739 * t748;
-        let t751 = t718 * t750;
-        let t752 = c_cylinder_leg4 * t751;
-        let t754 = 0.6691306063588579 * minus_s_cross_leg4;
-        let s_cylinder_leg4 = t714 / t717;
-        let t758 = t754 * s_cylinder_leg4 + 0.7431448254773945 * c_cylinder_leg4;
-        let gcylinder_vx_leg4 = t758 * t718;
-        let t760 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t761 = t739 * t760;
-        let t762 = gcylinder_vx_leg4 * t761;
-        let t765 = 0.7431448254773945 * minus_s_cross_leg4;
-        let t767 = 0.6691306063588579 * c_cylinder_leg4 - t765 * s_cylinder_leg4;
-        let gcylinder_vy_leg4 = t767 * t718;
-        let t769 = gcylinder_vy_leg4 * t761;
-        let minus_gcross_vy_leg4 = t708 * t720;
-        let gcross_vz_leg4 = t708 * minus_s_cross_leg4;
-        let t775 = c_cross_leg4 * s_cylinder_leg4;
-        let minus_gcylinder_vz_leg4 = t775 * t718;
-        let t777 = minus_gcylinder_vz_leg4 * t761;
-        let gcross_wx_leg4 = t430 * gcross_vz_leg4 + t438 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t430 * minus_gcylinder_vz_leg4
-            + t438 * gcylinder_vy_leg4;
-        let t786 = minus_gcylinder_wx_leg4 * t761;
-        let gcross_wy_leg4 = t438 * gcross_vx_leg4 - t424 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t438 * gcylinder_vx_leg4
-            + t424 * minus_gcylinder_vz_leg4;
-        let t795 = gcylinder_wy_leg4 * t761;
-        let gcylinder_wz_leg4 = t424 * gcylinder_vy_leg4 - t430 * gcylinder_vx_leg4;
-        let t800 = gcylinder_wz_leg4 * t761;
-        let minus_gcross_wz_leg4 = t424 * minus_gcross_vy_leg4 + t430 * gcross_vx_leg4;
-        let t807 = pose[0] - t242 + 0.2676522425435432;
-        let t810 = pose[1] - t252 + 0.2972579301909578;
-        let t812 = 0.6691306063588579 * t807 + 0.7431448254773945 * t810;
-        let t814 = pose[2] - t264;
-        let t816 = t812 * t812 + t814 * t814;
-        let t817 = ::overact::math::sqrt(t816);
-        ::overact::guard::leg(t817, 0.5513142860385972, "leg5")?;
-        let t818 = 1.0 / t817;
-        let c_cross_leg5 = t814 * t818;
-        let t820 = 0.6691306063588579 * c_cross_leg5;
-        let gcross_vx_leg5 = t818 * t820;
-        let s_cross_leg5 = t812 * t818;
-        let t823 = acceleration[2] - t300;
-        let t825 = acceleration[0] - t279;
-        let t827 = 0.7431448254773945 * c_cross_leg5;
-        let t828 = acceleration[1] - t289;
-        let t831 = s_cross_leg5 * t823 - (t820 * t825 + t827 * t828);
-        let t834 = 0.6691306063588579 * t810 - 0.7431448254773945 * t807;
-        let t836 = t816 + t834 * t834;
-        ::overact::guard::reach(t836, "leg5")?;
-        let t837 = ::overact::math::sqrt(t836);
-        ::overact::guard::leg(t837, 0.5619721604570214, "leg5")?;
-        let c_cylinder_leg5 = t817 / t837;
-        let t840 = 0.7431448254773945 * s_cross_leg5;
-        let s_cylinder_leg5 = t834 / t837;
-        let t843 = 0.6691306063588579 * c_cylinder_leg5 - t840 * s_cylinder_leg5;
-        let t844 = twist[1] + t335;
-        let t846 = 0.6691306063588579 * s_cross_leg5;
-        let t849 = t846 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
-        let t850 = twist[0] + t322;
-        let t853 = c_cross_leg5 * s_cylinder_leg5;
-        let t854 = twist[2] + t346;
-        let t856 = t843 * t844 - t849 * t850 - t853 * t854;
-        let t861 = s_cross_leg5 * t854 - (t820 * t850 + t827 * t844);
-        let minus_rate_cross_leg5 = t818 * t861;
-        let t863 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let t864 = t856 * t863;
-        let t867 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t868 = 1.0 / t837;
-        let minus_minus_grod_vx_leg5 = t807 * t868;
-        let grod_vy_leg5 = t810 * t868;
+        let minus_minus_rate_rod_leg4 = minus_minus_grod_vx_leg4 * t724
+            + grod_vy_leg4 * t730 + grod_vz_leg4 * t734;
+        let t767 = 2.0 * minus_minus_rate_rod_leg4;
+        let minus_rate_dot_cross_leg4 = t706 * (t754 + t755 + t755 - t758 * t767);
+        let t771 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t772 = t746 - t771;
+        let t774 = rate_cylinder_leg4 * t758;
+        let t775 = s_cylinder_leg4 * t774;
+        let t776 = c_cylinder_leg4 * t772 + t775;
+        let gcylinder_vx_leg4 = t723 * t717;
+        let t779 = t758 * t745;
+        let t780 = gcylinder_vx_leg4 * t779;
+        let gcylinder_vy_leg4 = t729 * t717;
+        let t783 = gcylinder_vy_leg4 * t779;
+        let minus_gcross_vy_leg4 = t706 * t738;
+        let gcross_vz_leg4 = t706 * minus_s_cross_leg4;
+        let minus_gcylinder_vz_leg4 = t733 * t717;
+        let t790 = minus_gcylinder_vz_leg4 * t779;
+        let gcross_wx_leg4 = t429 * gcross_vz_leg4 + t437 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t429 * minus_gcylinder_vz_leg4
+            + t437 * gcylinder_vy_leg4;
+        let t799 = minus_gcylinder_wx_leg4 * t779;
+        let gcross_wy_leg4 = t437 * gcross_vx_leg4 - t423 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t437 * gcylinder_vx_leg4
+            + t423 * minus_gcylinder_vz_leg4;
+        let t808 = gcylinder_wy_leg4 * t779;
+        let gcylinder_wz_leg4 = t423 * gcylinder_vy_leg4 - t429 * gcylinder_vx_leg4;
+        let t813 = gcylinder_wz_leg4 * t779;
+        let minus_gcross_wz_leg4 = t423 * minus_gcross_vy_leg4 + t429 * gcross_vx_leg4;
+        let t819 = pose[2] - t242;
+        let t821 = pose[0] - t250 + 0.2676522425435432;
+        let t824 = pose[1] - t260 + 0.2972579301909578;
+        let t826 = 0.6691306063588579 * t821 + 0.7431448254773945 * t824;
+        let t829 = t826 * t826 + t819 * t819;
+        let t830 = ::overact::math::sqrt(t829);
+        ::overact::guard::leg(t830, 0.5513142860385972, "leg5")?;
+        let c_cross_leg5 = t819 / t830;
+        let t832 = 0.6691306063588579 * c_cross_leg5;
+        let gcross_vx_leg5 = t832 / t830;
+        let t836 = 0.6691306063588579 * t824 - 0.7431448254773945 * t821;
+        let t838 = t829 + t836 * t836;
+        ::overact::guard::reach(t838, "leg5")?;
+        let t839 = ::overact::math::sqrt(t838);
+        ::overact::guard::leg(t839, 0.5619721604570214, "leg5")?;
+        let c_cylinder_leg5 = t830 / t839;
+        let t841 = 1.0 / t839;
+        let s_cross_leg5 = t826 / t830;
+        let t843 = acceleration[2] - t299;
+        let t845 = acceleration[0] - t278;
+        let t847 = 0.7431448254773945 * c_cross_leg5;
+        let t848 = acceleration[1] - t288;
+        let t851 = s_cross_leg5 * t843 - (t832 * t845 + t847 * t848);
+        let t853 = 0.7431448254773945 * s_cross_leg5;
+        let s_cylinder_leg5 = t836 / t839;
+        let t856 = 0.6691306063588579 * c_cylinder_leg5 - t853 * s_cylinder_leg5;
+        let t857 = twist[1] + t325;
+        let t859 = 0.6691306063588579 * s_cross_leg5;
+        let t862 = t859 * s_cylinder_leg5 + 0.7431448254773945 * c_cylinder_leg5;
+        let t863 = twist[0] + t316;
+        let t866 = c_cross_leg5 * s_cylinder_leg5;
+        let t867 = twist[2] + t335;
+        let rate_cylinder_leg5 = t841 * (t856 * t857 - t862 * t863 - t866 * t867);
+        let t875 = s_cross_leg5 * t867 - (t832 * t863 + t847 * t857);
+        let minus_rate_cross_leg5 = t875 / t830;
+        let t877 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t878 = rate_cylinder_leg5 * t877;
+        let t879 = t836 / t830;
+        let t880 = t878 * t879;
+        let minus_minus_grod_vx_leg5 = t821 / t839;
+        let grod_vy_leg5 = t824 * t841;
         let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t850
-            + grod_vy_leg5 * t844 + grod_vz_leg5 * t854;
-        let t877 = 2.0 * minus_minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t818 * (t831 + t864 + t864 - t867 * t877);
-        let rate_cylinder_leg5 = t868 * t856;
-        let t882 = rate_cylinder_leg5 * t867;
-        let t883 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t885 = t882 + t883 + t882;
-        let t886 = c_cylinder_leg5 * t885;
-        let t887 = t818 * t834;
-        let t888 = t886 * t887;
-        let t889 = t888 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t849 * t868;
-        let t892 = t867 * t863;
-        let t893 = minus_gcylinder_vx_leg5 * t892;
-        let gcross_vy_leg5 = t818 * t827;
-        let gcylinder_vy_leg5 = t843 * t868;
-        let t898 = gcylinder_vy_leg5 * t892;
-        let minus_gcross_vz_leg5 = t818 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t853 * t868;
-        let t903 = minus_gcylinder_vz_leg5 * t892;
-        let gcross_wx_leg5 = t252 * minus_gcross_vz_leg5 + t264 * gcross_vy_leg5;
-        let gcylinder_wx_leg5 = t252 * minus_gcylinder_vz_leg5
-            + t264 * gcylinder_vy_leg5;
-        let t912 = gcylinder_wx_leg5 * t892;
-        let gcylinder_wy_leg5 = t264 * minus_gcylinder_vx_leg5
-            - t242 * minus_gcylinder_vz_leg5;
-        let t917 = gcylinder_wy_leg5 * t892;
-        let minus_gcross_wy_leg5 = t264 * gcross_vx_leg5 + t242 * minus_gcross_vz_leg5;
-        let gcross_wz_leg5 = t252 * gcross_vx_leg5 - t242 * gcross_vy_leg5;
-        let minus_gcylinder_wz_leg5 = t242 * gcylinder_vy_leg5
-            + t252 * minus_gcylinder_vx_leg5;
-        let t930 = minus_gcylinder_wz_leg5 * t892;
-        let t932 = pose[2] + t439;
-        let t934 = pose[0] + t425 + 0.12360679774997894;
-        let t937 = pose[1] + t431 + 0.3804226065180615;
-        let t939 = 0.30901699437494734 * t934 + 0.9510565162951536 * t937;
-        let t942 = t939 * t939 + t932 * t932;
-        let t943 = ::overact::math::sqrt(t942);
-        ::overact::guard::leg(t943, 0.5513142860385972, "leg6")?;
-        let c_cross_leg6 = t932 / t943;
-        let t945 = 0.30901699437494734 * c_cross_leg6;
-        let gcross_vx_leg6 = t945 / t943;
-        let s_cross_leg6 = t939 / t943;
-        let t948 = acceleration[2] + t511;
-        let t950 = acceleration[0] + t500;
-        let t952 = 0.9510565162951536 * c_cross_leg6;
-        let t953 = acceleration[1] + t505;
-        let t956 = s_cross_leg6 * t948 - (t945 * t950 + t952 * t953);
-        let t959 = 0.30901699437494734 * t937 - 0.9510565162951536 * t934;
-        let t961 = t942 + t959 * t959;
-        ::overact::guard::reach(t961, "leg6")?;
-        let t962 = ::overact::math::sqrt(t961);
-        ::overact::guard::leg(t962, 0.5619721604570214, "leg6")?;
-        let c_cylinder_leg6 = t943 / t962;
-        let t964 = twist[2] + t488;
-        let t966 = twist[0] + t468;
-        let t968 = twist[1] + t478;
-        let t971 = s_cross_leg6 * t964 - (t945 * t966 + t952 * t968);
-        let minus_rate_cross_leg6 = t971 / t943;
-        let t973 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t974 = 1.0 / t962;
-        let minus_minus_grod_vx_leg6 = t934 * t974;
-        let grod_vy_leg6 = t937 / t962;
+        let minus_minus_rate_rod_leg5 = minus_minus_grod_vx_leg5 * t863
+            + grod_vy_leg5 * t857 + grod_vz_leg5 * t867;
+        let t891 = 2.0 * minus_minus_rate_rod_leg5;
+        let t894 = t841 * (t851 + t839 * t880 - t877 * t891);
+        let t897 = s_cylinder_leg5 * t878 - c_cylinder_leg5 * t894;
+        let minus_gcylinder_vx_leg5 = t862 * t841;
+        let t900 = t877 * t877;
+        let t901 = t900 * t879;
+        let t902 = minus_gcylinder_vx_leg5 * t901;
+        let gcross_vy_leg5 = t847 / t830;
+        let gcylinder_vy_leg5 = t856 * t841;
+        let t907 = gcylinder_vy_leg5 * t901;
+        let minus_gcross_vz_leg5 = s_cross_leg5 / t830;
+        let minus_gcylinder_vz_leg5 = t866 * t841;
+        let t912 = minus_gcylinder_vz_leg5 * t901;
+        let gcross_wx_leg5 = t260 * minus_gcross_vz_leg5 + t242 * gcross_vy_leg5;
+        let gcylinder_wx_leg5 = t260 * minus_gcylinder_vz_leg5
+            + t242 * gcylinder_vy_leg5;
+        let t921 = gcylinder_wx_leg5 * t901;
+        let gcylinder_wy_leg5 = t242 * minus_gcylinder_vx_leg5
+            - t250 * minus_gcylinder_vz_leg5;
+        let t926 = gcylinder_wy_leg5 * t901;
+        let minus_gcross_wy_leg5 = t242 * gcross_vx_leg5 + t250 * minus_gcross_vz_leg5;
+        let gcross_wz_leg5 = t260 * gcross_vx_leg5 - t250 * gcross_vy_leg5;
+        let minus_gcylinder_wz_leg5 = t250 * gcylinder_vy_leg5
+            + t260 * minus_gcylinder_vx_leg5;
+        let t939 = minus_gcylinder_wz_leg5 * t901;
+        let t942 = pose[0] + t424 + 0.12360679774997894;
+        let t945 = pose[1] + t430 + 0.3804226065180615;
+        let t947 = 0.30901699437494734 * t942 + 0.9510565162951536 * t945;
+        let t949 = pose[2] + t438;
+        let t951 = t947 * t947 + t949 * t949;
+        let t952 = ::overact::math::sqrt(t951);
+        ::overact::guard::leg(t952, 0.5513142860385972, "leg6")?;
+        let t953 = 1.0 / t952;
+        let c_cross_leg6 = t949 * t953;
+        let t955 = 0.30901699437494734 * c_cross_leg6;
+        let gcross_vx_leg6 = t953 * t955;
+        let s_cross_leg6 = t947 * t953;
+        let t958 = acceleration[2] + t509;
+        let t960 = acceleration[0] + t498;
+        let t962 = 0.9510565162951536 * c_cross_leg6;
+        let t963 = acceleration[1] + t503;
+        let t966 = s_cross_leg6 * t958 - (t955 * t960 + t962 * t963);
+        let t969 = 0.30901699437494734 * t945 - 0.9510565162951536 * t942;
+        let t971 = t951 + t969 * t969;
+        ::overact::guard::reach(t971, "leg6")?;
+        let t972 = ::overact::math::sqrt(t971);
+        ::overact::guard::leg(t972, 0.5619721604570214, "leg6")?;
+        let c_cylinder_leg6 = t952 / t972;
+        let t974 = twist[2] + t486;
+        let t976 = twist[0] + t466;
+        let t978 = twist[1] + t476;
+        let t981 = s_cross_leg6 * t974 - (t955 * t976 + t962 * t978);
+        let minus_rate_cross_leg6 = t953 * t981;
+        let t983 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let minus_minus_grod_vx_leg6 = t942 / t972;
+        let t986 = 1.0 / t972;
+        let grod_vy_leg6 = t945 * t986;
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t966
-            + grod_vy_leg6 * t968 + grod_vz_leg6 * t964;
-        let t983 = 2.0 * minus_minus_rate_rod_leg6;
-        let t985 = t956 - t973 * t983;
-        let t987 = 0.9510565162951536 * s_cross_leg6;
-        let s_cylinder_leg6 = t959 / t962;
-        let t990 = 0.30901699437494734 * c_cylinder_leg6 - t987 * s_cylinder_leg6;
-        let t992 = 0.30901699437494734 * s_cross_leg6;
-        let t995 = t992 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
-        let t998 = c_cross_leg6 * s_cylinder_leg6;
-        let t1000 = t990 * t968 - t995 * t966 - t998 * t964;
-        let t1001 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let minus_rate_dot_cross_leg6 = (t985 + 2.0 * (t1000 * t1001)) / t943;
-        let rate_cylinder_leg6 = t974 * t1000;
-        let t1007 = rate_cylinder_leg6 * t973;
-        let t1008 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1010 = t1007 + t1008 + t1007;
-        let t1011 = s_cylinder_leg6 * t1010;
-        let t1012 = t1011 - minus_rate_dot_cross_leg6;
-        let minus_gcylinder_vx_leg6 = t995 * t974;
-        let t1015 = t973 * t1001;
-        let t1016 = minus_gcylinder_vx_leg6 * t1015;
-        let gcross_vy_leg6 = t952 / t943;
-        let gcylinder_vy_leg6 = t990 * t974;
-        let t1021 = gcylinder_vy_leg6 * t1015;
-        let minus_gcross_vz_leg6 = s_cross_leg6 / t943;
-        let minus_gcylinder_vz_leg6 = t998 * t974;
-        let t1026 = minus_gcylinder_vz_leg6 * t1015;
-        let minus_gcross_wx_leg6 = t431 * minus_gcross_vz_leg6 + t439 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t431 * minus_gcylinder_vz_leg6
-            + t439 * gcylinder_vy_leg6;
-        let t1035 = minus_gcylinder_wx_leg6 * t1015;
-        let gcross_wy_leg6 = t439 * gcross_vx_leg6 + t425 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t425 * minus_gcylinder_vz_leg6
-            - t439 * minus_gcylinder_vx_leg6;
-        let t1044 = gcylinder_wy_leg6 * t1015;
-        let gcross_wz_leg6 = t425 * gcross_vy_leg6 - t431 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t425 * gcylinder_vy_leg6
-            + t431 * minus_gcylinder_vx_leg6;
-        let t1053 = gcylinder_wz_leg6 * t1015;
-        let t1055 = t361 * t361;
-        let t1056 = t357 * t357;
-        let t1057 = t1055 - t1056;
-        let t1060 = t311 * t381;
-        let t1063 = c_cylinder_leg1 * t379 - minus_s_cylinder_leg1 * (t1060 / t269);
-        let t1081 = t494 * t494;
-        let t1082 = t495 * t495;
-        let t1083 = t1081 - t1082;
-        let t1088 = c_cylinder_leg2 * t545 + t526 * (s_cylinder_leg2 / t450);
-        let t1110 = t648 * t622 + t657 * t620 - t665 * t625;
-        let rate_cylinder_leg3 = t609 * t1110;
-        let t1112 = rate_cylinder_leg3 * t629;
-        let t1113 = t1110 * t650;
-        let minus_rate_dot_cross_leg3 = (t640 + t1113 + t1113) / t598;
-        let t1117 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1119 = t1112 + t1117 + t1112;
-        let t1122 = c_cylinder_leg3 * t1119 + s_cylinder_leg3 * t641;
-        let t1124 = t629 * t629;
-        let t1125 = t650 * t650;
-        let t1126 = t1124 - t1125;
-        let t1148 = t758 * t732 + t767 * t730 - t775 * t735;
-        let rate_cylinder_leg4 = t718 * t1148;
-        let t1150 = rate_cylinder_leg4 * t739;
-        let t1151 = t1148 * t760;
-        let minus_rate_dot_cross_leg4 = t708 * (t750 + t1151 + t1151);
-        let t1155 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1157 = t1150 + t1155 + t1150;
-        let t1160 = c_cylinder_leg4 * t1157 + s_cylinder_leg4 * t751;
-        let t1162 = t739 * t739;
-        let t1163 = t760 * t760;
-        let t1164 = t1162 - t1163;
-        let t1183 = t886 - t889 * t887;
-        let t1185 = t867 * t867;
-        let t1186 = t863 * t863;
-        let t1187 = t1185 - t1186;
-        let t1206 = s_cylinder_leg6 / t962;
-        let t1208 = c_cylinder_leg6 * t1010 + t985 * t1206;
-        let t1210 = t973 * t973;
-        let t1211 = t1001 * t1001;
-        let t1212 = t1210 - t1211;
-        let t1234 = t316 * t281 - t329 * t291 + t340 * t302;
-        let t1236 = rate_cylinder_leg1 * t370 - t1234;
-        let t1237 = t1236 / t311;
-        let rate_dot_cylinder_leg1 = t384 - t1237;
-        let t1239 = t384 + rate_dot_cylinder_leg1;
-        let t1241 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t1244 = c_cylinder_leg1 * t1239 + minus_s_cylinder_leg1 * (t1241 - t1055);
-        let t1246 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1268 = t459 * t502 - t531 * t507 - t534 * t513;
-        let t1270 = t1268 - rate_cylinder_leg2 * t524;
-        let t1271 = t1270 / t450;
-        let rate_dot_cylinder_leg2 = t1271 - t496;
-        let t1273 = rate_dot_cylinder_leg2 - t496;
-        let t1275 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t1278 = c_cylinder_leg2 * t1273 - s_cylinder_leg2 * (t1275 - t1081);
-        let t1280 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1302 = t648 * t613 + t657 * t611 - t665 * t617;
-        let t1304 = t1302 - rate_cylinder_leg3 * t638;
-        let t1305 = t1304 / t607;
-        let rate_dot_cylinder_leg3 = t1305 - t651;
-        let t1307 = rate_dot_cylinder_leg3 - t651;
-        let t1309 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1312 = c_cylinder_leg3 * t1307 - s_cylinder_leg3 * (t1309 - t1124);
-        let t1314 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1336 = t758 * t723 + t767 * t721 - t775 * t727;
-        let t1338 = t1336 - rate_cylinder_leg4 * t748;
-        let t1339 = t718 * t1338;
-        let rate_dot_cylinder_leg4 = t1339 - t761;
-        let t1341 = rate_dot_cylinder_leg4 - t761;
-        let t1343 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1346 = c_cylinder_leg4 * t1341 - s_cylinder_leg4 * (t1343 - t1162);
-        let t1348 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1370 = t843 * t828 - t849 * t825 - t853 * t823;
-        let t1372 = t1370 - rate_cylinder_leg5 * t877;
-        let t1373 = t868 * t1372;
-        let rate_dot_cylinder_leg5 = t1373 - t892;
-        let t1375 = rate_dot_cylinder_leg5 - t892;
-        let t1377 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1380 = c_cylinder_leg5 * t1375 - s_cylinder_leg5 * (t1377 - t1185);
-        let t1382 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1404 = t990 * t953 - t995 * t950 - t998 * t948;
-        let t1406 = t1404 - rate_cylinder_leg6 * t983;
-        let rate_dot_cylinder_leg6 = t974 * t1406 - t1015;
-        let t1409 = rate_dot_cylinder_leg6 - t1015;
+        let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t976
+            + grod_vy_leg6 * t978 + grod_vz_leg6 * t974;
+        let t993 = minus_minus_rate_rod_leg6 + minus_minus_rate_rod_leg6;
+        let t995 = t966 - t983 * t993;
+        let t997 = 0.9510565162951536 * s_cross_leg6;
+        let s_cylinder_leg6 = t969 / t972;
+        let t1000 = 0.30901699437494734 * c_cylinder_leg6 - t997 * s_cylinder_leg6;
+        let t1002 = 0.30901699437494734 * s_cross_leg6;
+        let t1005 = t1002 * s_cylinder_leg6 + 0.9510565162951536 * c_cylinder_leg6;
+        let t1008 = c_cross_leg6 * s_cylinder_leg6;
+        let t1010 = t1000 * t978 - t1005 * t976 - t1008 * t974;
+        let t1011 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1012 = t1010 * t1011;
+        let minus_rate_dot_cross_leg6 = t953 * (t995 + t1012 + t1012);
+        let rate_cylinder_leg6 = t986 * t1010;
+        let t1017 = rate_cylinder_leg6 * t983;
+        let t1018 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1020 = t1017 + t1018 + t1017;
+        let t1021 = s_cylinder_leg6 * t1020;
+        let t1022 = t1021 - minus_rate_dot_cross_leg6;
+        let minus_gcylinder_vx_leg6 = t1005 * t986;
+        let t1025 = t983 * t1011;
+        let t1026 = minus_gcylinder_vx_leg6 * t1025;
+        let gcross_vy_leg6 = t953 * t962;
+        let gcylinder_vy_leg6 = t1000 * t986;
+        let t1031 = gcylinder_vy_leg6 * t1025;
+        let minus_gcross_vz_leg6 = t953 * s_cross_leg6;
+        let minus_gcylinder_vz_leg6 = t1008 * t986;
+        let t1036 = minus_gcylinder_vz_leg6 * t1025;
+        let minus_gcross_wx_leg6 = t430 * minus_gcross_vz_leg6 + t438 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t430 * minus_gcylinder_vz_leg6
+            + t438 * gcylinder_vy_leg6;
+        let t1045 = minus_gcylinder_wx_leg6 * t1025;
+        let gcross_wy_leg6 = t438 * gcross_vx_leg6 + t424 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t424 * minus_gcylinder_vz_leg6
+            - t438 * minus_gcylinder_vx_leg6;
+        let t1054 = gcylinder_wy_leg6 * t1025;
+        let gcross_wz_leg6 = t424 * gcross_vy_leg6 - t430 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t424 * gcylinder_vy_leg6
+            + t430 * minus_gcylinder_vx_leg6;
+        let t1063 = gcylinder_wz_leg6 * t1025;
+        let t1065 = t341 * t341;
+        let t1066 = t368 * t368;
+        let t1067 = t1065 - t1066;
+        let t1071 = c_cylinder_leg1 * t377 - t352 * t392;
+        let t1089 = t492 * t492;
+        let t1090 = t493 * t493;
+        let t1091 = t1089 - t1090;
+        let t1096 = c_cylinder_leg2 * t543 + t524 * (s_cylinder_leg2 * t457);
+        let t1118 = t646 * t620 + t655 * t618 - t663 * t623;
+        let rate_cylinder_leg3 = t606 * t1118;
+        let t1120 = rate_cylinder_leg3 * t627;
+        let minus_rate_dot_cross_leg3 = (t638 + 2.0 * (t1118 * t648)) / t596;
+        let t1125 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1127 = t1120 + t1125 + t1120;
+        let t1130 = c_cylinder_leg3 * t1127 + s_cylinder_leg3 * t639;
+        let t1132 = t627 * t627;
+        let t1133 = t648 * t648;
+        let t1134 = t1132 - t1133;
+        let t1152 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1153 = t1152 + t774;
+        let t1154 = t774 + t1153;
+        let t1156 = t746 + t772;
+        let t1158 = c_cylinder_leg4 * t1154 - s_cylinder_leg4 * t1156;
+        let t1160 = t758 * t758;
+        let t1161 = t745 * t745;
+        let t1162 = t1160 - t1161;
+        let t1180 = t894 + t880;
+        let t1181 = t1180 * t879;
+        let t1183 = t878 + t1181 + t878;
+        let t1186 = c_cylinder_leg5 * t1183 - t897 * t879;
+        let t1188 = t901 * t879;
+        let t1189 = t900 - t1188;
+        let t1210 = c_cylinder_leg6 * t1020 + t995 * (s_cylinder_leg6 / t972);
+        let t1212 = t983 * t983;
+        let t1213 = t1011 * t1011;
+        let t1214 = t1212 - t1213;
+        let t1236 = t357 * t280 - t362 * t290 + t365 * t301;
+        let t1238 = rate_cylinder_leg1 * t350 - t1236;
+        let rate_dot_cylinder_leg1 = t382 - t1238 / t309;
+        let t1241 = t382 + rate_dot_cylinder_leg1;
+        let t1243 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t1246 = c_cylinder_leg1 * t1241 + minus_s_cylinder_leg1 * (t1243 - t1065);
+        let t1248 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1270 = t456 * t500 - t529 * t505 - t532 * t511;
+        let t1272 = t1270 - rate_cylinder_leg2 * t522;
+        let t1273 = t457 * t1272;
+        let rate_dot_cylinder_leg2 = t1273 - t494;
+        let t1275 = rate_dot_cylinder_leg2 - t494;
+        let t1277 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t1280 = c_cylinder_leg2 * t1275 - s_cylinder_leg2 * (t1277 - t1089);
+        let t1282 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1304 = t646 * t611 + t655 * t609 - t663 * t615;
+        let t1306 = t1304 - rate_cylinder_leg3 * t636;
+        let t1307 = t606 * t1306;
+        let rate_dot_cylinder_leg3 = t1307 - t649;
+        let t1309 = rate_dot_cylinder_leg3 - t649;
+        let t1311 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1314 = c_cylinder_leg3 * t1309 - s_cylinder_leg3 * (t1311 - t1132);
+        let t1316 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1338 = t723 * t749 + t729 * t747 - t733 * t752;
+        let t1340 = t1338 - rate_cylinder_leg4 * t767;
+        let t1341 = t717 * t1340;
+        let rate_dot_cylinder_leg4 = t1341 - t779;
+        let t1343 = rate_dot_cylinder_leg4 - t779;
+        let t1345 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1348 = c_cylinder_leg4 * t1343 - s_cylinder_leg4 * (t1345 - t1160);
+        let t1371 = t856 * t848 - t862 * t845 - t866 * t843;
+        let t1373 = t1371 - rate_cylinder_leg5 * t891;
+        let t1374 = t1373 / t839;
+        let rate_dot_cylinder_leg5 = t1374 - t901;
+        let t1376 = rate_dot_cylinder_leg5 - t901;
+        let t1378 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1381 = c_cylinder_leg5 * t1376 - s_cylinder_leg5 * (t1378 - t900);
+        let t1404 = t1000 * t963 - t1005 * t960 - t1008 * t958;
+        let t1406 = t1404 - rate_cylinder_leg6 * t993;
+        let t1407 = t986 * t1406;
+        let rate_dot_cylinder_leg6 = t1407 - t1025;
+        let t1409 = rate_dot_cylinder_leg6 - t1025;
         let t1411 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1414 = c_cylinder_leg6 * t1409 - s_cylinder_leg6 * (t1411 - t1210);
+        let t1414 = c_cylinder_leg6 * t1409 - s_cylinder_leg6 * (t1411 - t1212);
         let t1416 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1458 = s_cylinder_leg3 * t1119;
-        let t1471 = s_cylinder_leg4 * t1157;
-        let t1511 = c_cylinder_leg1 * (t1056 - t1241) - minus_s_cylinder_leg1 * t1237;
-        let t1534 = c_cylinder_leg2 * (t1082 - t1275) - s_cylinder_leg2 * t1271;
-        let t1555 = c_cylinder_leg3 * (t1125 - t1309) - s_cylinder_leg3 * t1305;
-        let t1577 = c_cylinder_leg4 * (t1163 - t1343) - s_cylinder_leg4 * t1339;
-        let t1599 = c_cylinder_leg5 * (t1186 - t1377) - s_cylinder_leg5 * t1373;
-        let t1621 = c_cylinder_leg6 * (t1211 - t1411) - t1406 * t1206;
-        let t1676 = 9.81 * minus_s_cross_leg1;
-        let t1677 = minus_s_cylinder_leg1 * t1676;
-        let t1679 = 9.81 * grod_vz_leg1;
-        let t1697 = 9.81 * minus_s_cross_leg2;
-        let t1698 = s_cylinder_leg2 * t1697;
-        let t1700 = 9.81 * grod_vz_leg2;
-        let t1718 = 9.81 * minus_s_cross_leg3;
-        let t1719 = s_cylinder_leg3 * t1718;
-        let t1721 = 9.81 * grod_vz_leg3;
-        let t1739 = 9.81 * minus_s_cross_leg4;
-        let t1740 = s_cylinder_leg4 * t1739;
-        let t1742 = 9.81 * grod_vz_leg4;
-        let t1760 = 9.81 * s_cross_leg5;
-        let t1761 = s_cylinder_leg5 * t1760;
-        let t1763 = 9.81 * grod_vz_leg5;
-        let t1781 = 9.81 * s_cross_leg6;
-        let t1782 = s_cylinder_leg6 * t1781;
-        let t1784 = 9.81 * grod_vz_leg6;
-        let t1802 = t1679 / t311;
-        let t1805 = c_cylinder_leg1 * t1676;
-        let t1807 = 9.81 * t340;
-        let minus_grod_wz_leg1 = t253 * grod_vx_leg1 - t243 * minus_minus_grod_vy_leg1;
-        let t1820 = t451 * t1700;
-        let t1823 = c_cylinder_leg2 * t1697;
-        let t1825 = 9.81 * t534;
-        let minus_grod_wz_leg2 = t426 * minus_minus_grod_vy_leg2 - t432 * grod_vx_leg2;
-        let t1838 = t609 * t1721;
-        let t1841 = c_cylinder_leg3 * t1718;
-        let t1843 = 9.81 * t665;
-        let grod_wz_leg3 = t239 * grod_vy_leg3 - t249 * minus_minus_grod_vx_leg3;
-        let t1856 = t1742 / t717;
-        let t1859 = c_cylinder_leg4 * t1739;
-        let t1861 = 9.81 * t775;
-        let grod_wz_leg4 = t424 * grod_vy_leg4 - t430 * minus_minus_grod_vx_leg4;
-        let t1874 = t1763 / t837;
-        let t1877 = c_cylinder_leg5 * t1760;
-        let t1879 = 9.81 * t853;
-        let minus_grod_wz_leg5 = t242 * grod_vy_leg5 - t252 * minus_minus_grod_vx_leg5;
-        let t1892 = t974 * t1784;
-        let t1895 = c_cylinder_leg6 * t1781;
-        let t1897 = 9.81 * t998;
-        let grod_wz_leg6 = t425 * grod_vy_leg6 - t431 * minus_minus_grod_vx_leg6;
-        let t1910 = 9.81 * c_cross_leg1;
-        let t1917 = 9.81 * c_cross_leg2;
-        let t1924 = 9.81 * c_cross_leg3;
-        let t1931 = 9.81 * c_cross_leg4;
-        let t1938 = 9.81 * c_cross_leg5;
-        let t1945 = 9.81 * c_cross_leg6;
-        let t1956 = minus_minus_grod_vy_leg1 * t291 + grod_vx_leg1 * t281
-            + grod_vz_leg1 * t302;
-        let t1957 = t1679 + t1956;
-        let t1960 = t1957 + t311 * (t1056 + t1241);
-        let t1963 = t304 - t1676;
-        let t1965 = t269 * t379 - minus_s_cylinder_leg1 * t1963;
-        let t1969 = gcylinder_vx_leg1 * t1960 + minus_gcross_vx_leg1 * t1965
-            + grod_vx_leg1 * t1239;
-        let t1974 = gcross_vy_leg1 * t1965 + minus_gcylinder_vy_leg1 * t1960
-            - minus_minus_grod_vy_leg1 * t1239;
-        let t1979 = gcross_vz_leg1 * t1965 - gcylinder_vz_leg1 * t1960
-            - grod_vz_leg1 * t1239;
-        let t1993 = minus_minus_grod_vy_leg2 * t507 + grod_vx_leg2 * t502
-            + grod_vz_leg2 * t513;
-        let t1994 = t1700 + t1993;
-        let t1997 = t1994 + t450 * (t1082 + t1275);
-        let t2000 = t1697 - t515;
-        let t2002 = t444 * t545 - s_cylinder_leg2 * t2000;
-        let t2006 = gcylinder_vx_leg2 * t1997 + minus_gcross_vx_leg2 * t2002
-            + grod_vx_leg2 * t1273;
-        let t2011 = minus_minus_grod_vy_leg2 * t1273 + minus_gcross_vy_leg2 * t2002
-            - minus_gcylinder_vy_leg2 * t1997;
-        let t2016 = gcross_vz_leg2 * t2002 + minus_gcylinder_vz_leg2 * t1997
-            - grod_vz_leg2 * t1273;
-        let t2027 = t1718 - t619;
-        let t2029 = t598 * t1119 - s_cylinder_leg3 * t2027;
-        let t2035 = minus_minus_grod_vx_leg3 * t613 + grod_vy_leg3 * t611
-            + grod_vz_leg3 * t617;
-        let t2036 = t1721 + t2035;
-        let t2039 = t2036 + t607 * (t1125 + t1309);
-        let t2043 = gcross_vx_leg3 * t2029 - gcylinder_vx_leg3 * t2039
-            - minus_minus_grod_vx_leg3 * t1307;
-        let t2048 = gcylinder_vy_leg3 * t2039 + minus_gcross_vy_leg3 * t2029
-            + grod_vy_leg3 * t1307;
-        let t2053 = gcross_vz_leg3 * t2029 + minus_gcylinder_vz_leg3 * t2039
-            - grod_vz_leg3 * t1307;
-        let t2064 = t1739 - t729;
-        let t2066 = t707 * t1157 - s_cylinder_leg4 * t2064;
-        let t2072 = minus_minus_grod_vx_leg4 * t723 + grod_vy_leg4 * t721
-            + grod_vz_leg4 * t727;
-        let t2073 = t1742 + t2072;
-        let t2076 = t2073 + t717 * (t1163 + t1343);
-        let t2080 = gcross_vx_leg4 * t2066 - gcylinder_vx_leg4 * t2076
-            - minus_minus_grod_vx_leg4 * t1341;
-        let t2085 = gcylinder_vy_leg4 * t2076 + minus_gcross_vy_leg4 * t2066
-            + grod_vy_leg4 * t1341;
-        let t2090 = gcross_vz_leg4 * t2066 + minus_gcylinder_vz_leg4 * t2076
-            - grod_vz_leg4 * t1341;
-        let t2101 = t831 + t1760;
-        let t2103 = t817 * t885 + s_cylinder_leg5 * t2101;
-        let t2109 = minus_minus_grod_vx_leg5 * t825 + grod_vy_leg5 * t828
-            + grod_vz_leg5 * t823;
-        let t2110 = t1763 + t2109;
-        let t2113 = t2110 + t837 * (t1186 + t1377);
-        let t2117 = gcross_vx_leg5 * t2103 + minus_gcylinder_vx_leg5 * t2113
-            - minus_minus_grod_vx_leg5 * t1375;
-        let t2122 = gcross_vy_leg5 * t2103 - gcylinder_vy_leg5 * t2113
-            - grod_vy_leg5 * t1375;
-        let t2127 = minus_gcross_vz_leg5 * t2103 - minus_gcylinder_vz_leg5 * t2113
-            + grod_vz_leg5 * t1375;
-        let t2138 = t956 + t1781;
-        let t2140 = t943 * t1010 + s_cylinder_leg6 * t2138;
-        let t2146 = minus_minus_grod_vx_leg6 * t950 + grod_vy_leg6 * t953
-            + grod_vz_leg6 * t948;
-        let t2147 = t1784 + t2146;
-        let t2150 = t2147 + t962 * (t1211 + t1411);
-        let t2154 = gcross_vx_leg6 * t2140 + minus_gcylinder_vx_leg6 * t2150
+        let t1458 = s_cylinder_leg3 * t1127;
+        let t1472 = t775 + s_cylinder_leg4 * t1153;
+        let t1485 = s_cylinder_leg5 * t1183;
+        let t1513 = c_cylinder_leg1 * (t1066 - t1243) - t1238 * t392;
+        let t1536 = c_cylinder_leg2 * (t1090 - t1277) - s_cylinder_leg2 * t1273;
+        let t1557 = c_cylinder_leg3 * (t1133 - t1311) - s_cylinder_leg3 * t1307;
+        let t1579 = c_cylinder_leg4 * (t1161 - t1345) - s_cylinder_leg4 * t1341;
+        let t1601 = c_cylinder_leg5 * (t1188 - t1378) - s_cylinder_leg5 * t1374;
+        let t1623 = c_cylinder_leg6 * (t1213 - t1411) - s_cylinder_leg6 * t1407;
+        let t1678 = 9.81 * minus_s_cross_leg1;
+        let t1679 = minus_s_cylinder_leg1 * t1678;
+        let t1681 = 9.81 * grod_vz_leg1;
+        let t1699 = 9.81 * minus_s_cross_leg2;
+        let t1700 = s_cylinder_leg2 * t1699;
+        let t1702 = 9.81 * grod_vz_leg2;
+        let t1720 = 9.81 * minus_s_cross_leg3;
+        let t1721 = s_cylinder_leg3 * t1720;
+        let t1723 = 9.81 * grod_vz_leg3;
+        let t1741 = 9.81 * minus_s_cross_leg4;
+        let t1742 = s_cylinder_leg4 * t1741;
+        let t1744 = 9.81 * grod_vz_leg4;
+        let t1762 = 9.81 * s_cross_leg5;
+        let t1763 = c_cylinder_leg5 * t1762;
+        let t1764 = t1763 * t879;
+        let t1766 = 9.81 * grod_vz_leg5;
+        let t1784 = 9.81 * s_cross_leg6;
+        let t1785 = s_cylinder_leg6 * t1784;
+        let t1787 = 9.81 * grod_vz_leg6;
+        let t1805 = t1681 / t309;
+        let t1808 = c_cylinder_leg1 * t1678;
+        let t1810 = 9.81 * t365;
+        let minus_grod_wz_leg1 = t261 * grod_vx_leg1 - t251 * minus_minus_grod_vy_leg1;
+        let t1823 = t1702 / t449;
+        let t1826 = c_cylinder_leg2 * t1699;
+        let t1828 = 9.81 * t532;
+        let minus_grod_wz_leg2 = t425 * minus_minus_grod_vy_leg2 - t431 * grod_vx_leg2;
+        let t1841 = t1723 / t605;
+        let t1844 = c_cylinder_leg3 * t1720;
+        let t1846 = 9.81 * t663;
+        let grod_wz_leg3 = t247 * grod_vy_leg3 - t257 * minus_minus_grod_vx_leg3;
+        let t1859 = t1744 / t715;
+        let t1862 = c_cylinder_leg4 * t1741;
+        let t1864 = 9.81 * t733;
+        let grod_wz_leg4 = t423 * grod_vy_leg4 - t429 * minus_minus_grod_vx_leg4;
+        let t1877 = t1766 / t839;
+        let t1881 = 9.81 * t866;
+        let minus_grod_wz_leg5 = t250 * grod_vy_leg5 - t260 * minus_minus_grod_vx_leg5;
+        let t1894 = t1787 / t972;
+        let t1897 = c_cylinder_leg6 * t1784;
+        let t1899 = 9.81 * t1008;
+        let grod_wz_leg6 = t424 * grod_vy_leg6 - t430 * minus_minus_grod_vx_leg6;
+        let t1912 = 9.81 * c_cross_leg1;
+        let t1919 = 9.81 * c_cross_leg2;
+        let t1926 = 9.81 * c_cross_leg3;
+        let t1933 = 9.81 * c_cross_leg4;
+        let t1940 = 9.81 * c_cross_leg5;
+        let t1947 = 9.81 * c_cross_leg6;
+        let t1958 = minus_minus_grod_vy_leg1 * t290 + grod_vx_leg1 * t280
+            + grod_vz_leg1 * t301;
+        let t1959 = t1681 + t1958;
+        let t1962 = t1959 + t309 * (t1066 + t1243);
+        let t1965 = t303 - t1678;
+        let t1967 = t269 * t377 - minus_s_cylinder_leg1 * t1965;
+        let t1971 = gcylinder_vx_leg1 * t1962 + minus_gcross_vx_leg1 * t1967
+            + grod_vx_leg1 * t1241;
+        let t1976 = gcross_vy_leg1 * t1967 + minus_gcylinder_vy_leg1 * t1962
+            - minus_minus_grod_vy_leg1 * t1241;
+        let t1981 = gcross_vz_leg1 * t1967 - gcylinder_vz_leg1 * t1962
+            - grod_vz_leg1 * t1241;
+        let t1995 = minus_minus_grod_vy_leg2 * t505 + grod_vx_leg2 * t500
+            + grod_vz_leg2 * t511;
+        let t1996 = t1702 + t1995;
+        let t1999 = t1996 + t449 * (t1090 + t1277);
+        let t2002 = t1699 - t513;
+        let t2004 = t443 * t543 - s_cylinder_leg2 * t2002;
+        let t2008 = gcylinder_vx_leg2 * t1999 + minus_gcross_vx_leg2 * t2004
+            + grod_vx_leg2 * t1275;
+        let t2013 = minus_minus_grod_vy_leg2 * t1275 + minus_gcross_vy_leg2 * t2004
+            - minus_gcylinder_vy_leg2 * t1999;
+        let t2018 = gcross_vz_leg2 * t2004 + minus_gcylinder_vz_leg2 * t1999
+            - grod_vz_leg2 * t1275;
+        let t2029 = t1720 - t617;
+        let t2031 = t596 * t1127 - s_cylinder_leg3 * t2029;
+        let t2037 = minus_minus_grod_vx_leg3 * t611 + grod_vy_leg3 * t609
+            + grod_vz_leg3 * t615;
+        let t2038 = t1723 + t2037;
+        let t2041 = t2038 + t605 * (t1133 + t1311);
+        let t2045 = gcross_vx_leg3 * t2031 - gcylinder_vx_leg3 * t2041
+            - minus_minus_grod_vx_leg3 * t1309;
+        let t2050 = gcylinder_vy_leg3 * t2041 + minus_gcross_vy_leg3 * t2031
+            + grod_vy_leg3 * t1309;
+        let t2055 = gcross_vz_leg3 * t2031 + minus_gcylinder_vz_leg3 * t2041
+            - grod_vz_leg3 * t1309;
+        let t2066 = t1741 - t754;
+        let t2068 = t705 * t1154 - s_cylinder_leg4 * t2066;
+        let t2074 = minus_minus_grod_vx_leg4 * t749 + grod_vy_leg4 * t747
+            + grod_vz_leg4 * t752;
+        let t2075 = t1744 + t2074;
+        let t2078 = t2075 + t715 * (t1161 + t1345);
+        let t2082 = gcross_vx_leg4 * t2068 - gcylinder_vx_leg4 * t2078
+            - minus_minus_grod_vx_leg4 * t1343;
+        let t2087 = gcylinder_vy_leg4 * t2078 + minus_gcross_vy_leg4 * t2068
+            + grod_vy_leg4 * t1343;
+        let t2092 = gcross_vz_leg4 * t2068 + minus_gcylinder_vz_leg4 * t2078
+            - grod_vz_leg4 * t1343;
+        let t2103 = t851 + t1762;
+        let t2105 = t830 * t1183 + s_cylinder_leg5 * t2103;
+        let t2111 = minus_minus_grod_vx_leg5 * t845 + grod_vy_leg5 * t848
+            + grod_vz_leg5 * t843;
+        let t2112 = t1766 + t2111;
+        let t2115 = t2112 + t839 * (t1188 + t1378);
+        let t2119 = gcross_vx_leg5 * t2105 + minus_gcylinder_vx_leg5 * t2115
+            - minus_minus_grod_vx_leg5 * t1376;
+        let t2124 = gcross_vy_leg5 * t2105 - gcylinder_vy_leg5 * t2115
+            - grod_vy_leg5 * t1376;
+        let t2129 = minus_gcross_vz_leg5 * t2105 - minus_gcylinder_vz_leg5 * t2115
+            + grod_vz_leg5 * t1376;
+        let t2140 = t966 + t1784;
+        let t2142 = t952 * t1020 + s_cylinder_leg6 * t2140;
+        let t2148 = minus_minus_grod_vx_leg6 * t960 + grod_vy_leg6 * t963
+            + grod_vz_leg6 * t958;
+        let t2149 = t1787 + t2148;
+        let t2152 = t2149 + t972 * (t1213 + t1411);
+        let t2156 = gcross_vx_leg6 * t2142 + minus_gcylinder_vx_leg6 * t2152
             - minus_minus_grod_vx_leg6 * t1409;
-        let t2159 = gcross_vy_leg6 * t2140 - gcylinder_vy_leg6 * t2150
+        let t2161 = gcross_vy_leg6 * t2142 - gcylinder_vy_leg6 * t2152
             - grod_vy_leg6 * t1409;
-        let t2164 = minus_gcross_vz_leg6 * t2140 - minus_gcylinder_vz_leg6 * t2150
+        let t2166 = minus_gcross_vz_leg6 * t2142 - minus_gcylinder_vz_leg6 * t2152
             + grod_vz_leg6 * t1409;
-        let t2175 = t1234 + t1807;
-        let t2179 = t355 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t2175
-            + c_cylinder_leg1 * t1957;
-        let t2182 = minus_gcross_vx_leg1 * t2179 + t305 * minus_rate_dot_cross_leg1;
-        let t2185 = gcross_vy_leg1 * t2179 + t326 * minus_rate_dot_cross_leg1;
-        let t2188 = gcross_vz_leg1 * t2179 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2200 = t1268 - t1825;
-        let t2203 = t492 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t2200 - c_cylinder_leg2 * t1994);
-        let t2206 = minus_gcross_vx_leg2 * t2203 + t456 * minus_rate_dot_cross_leg2;
-        let t2209 = minus_gcross_vy_leg2 * t2203 + t528 * minus_rate_dot_cross_leg2;
-        let t2212 = gcross_vz_leg2 * t2203 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2224 = t1302 - t1843;
-        let t2227 = t627 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t2224 - c_cylinder_leg3 * t2036);
-        let t2230 = gcross_vx_leg3 * t2227 + t644 * minus_rate_dot_cross_leg3;
-        let t2233 = minus_gcross_vy_leg3 * t2227 + t655 * minus_rate_dot_cross_leg3;
-        let t2236 = gcross_vz_leg3 * t2227 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2248 = t1336 - t1861;
-        let t2251 = t737 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t2248 - c_cylinder_leg4 * t2073);
-        let t2254 = gcross_vx_leg4 * t2251 + t754 * minus_rate_dot_cross_leg4;
-        let t2257 = minus_gcross_vy_leg4 * t2251 + t765 * minus_rate_dot_cross_leg4;
-        let t2260 = gcross_vz_leg4 * t2251 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2272 = t1370 - t1879;
-        let t2275 = t861 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2272 - c_cylinder_leg5 * t2110);
-        let t2278 = gcross_vx_leg5 * t2275 - t846 * minus_rate_dot_cross_leg5;
-        let t2281 = gcross_vy_leg5 * t2275 - t840 * minus_rate_dot_cross_leg5;
-        let t2284 = minus_gcross_vz_leg5 * t2275
+        let t2177 = t1236 + t1810;
+        let t2181 = t339 * minus_rate_cross_leg1 + minus_s_cylinder_leg1 * t2177
+            + c_cylinder_leg1 * t1959;
+        let t2184 = minus_gcross_vx_leg1 * t2181 + t353 * minus_rate_dot_cross_leg1;
+        let t2187 = gcross_vy_leg1 * t2181 + t359 * minus_rate_dot_cross_leg1;
+        let t2190 = gcross_vz_leg1 * t2181 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t2202 = t1270 - t1828;
+        let t2205 = t490 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t2202 - c_cylinder_leg2 * t1996);
+        let t2208 = minus_gcross_vx_leg2 * t2205 + t453 * minus_rate_dot_cross_leg2;
+        let t2211 = minus_gcross_vy_leg2 * t2205 + t526 * minus_rate_dot_cross_leg2;
+        let t2214 = gcross_vz_leg2 * t2205 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t2226 = t1304 - t1846;
+        let t2229 = t625 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t2226 - c_cylinder_leg3 * t2038);
+        let t2232 = gcross_vx_leg3 * t2229 + t642 * minus_rate_dot_cross_leg3;
+        let t2235 = minus_gcross_vy_leg3 * t2229 + t653 * minus_rate_dot_cross_leg3;
+        let t2238 = gcross_vz_leg3 * t2229 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2250 = t1338 - t1864;
+        let t2253 = t743 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t2250 - c_cylinder_leg4 * t2075);
+        let t2256 = gcross_vx_leg4 * t2253 + t719 * minus_rate_dot_cross_leg4;
+        let t2259 = minus_gcross_vy_leg4 * t2253 + t727 * minus_rate_dot_cross_leg4;
+        let t2262 = gcross_vz_leg4 * t2253 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2274 = t1371 - t1881;
+        let t2277 = t875 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2274 - c_cylinder_leg5 * t2112);
+        let minus_rate_dot_cross_leg5 = t1485 - t897;
+        let t2281 = gcross_vx_leg5 * t2277 - t859 * minus_rate_dot_cross_leg5;
+        let t2284 = gcross_vy_leg5 * t2277 - t853 * minus_rate_dot_cross_leg5;
+        let t2287 = minus_gcross_vz_leg5 * t2277
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2296 = t1404 - t1897;
-        let t2299 = t971 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2296 - c_cylinder_leg6 * t2147);
-        let t2302 = gcross_vx_leg6 * t2299 - t992 * minus_rate_dot_cross_leg6;
-        let t2305 = gcross_vy_leg6 * t2299 - t987 * minus_rate_dot_cross_leg6;
-        let t2308 = minus_gcross_vz_leg6 * t2299
+        let t2299 = t1404 - t1899;
+        let t2302 = t981 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2299 - c_cylinder_leg6 * t2149);
+        let t2305 = gcross_vx_leg6 * t2302 - t1002 * minus_rate_dot_cross_leg6;
+        let t2308 = gcross_vy_leg6 * t2302 - t997 * minus_rate_dot_cross_leg6;
+        let t2311 = minus_gcross_vz_leg6 * t2302
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2319 = t1060 + c_cylinder_leg1 * t1963;
-        let t2321 = t2175 - t1236;
-        let t2324 = t1055 + t1241;
-        let t2326 = minus_gcross_vx_leg1 * t2319 + gcylinder_vx_leg1 * t2321
-            - grod_vx_leg1 * t2324;
-        let t2331 = minus_minus_grod_vy_leg1 * t2324 + gcross_vy_leg1 * t2319
-            + minus_gcylinder_vy_leg1 * t2321;
-        let t2336 = gcylinder_vz_leg1 * t2321 - gcross_vz_leg1 * t2319
-            - grod_vz_leg1 * t2324;
-        let t2346 = t1270 + t2200;
-        let t2349 = c_cylinder_leg2 * (t2000 - t526);
-        let t2352 = t1081 + t1275;
-        let t2354 = gcylinder_vx_leg2 * t2346 - minus_gcross_vx_leg2 * t2349
-            - grod_vx_leg2 * t2352;
-        let t2359 = minus_minus_grod_vy_leg2 * t2352 + minus_gcross_vy_leg2 * t2349
-            + minus_gcylinder_vy_leg2 * t2346;
-        let t2364 = gcross_vz_leg2 * t2349 - minus_gcylinder_vz_leg2 * t2346
-            - grod_vz_leg2 * t2352;
-        let t2375 = c_cylinder_leg3 * (t2027 - t640);
-        let t2377 = t1304 + t2224;
-        let t2380 = t1124 + t1309;
-        let t2382 = gcross_vx_leg3 * t2375 + gcylinder_vx_leg3 * t2377
-            - minus_minus_grod_vx_leg3 * t2380;
-        let t2387 = gcylinder_vy_leg3 * t2377 - minus_gcross_vy_leg3 * t2375
-            - grod_vy_leg3 * t2380;
-        let t2392 = gcross_vz_leg3 * t2375 - minus_gcylinder_vz_leg3 * t2377
-            - grod_vz_leg3 * t2380;
-        let t2403 = c_cylinder_leg4 * (t2064 - t750);
-        let t2405 = t1338 + t2248;
-        let t2408 = t1162 + t1343;
-        let t2410 = gcross_vx_leg4 * t2403 + gcylinder_vx_leg4 * t2405
-            - minus_minus_grod_vx_leg4 * t2408;
-        let t2415 = gcylinder_vy_leg4 * t2405 - minus_gcross_vy_leg4 * t2403
-            - grod_vy_leg4 * t2408;
-        let t2420 = gcross_vz_leg4 * t2403 - minus_gcylinder_vz_leg4 * t2405
-            - grod_vz_leg4 * t2408;
-        let t2432 = t837 * t889 - c_cylinder_leg5 * t2101;
-        let t2434 = t1372 + t2272;
-        let t2437 = t1185 + t1377;
-        let t2439 = gcross_vx_leg5 * t2432 - minus_gcylinder_vx_leg5 * t2434
-            - minus_minus_grod_vx_leg5 * t2437;
-        let t2444 = gcross_vy_leg5 * t2432 + gcylinder_vy_leg5 * t2434
-            - grod_vy_leg5 * t2437;
-        let t2449 = minus_gcross_vz_leg5 * t2432 + minus_gcylinder_vz_leg5 * t2434
-            + grod_vz_leg5 * t2437;
-        let t2460 = c_cylinder_leg6 * (t2138 + t985);
-        let t2462 = t1406 + t2296;
-        let t2465 = t1210 + t1411;
-        let t2467 = gcross_vx_leg6 * t2460 + minus_gcylinder_vx_leg6 * t2462
-            + minus_minus_grod_vx_leg6 * t2465;
-        let t2472 = gcylinder_vy_leg6 * t2462 - gcross_vy_leg6 * t2460
-            - grod_vy_leg6 * t2465;
-        let t2477 = minus_gcylinder_vz_leg6 * t2462 - minus_gcross_vz_leg6 * t2460
-            + grod_vz_leg6 * t2465;
-        let minus_minus_rate_dot_rod_leg1 = t311 * t2324 + t1956;
-        let grod_wx_leg1 = t253 * grod_vz_leg1 - t265 * minus_minus_grod_vy_leg1;
-        let grod_wy_leg1 = t265 * grod_vx_leg1 - t243 * grod_vz_leg1;
-        let minus_minus_rate_dot_rod_leg2 = t450 * t2352 + t1993;
-        let grod_wx_leg2 = t440 * minus_minus_grod_vy_leg2 - t432 * grod_vz_leg2;
-        let grod_wy_leg2 = t426 * grod_vz_leg2 - t440 * grod_vx_leg2;
-        let minus_minus_rate_dot_rod_leg3 = t607 * t2380 + t2035;
-        let grod_wx_leg3 = t249 * grod_vz_leg3 - t261 * grod_vy_leg3;
-        let minus_grod_wy_leg3 = t239 * grod_vz_leg3 - t261 * minus_minus_grod_vx_leg3;
-        let minus_minus_rate_dot_rod_leg4 = t717 * t2408 + t2072;
-        let grod_wx_leg4 = t430 * grod_vz_leg4 - t438 * grod_vy_leg4;
-        let minus_grod_wy_leg4 = t424 * grod_vz_leg4 - t438 * minus_minus_grod_vx_leg4;
-        let minus_minus_rate_dot_rod_leg5 = t837 * t2437 + t2109;
-        let grod_wx_leg5 = t264 * grod_vy_leg5 - t252 * grod_vz_leg5;
-        let grod_wy_leg5 = t242 * grod_vz_leg5 - t264 * minus_minus_grod_vx_leg5;
-        let minus_minus_rate_dot_rod_leg6 = t962 * t2465 + t2146;
-        let grod_wx_leg6 = t431 * grod_vz_leg6 - t439 * grod_vy_leg6;
-        let minus_grod_wy_leg6 = t425 * grod_vz_leg6 - t439 * minus_minus_grod_vx_leg6;
-        let t2607 = -minus_minus_rate_rod_leg1;
-        let t2614 = -minus_minus_rate_rod_leg2;
-        let t2621 = -minus_minus_rate_rod_leg3;
-        let t2628 = -minus_minus_rate_rod_leg4;
-        let t2635 = -minus_minus_rate_rod_leg5;
-        let t2642 = -minus_minus_rate_rod_leg6;
+        let t2322 = c_cylinder_leg1 * (t1965 + t352);
+        let t2324 = t2177 - t1238;
+        let t2327 = t1065 + t1243;
+        let t2329 = minus_gcross_vx_leg1 * t2322 + gcylinder_vx_leg1 * t2324
+            - grod_vx_leg1 * t2327;
+        let t2334 = minus_minus_grod_vy_leg1 * t2327 + gcross_vy_leg1 * t2322
+            + minus_gcylinder_vy_leg1 * t2324;
+        let t2339 = gcylinder_vz_leg1 * t2324 - gcross_vz_leg1 * t2322
+            - grod_vz_leg1 * t2327;
+        let t2349 = t1272 + t2202;
+        let t2352 = c_cylinder_leg2 * (t2002 - t524);
+        let t2355 = t1089 + t1277;
+        let t2357 = gcylinder_vx_leg2 * t2349 - minus_gcross_vx_leg2 * t2352
+            - grod_vx_leg2 * t2355;
+        let t2362 = minus_minus_grod_vy_leg2 * t2355 + minus_gcross_vy_leg2 * t2352
+            + minus_gcylinder_vy_leg2 * t2349;
+        let t2367 = gcross_vz_leg2 * t2352 - minus_gcylinder_vz_leg2 * t2349
+            - grod_vz_leg2 * t2355;
+        let t2378 = c_cylinder_leg3 * (t2029 - t638);
+        let t2380 = t1306 + t2226;
+        let t2383 = t1132 + t1311;
+        let t2385 = gcross_vx_leg3 * t2378 + gcylinder_vx_leg3 * t2380
+            - minus_minus_grod_vx_leg3 * t2383;
+        let t2390 = gcylinder_vy_leg3 * t2380 - minus_gcross_vy_leg3 * t2378
+            - grod_vy_leg3 * t2383;
+        let t2395 = gcross_vz_leg3 * t2378 - minus_gcylinder_vz_leg3 * t2380
+            - grod_vz_leg3 * t2383;
+        let t2407 = t705 * t1156 + c_cylinder_leg4 * t2066;
+        let t2409 = t1340 + t2250;
+        let t2412 = t1160 + t1345;
+        let t2414 = gcross_vx_leg4 * t2407 + gcylinder_vx_leg4 * t2409
+            - minus_minus_grod_vx_leg4 * t2412;
+        let t2419 = gcylinder_vy_leg4 * t2409 - minus_gcross_vy_leg4 * t2407
+            - grod_vy_leg4 * t2412;
+        let t2424 = gcross_vz_leg4 * t2407 - minus_gcylinder_vz_leg4 * t2409
+            - grod_vz_leg4 * t2412;
+        let t2436 = t839 * t897 - c_cylinder_leg5 * t2103;
+        let t2438 = t1373 + t2274;
+        let t2441 = t900 + t1378;
+        let t2443 = gcross_vx_leg5 * t2436 - minus_gcylinder_vx_leg5 * t2438
+            - minus_minus_grod_vx_leg5 * t2441;
+        let t2448 = gcross_vy_leg5 * t2436 + gcylinder_vy_leg5 * t2438
+            - grod_vy_leg5 * t2441;
+        let t2453 = minus_gcross_vz_leg5 * t2436 + minus_gcylinder_vz_leg5 * t2438
+            + grod_vz_leg5 * t2441;
+        let t2464 = c_cylinder_leg6 * (t2140 + t995);
+        let t2466 = t1406 + t2299;
+        let t2469 = t1212 + t1411;
+        let t2471 = gcross_vx_leg6 * t2464 + minus_gcylinder_vx_leg6 * t2466
+            + minus_minus_grod_vx_leg6 * t2469;
+        let t2476 = gcylinder_vy_leg6 * t2466 - gcross_vy_leg6 * t2464
+            - grod_vy_leg6 * t2469;
+        let t2481 = minus_gcylinder_vz_leg6 * t2466 - minus_gcross_vz_leg6 * t2464
+            + grod_vz_leg6 * t2469;
+        let minus_minus_rate_dot_rod_leg1 = t309 * t2327 + t1958;
+        let grod_wx_leg1 = t261 * grod_vz_leg1 - t243 * minus_minus_grod_vy_leg1;
+        let grod_wy_leg1 = t243 * grod_vx_leg1 - t251 * grod_vz_leg1;
+        let minus_minus_rate_dot_rod_leg2 = t449 * t2355 + t1995;
+        let grod_wx_leg2 = t439 * minus_minus_grod_vy_leg2 - t431 * grod_vz_leg2;
+        let grod_wy_leg2 = t425 * grod_vz_leg2 - t439 * grod_vx_leg2;
+        let minus_minus_rate_dot_rod_leg3 = t605 * t2383 + t2037;
+        let grod_wx_leg3 = t257 * grod_vz_leg3 - t239 * grod_vy_leg3;
+        let minus_grod_wy_leg3 = t247 * grod_vz_leg3 - t239 * minus_minus_grod_vx_leg3;
+        let minus_minus_rate_dot_rod_leg4 = t715 * t2412 + t2074;
+        let grod_wx_leg4 = t429 * grod_vz_leg4 - t437 * grod_vy_leg4;
+        let minus_grod_wy_leg4 = t423 * grod_vz_leg4 - t437 * minus_minus_grod_vx_leg4;
+        let minus_minus_rate_dot_rod_leg5 = t839 * t2441 + t2111;
+        let grod_wx_leg5 = t242 * grod_vy_leg5 - t260 * grod_vz_leg5;
+        let grod_wy_leg5 = t250 * grod_vz_leg5 - t242 * minus_minus_grod_vx_leg5;
+        let minus_minus_rate_dot_rod_leg6 = t972 * t2469 + t2148;
+        let grod_wx_leg6 = t430 * grod_vz_leg6 - t438 * grod_vy_leg6;
+        let minus_grod_wy_leg6 = t424 * grod_vz_leg6 - t438 * minus_minus_grod_vx_leg6;
+        let t2611 = -minus_minus_rate_rod_leg1;
+        let t2618 = -minus_minus_rate_rod_leg2;
+        let t2625 = -minus_minus_rate_rod_leg3;
+        let t2632 = -minus_minus_rate_rod_leg4;
+        let t2639 = -minus_minus_rate_rod_leg5;
+        let t2646 = -minus_minus_rate_rod_leg6;
         Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
-                acceleration[0], minus_gcross_vx_leg1 * t381 - t385,
-                t497 - minus_gcross_vx_leg2 * t547, t652 - gcross_vx_leg3 * t642,
-                t762 - gcross_vx_leg4 * t752, gcross_vx_leg5 * t889 - t893,
-                gcross_vx_leg6 * t1012 - t1016,
-                gcylinder_vx_leg1 * t1057 - minus_gcross_vx_leg1 * t1063,
-                gcylinder_vx_leg2 * t1083 - minus_gcross_vx_leg2 * t1088,
-                gcross_vx_leg3 * t1122 + gcylinder_vx_leg3 * t1126,
-                gcross_vx_leg4 * t1160 + gcylinder_vx_leg4 * t1164,
-                gcross_vx_leg5 * t1183 - minus_gcylinder_vx_leg5 * t1187,
-                gcross_vx_leg6 * t1208 - minus_gcylinder_vx_leg6 * t1212,
-                -(minus_gcross_vx_leg1 * t1244 + gcylinder_vx_leg1 * t1246),
-                -(minus_gcross_vx_leg2 * t1278 + gcylinder_vx_leg2 * t1280),
-                gcross_vx_leg3 * t1312 - gcylinder_vx_leg3 * t1314,
-                gcross_vx_leg4 * t1346 - gcylinder_vx_leg4 * t1348,
-                gcross_vx_leg5 * t1380 + minus_gcylinder_vx_leg5 * t1382,
+                acceleration[0], minus_gcross_vx_leg1 * t379 - t383,
+                t495 - minus_gcross_vx_leg2 * t545, t650 - gcross_vx_leg3 * t640,
+                gcross_vx_leg4 * t776 + t780, gcross_vx_leg5 * t897 - t902,
+                gcross_vx_leg6 * t1022 - t1026,
+                gcylinder_vx_leg1 * t1067 - minus_gcross_vx_leg1 * t1071,
+                gcylinder_vx_leg2 * t1091 - minus_gcross_vx_leg2 * t1096,
+                gcross_vx_leg3 * t1130 + gcylinder_vx_leg3 * t1134,
+                gcross_vx_leg4 * t1158 + gcylinder_vx_leg4 * t1162,
+                gcross_vx_leg5 * t1186 - minus_gcylinder_vx_leg5 * t1189,
+                gcross_vx_leg6 * t1210 - minus_gcylinder_vx_leg6 * t1214,
+                -(minus_gcross_vx_leg1 * t1246 + gcylinder_vx_leg1 * t1248),
+                -(minus_gcross_vx_leg2 * t1280 + gcylinder_vx_leg2 * t1282),
+                gcross_vx_leg3 * t1314 - gcylinder_vx_leg3 * t1316,
+                gcross_vx_leg4 * t1348 - gcylinder_vx_leg4 * t771,
+                gcross_vx_leg5 * t1381 + minus_gcylinder_vx_leg5 * t1180,
                 gcross_vx_leg6 * t1414 + minus_gcylinder_vx_leg6 * t1416,
-                t385 - minus_gcross_vx_leg1 * t380, minus_gcross_vx_leg2 * t546 - t497,
-                -(gcross_vx_leg3 * t1458 + t652), -(gcross_vx_leg4 * t1471 + t762),
-                t893 - gcross_vx_leg5 * t888, t1016 - gcross_vx_leg6 * t1011,
-                -(minus_gcross_vx_leg1 * t1511 + gcylinder_vx_leg1 * t377),
-                gcylinder_vx_leg2 * t543 - minus_gcross_vx_leg2 * t1534,
-                gcross_vx_leg3 * t1555 + gcylinder_vx_leg3 * t1117,
-                gcross_vx_leg4 * t1577 + gcylinder_vx_leg4 * t1155,
-                gcross_vx_leg5 * t1599 - minus_gcylinder_vx_leg5 * t883,
-                gcross_vx_leg6 * t1621 - minus_gcylinder_vx_leg6 * t1008,
+                t383 - minus_gcross_vx_leg1 * t378, minus_gcross_vx_leg2 * t544 - t495,
+                -(gcross_vx_leg3 * t1458 + t650), -(gcross_vx_leg4 * t1472 + t780),
+                t902 - gcross_vx_leg5 * t1485, t1026 - gcross_vx_leg6 * t1021,
+                -(minus_gcross_vx_leg1 * t1513 + gcylinder_vx_leg1 * t375),
+                gcylinder_vx_leg2 * t541 - minus_gcross_vx_leg2 * t1536,
+                gcross_vx_leg3 * t1557 + gcylinder_vx_leg3 * t1125,
+                gcross_vx_leg4 * t1579 + gcylinder_vx_leg4 * t1152,
+                gcross_vx_leg5 * t1601 - minus_gcylinder_vx_leg5 * t1181,
+                gcross_vx_leg6 * t1623 - minus_gcylinder_vx_leg6 * t1018,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t1677 + gcylinder_vx_leg1 * t1679),
-                minus_gcross_vx_leg2 * t1698 - gcylinder_vx_leg2 * t1700,
-                -(gcross_vx_leg3 * t1719 + gcylinder_vx_leg3 * t1721),
-                -(gcross_vx_leg4 * t1740 + gcylinder_vx_leg4 * t1742),
-                gcross_vx_leg5 * t1761 + minus_gcylinder_vx_leg5 * t1763,
-                gcross_vx_leg6 * t1782 + minus_gcylinder_vx_leg6 * t1784, grod_vx_leg1 * t1802,
-                grod_vx_leg2 * t1820, minus_minus_grod_vx_leg3 * t1838,
-                minus_minus_grod_vx_leg4 * t1856, minus_minus_grod_vx_leg5 * t1874,
-                minus_minus_grod_vx_leg6 * t1892, -(minus_gcross_vx_leg1 * t1910),
-                -(minus_gcross_vx_leg2 * t1917), gcross_vx_leg3 * t1924, gcross_vx_leg4 * t1931,
-                gcross_vx_leg5 * t1938, gcross_vx_leg6 * t1945, -t1969, -t2006, t2043, t2080, t2117,
-                t2154, -t2182, -t2206, t2230, t2254, t2278, t2302, t2326, t2354, t2382, t2410,
-                t2439, -t2467, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
+                -(minus_gcross_vx_leg1 * t1679 + gcylinder_vx_leg1 * t1681),
+                minus_gcross_vx_leg2 * t1700 - gcylinder_vx_leg2 * t1702,
+                -(gcross_vx_leg3 * t1721 + gcylinder_vx_leg3 * t1723),
+                -(gcross_vx_leg4 * t1742 + gcylinder_vx_leg4 * t1744),
+                gcross_vx_leg5 * t1764 + minus_gcylinder_vx_leg5 * t1766,
+                gcross_vx_leg6 * t1785 + minus_gcylinder_vx_leg6 * t1787, grod_vx_leg1 * t1805,
+                grod_vx_leg2 * t1823, minus_minus_grod_vx_leg3 * t1841,
+                minus_minus_grod_vx_leg4 * t1859, minus_minus_grod_vx_leg5 * t1877,
+                minus_minus_grod_vx_leg6 * t1894, -(minus_gcross_vx_leg1 * t1912),
+                -(minus_gcross_vx_leg2 * t1919), gcross_vx_leg3 * t1926, gcross_vx_leg4 * t1933,
+                gcross_vx_leg5 * t1940, gcross_vx_leg6 * t1947, -t1971, -t2008, t2045, t2082, t2119,
+                t2156, -t2184, -t2208, t2232, t2256, t2281, t2305, t2329, t2357, t2385, t2414,
+                t2443, -t2471, grod_vx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vx_leg2 * minus_minus_rate_dot_rod_leg2,
                 minus_minus_grod_vx_leg3 * minus_minus_rate_dot_rod_leg3,
                 minus_minus_grod_vx_leg4 * minus_minus_rate_dot_rod_leg4,
@@ -14235,61 +14236,61 @@ impl Hexapod {
                 minus_minus_grod_vx_leg4 * minus_minus_rate_rod_leg4,
                 minus_minus_grod_vx_leg5 * minus_minus_rate_rod_leg5,
                 minus_minus_grod_vx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vx_leg1, t2607),
-                -::overact::math::signed(grod_vx_leg2, t2614),
-                -::overact::math::signed(minus_minus_grod_vx_leg3, t2621),
-                -::overact::math::signed(minus_minus_grod_vx_leg4, t2628),
-                -::overact::math::signed(minus_minus_grod_vx_leg5, t2635),
-                -::overact::math::signed(minus_minus_grod_vx_leg6, t2642), grod_vx_leg1,
+                -::overact::math::signed(grod_vx_leg1, t2611),
+                -::overact::math::signed(grod_vx_leg2, t2618),
+                -::overact::math::signed(minus_minus_grod_vx_leg3, t2625),
+                -::overact::math::signed(minus_minus_grod_vx_leg4, t2632),
+                -::overact::math::signed(minus_minus_grod_vx_leg5, t2639),
+                -::overact::math::signed(minus_minus_grod_vx_leg6, t2646), grod_vx_leg1,
                 grod_vx_leg2, minus_minus_grod_vx_leg3, minus_minus_grod_vx_leg4,
                 minus_minus_grod_vx_leg5, minus_minus_grod_vx_leg6,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t170, t198, t25 * t161 - t29 * t164 + t34 * t168,
-                acceleration[1], t388 - gcross_vy_leg1 * t381,
-                -(minus_gcross_vy_leg2 * t547 + t553), t659 + minus_gcross_vy_leg3 * t642,
-                t769 + minus_gcross_vy_leg4 * t752, gcross_vy_leg5 * t889 + t898,
-                gcross_vy_leg6 * t1012 + t1021,
-                gcross_vy_leg1 * t1063 - minus_gcylinder_vy_leg1 * t1057,
-                -(minus_gcross_vy_leg2 * t1088 + minus_gcylinder_vy_leg2 * t1083),
-                gcylinder_vy_leg3 * t1126 - minus_gcross_vy_leg3 * t1122,
-                gcylinder_vy_leg4 * t1164 - minus_gcross_vy_leg4 * t1160,
-                gcross_vy_leg5 * t1183 + gcylinder_vy_leg5 * t1187,
-                gcross_vy_leg6 * t1208 + gcylinder_vy_leg6 * t1212,
-                gcross_vy_leg1 * t1244 + minus_gcylinder_vy_leg1 * t1246,
-                minus_gcylinder_vy_leg2 * t1280 - minus_gcross_vy_leg2 * t1278,
-                -(minus_gcross_vy_leg3 * t1312 + gcylinder_vy_leg3 * t1314),
-                -(minus_gcross_vy_leg4 * t1346 + gcylinder_vy_leg4 * t1348),
-                gcross_vy_leg5 * t1380 - gcylinder_vy_leg5 * t1382,
-                gcross_vy_leg6 * t1414 - gcylinder_vy_leg6 * t1416, gcross_vy_leg1 * t380 - t388,
-                minus_gcross_vy_leg2 * t546 + t553, minus_gcross_vy_leg3 * t1458 - t659,
-                minus_gcross_vy_leg4 * t1471 - t769, -(gcross_vy_leg5 * t888 + t898),
-                -(gcross_vy_leg6 * t1011 + t1021),
-                gcross_vy_leg1 * t1511 + minus_gcylinder_vy_leg1 * t377,
-                -(minus_gcross_vy_leg2 * t1534 + minus_gcylinder_vy_leg2 * t543),
-                gcylinder_vy_leg3 * t1117 - minus_gcross_vy_leg3 * t1555,
-                gcylinder_vy_leg4 * t1155 - minus_gcross_vy_leg4 * t1577,
-                gcross_vy_leg5 * t1599 + gcylinder_vy_leg5 * t883,
-                gcross_vy_leg6 * t1621 + gcylinder_vy_leg6 * t1008,
+                acceleration[1], t386 - gcross_vy_leg1 * t379,
+                -(minus_gcross_vy_leg2 * t545 + t551), t657 + minus_gcross_vy_leg3 * t640,
+                t783 - minus_gcross_vy_leg4 * t776, gcross_vy_leg5 * t897 + t907,
+                gcross_vy_leg6 * t1022 + t1031,
+                gcross_vy_leg1 * t1071 - minus_gcylinder_vy_leg1 * t1067,
+                -(minus_gcross_vy_leg2 * t1096 + minus_gcylinder_vy_leg2 * t1091),
+                gcylinder_vy_leg3 * t1134 - minus_gcross_vy_leg3 * t1130,
+                gcylinder_vy_leg4 * t1162 - minus_gcross_vy_leg4 * t1158,
+                gcross_vy_leg5 * t1186 + gcylinder_vy_leg5 * t1189,
+                gcross_vy_leg6 * t1210 + gcylinder_vy_leg6 * t1214,
+                gcross_vy_leg1 * t1246 + minus_gcylinder_vy_leg1 * t1248,
+                minus_gcylinder_vy_leg2 * t1282 - minus_gcross_vy_leg2 * t1280,
+                -(minus_gcross_vy_leg3 * t1314 + gcylinder_vy_leg3 * t1316),
+                -(minus_gcross_vy_leg4 * t1348 + gcylinder_vy_leg4 * t771),
+                gcross_vy_leg5 * t1381 - gcylinder_vy_leg5 * t1180,
+                gcross_vy_leg6 * t1414 - gcylinder_vy_leg6 * t1416, gcross_vy_leg1 * t378 - t386,
+                minus_gcross_vy_leg2 * t544 + t551, minus_gcross_vy_leg3 * t1458 - t657,
+                minus_gcross_vy_leg4 * t1472 - t783, -(gcross_vy_leg5 * t1485 + t907),
+                -(gcross_vy_leg6 * t1021 + t1031),
+                gcross_vy_leg1 * t1513 + minus_gcylinder_vy_leg1 * t375,
+                -(minus_gcross_vy_leg2 * t1536 + minus_gcylinder_vy_leg2 * t541),
+                gcylinder_vy_leg3 * t1125 - minus_gcross_vy_leg3 * t1557,
+                gcylinder_vy_leg4 * t1152 - minus_gcross_vy_leg4 * t1579,
+                gcross_vy_leg5 * t1601 + gcylinder_vy_leg5 * t1181,
+                gcross_vy_leg6 * t1623 + gcylinder_vy_leg6 * t1018,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t1677 + minus_gcylinder_vy_leg1 * t1679,
-                minus_gcross_vy_leg2 * t1698 + minus_gcylinder_vy_leg2 * t1700,
-                minus_gcross_vy_leg3 * t1719 - gcylinder_vy_leg3 * t1721,
-                minus_gcross_vy_leg4 * t1740 - gcylinder_vy_leg4 * t1742,
-                gcross_vy_leg5 * t1761 - gcylinder_vy_leg5 * t1763,
-                gcross_vy_leg6 * t1782 - gcylinder_vy_leg6 * t1784,
-                minus_minus_grod_vy_leg1 * t1802, minus_minus_grod_vy_leg2 * t1820,
-                grod_vy_leg3 * t1838, grod_vy_leg4 * t1856, grod_vy_leg5 * t1874,
-                grod_vy_leg6 * t1892, gcross_vy_leg1 * t1910, -(minus_gcross_vy_leg2 * t1917),
-                -(minus_gcross_vy_leg3 * t1924), -(minus_gcross_vy_leg4 * t1931),
-                gcross_vy_leg5 * t1938, gcross_vy_leg6 * t1945, t1974, -t2011, -t2048, -t2085,
-                t2122, t2159, t2185, -t2209, -t2233, -t2257, t2281, t2305, -t2331, -t2359, t2387,
-                t2415, t2444, t2472, minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
+                gcross_vy_leg1 * t1679 + minus_gcylinder_vy_leg1 * t1681,
+                minus_gcross_vy_leg2 * t1700 + minus_gcylinder_vy_leg2 * t1702,
+                minus_gcross_vy_leg3 * t1721 - gcylinder_vy_leg3 * t1723,
+                minus_gcross_vy_leg4 * t1742 - gcylinder_vy_leg4 * t1744,
+                gcross_vy_leg5 * t1764 - gcylinder_vy_leg5 * t1766,
+                gcross_vy_leg6 * t1785 - gcylinder_vy_leg6 * t1787,
+                minus_minus_grod_vy_leg1 * t1805, minus_minus_grod_vy_leg2 * t1823,
+                grod_vy_leg3 * t1841, grod_vy_leg4 * t1859, grod_vy_leg5 * t1877,
+                grod_vy_leg6 * t1894, gcross_vy_leg1 * t1912, -(minus_gcross_vy_leg2 * t1919),
+                -(minus_gcross_vy_leg3 * t1926), -(minus_gcross_vy_leg4 * t1933),
+                gcross_vy_leg5 * t1940, gcross_vy_leg6 * t1947, t1976, -t2013, -t2050, -t2087,
+                t2124, t2161, t2187, -t2211, -t2235, -t2259, t2284, t2308, -t2334, -t2362, t2390,
+                t2419, t2448, t2476, minus_minus_grod_vy_leg1 * minus_minus_rate_dot_rod_leg1,
                 minus_minus_grod_vy_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vy_leg3 * minus_minus_rate_dot_rod_leg3,
                 grod_vy_leg4 * minus_minus_rate_dot_rod_leg4,
@@ -14299,62 +14300,62 @@ impl Hexapod {
                 minus_minus_grod_vy_leg2 * minus_minus_rate_rod_leg2,
                 grod_vy_leg3 * minus_minus_rate_rod_leg3, grod_vy_leg4 * minus_minus_rate_rod_leg4,
                 grod_vy_leg5 * minus_minus_rate_rod_leg5, grod_vy_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(minus_minus_grod_vy_leg1, t2607),
-                -::overact::math::signed(minus_minus_grod_vy_leg2, t2614),
-                -::overact::math::signed(grod_vy_leg3, t2621),
-                -::overact::math::signed(grod_vy_leg4, t2628),
-                -::overact::math::signed(grod_vy_leg5, t2635),
-                -::overact::math::signed(grod_vy_leg6, t2642), minus_minus_grod_vy_leg1,
+                -::overact::math::signed(minus_minus_grod_vy_leg1, t2611),
+                -::overact::math::signed(minus_minus_grod_vy_leg2, t2618),
+                -::overact::math::signed(grod_vy_leg3, t2625),
+                -::overact::math::signed(grod_vy_leg4, t2632),
+                -::overact::math::signed(grod_vy_leg5, t2639),
+                -::overact::math::signed(grod_vy_leg6, t2646), minus_minus_grod_vy_leg1,
                 minus_minus_grod_vy_leg2, grod_vy_leg3, grod_vy_leg4, grod_vy_leg5, grod_vy_leg6,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t178, t203, t25 * t171 + t29 * t173 - t34 * t176,
-                t179, -(gcross_vz_leg1 * t381 + t395), gcross_vz_leg2 * t547 - t558,
-                -(gcross_vz_leg3 * t642 + t667), -(gcross_vz_leg4 * t752 + t777),
-                -(minus_gcross_vz_leg5 * t889 + t903), -(minus_gcross_vz_leg6 * t1012 + t1026),
-                gcross_vz_leg1 * t1063 + gcylinder_vz_leg1 * t1057,
-                gcross_vz_leg2 * t1088 - minus_gcylinder_vz_leg2 * t1083,
-                gcross_vz_leg3 * t1122 - minus_gcylinder_vz_leg3 * t1126,
-                gcross_vz_leg4 * t1160 - minus_gcylinder_vz_leg4 * t1164,
-                -(minus_gcross_vz_leg5 * t1183 + minus_gcylinder_vz_leg5 * t1187),
-                -(minus_gcross_vz_leg6 * t1208 + minus_gcylinder_vz_leg6 * t1212),
-                gcross_vz_leg1 * t1244 - gcylinder_vz_leg1 * t1246,
-                gcross_vz_leg2 * t1278 + minus_gcylinder_vz_leg2 * t1280,
-                gcross_vz_leg3 * t1312 + minus_gcylinder_vz_leg3 * t1314,
-                gcross_vz_leg4 * t1346 + minus_gcylinder_vz_leg4 * t1348,
-                minus_gcylinder_vz_leg5 * t1382 - minus_gcross_vz_leg5 * t1380,
+                t179, -(gcross_vz_leg1 * t379 + t394), gcross_vz_leg2 * t545 - t556,
+                -(gcross_vz_leg3 * t640 + t665), gcross_vz_leg4 * t776 - t790,
+                -(minus_gcross_vz_leg5 * t897 + t912), -(minus_gcross_vz_leg6 * t1022 + t1036),
+                gcross_vz_leg1 * t1071 + gcylinder_vz_leg1 * t1067,
+                gcross_vz_leg2 * t1096 - minus_gcylinder_vz_leg2 * t1091,
+                gcross_vz_leg3 * t1130 - minus_gcylinder_vz_leg3 * t1134,
+                gcross_vz_leg4 * t1158 - minus_gcylinder_vz_leg4 * t1162,
+                -(minus_gcross_vz_leg5 * t1186 + minus_gcylinder_vz_leg5 * t1189),
+                -(minus_gcross_vz_leg6 * t1210 + minus_gcylinder_vz_leg6 * t1214),
+                gcross_vz_leg1 * t1246 - gcylinder_vz_leg1 * t1248,
+                gcross_vz_leg2 * t1280 + minus_gcylinder_vz_leg2 * t1282,
+                gcross_vz_leg3 * t1314 + minus_gcylinder_vz_leg3 * t1316,
+                gcross_vz_leg4 * t1348 + minus_gcylinder_vz_leg4 * t771,
+                minus_gcylinder_vz_leg5 * t1180 - minus_gcross_vz_leg5 * t1381,
                 minus_gcylinder_vz_leg6 * t1416 - minus_gcross_vz_leg6 * t1414,
-                gcross_vz_leg1 * t380 + t395, t558 - gcross_vz_leg2 * t546,
-                t667 - gcross_vz_leg3 * t1458, t777 - gcross_vz_leg4 * t1471,
-                minus_gcross_vz_leg5 * t888 + t903, minus_gcross_vz_leg6 * t1011 + t1026,
-                gcross_vz_leg1 * t1511 - gcylinder_vz_leg1 * t377,
-                gcross_vz_leg2 * t1534 - minus_gcylinder_vz_leg2 * t543,
-                gcross_vz_leg3 * t1555 - minus_gcylinder_vz_leg3 * t1117,
-                gcross_vz_leg4 * t1577 - minus_gcylinder_vz_leg4 * t1155,
-                -(minus_gcross_vz_leg5 * t1599 + minus_gcylinder_vz_leg5 * t883),
-                -(minus_gcross_vz_leg6 * t1621 + minus_gcylinder_vz_leg6 * t1008),
+                gcross_vz_leg1 * t378 + t394, t556 - gcross_vz_leg2 * t544,
+                t665 - gcross_vz_leg3 * t1458, t790 - gcross_vz_leg4 * t1472,
+                minus_gcross_vz_leg5 * t1485 + t912, minus_gcross_vz_leg6 * t1021 + t1036,
+                gcross_vz_leg1 * t1513 - gcylinder_vz_leg1 * t375,
+                gcross_vz_leg2 * t1536 - minus_gcylinder_vz_leg2 * t541,
+                gcross_vz_leg3 * t1557 - minus_gcylinder_vz_leg3 * t1125,
+                gcross_vz_leg4 * t1579 - minus_gcylinder_vz_leg4 * t1152,
+                -(minus_gcross_vz_leg5 * t1601 + minus_gcylinder_vz_leg5 * t1181),
+                -(minus_gcross_vz_leg6 * t1623 + minus_gcylinder_vz_leg6 * t1018),
                 gcylinder_vz_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                gcross_vz_leg1 * t1677 - gcylinder_vz_leg1 * t1679,
-                minus_gcylinder_vz_leg2 * t1700 - gcross_vz_leg2 * t1698,
-                minus_gcylinder_vz_leg3 * t1721 - gcross_vz_leg3 * t1719,
-                minus_gcylinder_vz_leg4 * t1742 - gcross_vz_leg4 * t1740,
-                minus_gcylinder_vz_leg5 * t1763 - minus_gcross_vz_leg5 * t1761,
-                minus_gcylinder_vz_leg6 * t1784 - minus_gcross_vz_leg6 * t1782,
-                -(gcross_vz_leg1 * t1805 + gcylinder_vz_leg1 * t1807),
-                -(gcross_vz_leg2 * t1823 + minus_gcylinder_vz_leg2 * t1825),
-                -(gcross_vz_leg3 * t1841 + minus_gcylinder_vz_leg3 * t1843),
-                -(gcross_vz_leg4 * t1859 + minus_gcylinder_vz_leg4 * t1861),
-                -(minus_gcross_vz_leg5 * t1877 + minus_gcylinder_vz_leg5 * t1879),
-                -(minus_gcross_vz_leg6 * t1895 + minus_gcylinder_vz_leg6 * t1897),
-                gcross_vz_leg1 * t1910, gcross_vz_leg2 * t1917, gcross_vz_leg3 * t1924,
-                gcross_vz_leg4 * t1931, -(minus_gcross_vz_leg5 * t1938),
-                -(minus_gcross_vz_leg6 * t1945), t1979, t2016, t2053, t2090, -t2127, -t2164, t2188,
-                t2212, t2236, t2260, -t2284, -t2308, t2336, t2364, t2392, t2420, -t2449, -t2477,
+                gcross_vz_leg1 * t1679 - gcylinder_vz_leg1 * t1681,
+                minus_gcylinder_vz_leg2 * t1702 - gcross_vz_leg2 * t1700,
+                minus_gcylinder_vz_leg3 * t1723 - gcross_vz_leg3 * t1721,
+                minus_gcylinder_vz_leg4 * t1744 - gcross_vz_leg4 * t1742,
+                minus_gcylinder_vz_leg5 * t1766 - minus_gcross_vz_leg5 * t1764,
+                minus_gcylinder_vz_leg6 * t1787 - minus_gcross_vz_leg6 * t1785,
+                -(gcross_vz_leg1 * t1808 + gcylinder_vz_leg1 * t1810),
+                -(gcross_vz_leg2 * t1826 + minus_gcylinder_vz_leg2 * t1828),
+                -(gcross_vz_leg3 * t1844 + minus_gcylinder_vz_leg3 * t1846),
+                -(gcross_vz_leg4 * t1862 + minus_gcylinder_vz_leg4 * t1864),
+                -(minus_gcross_vz_leg5 * t1763 + minus_gcylinder_vz_leg5 * t1881),
+                -(minus_gcross_vz_leg6 * t1897 + minus_gcylinder_vz_leg6 * t1899),
+                gcross_vz_leg1 * t1912, gcross_vz_leg2 * t1919, gcross_vz_leg3 * t1926,
+                gcross_vz_leg4 * t1933, -(minus_gcross_vz_leg5 * t1940),
+                -(minus_gcross_vz_leg6 * t1947), t1981, t2018, t2055, t2092, -t2129, -t2166, t2190,
+                t2214, t2238, t2262, -t2287, -t2311, t2339, t2367, t2395, t2424, -t2453, -t2481,
                 grod_vz_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_vz_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_vz_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14364,12 +14365,12 @@ impl Hexapod {
                 grod_vz_leg1 * minus_minus_rate_rod_leg1, grod_vz_leg2 * minus_minus_rate_rod_leg2,
                 grod_vz_leg3 * minus_minus_rate_rod_leg3, grod_vz_leg4 * minus_minus_rate_rod_leg4,
                 grod_vz_leg5 * minus_minus_rate_rod_leg5, grod_vz_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_vz_leg1, t2607),
-                -::overact::math::signed(grod_vz_leg2, t2614),
-                -::overact::math::signed(grod_vz_leg3, t2621),
-                -::overact::math::signed(grod_vz_leg4, t2628),
-                -::overact::math::signed(grod_vz_leg5, t2635),
-                -::overact::math::signed(grod_vz_leg6, t2642), grod_vz_leg1, grod_vz_leg2,
+                -::overact::math::signed(grod_vz_leg1, t2611),
+                -::overact::math::signed(grod_vz_leg2, t2618),
+                -::overact::math::signed(grod_vz_leg3, t2625),
+                -::overact::math::signed(grod_vz_leg4, t2632),
+                -::overact::math::signed(grod_vz_leg5, t2639),
+                -::overact::math::signed(grod_vz_leg6, t2646), grod_vz_leg1, grod_vz_leg2,
                 grod_vz_leg3, grod_vz_leg4, grod_vz_leg5, grod_vz_leg6,
             ],
             [
@@ -14377,60 +14378,60 @@ impl Hexapod {
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
                 t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
                 t10 * t179 - t15 * acceleration[1], t41 * t179 - t44 * acceleration[1],
-                t29 * t179 - t34 * acceleration[1], 0.0, -(gcross_wx_leg1 * t381 + t404),
-                t567 - minus_gcross_wx_leg2 * t547, -(gcross_wx_leg3 * t642 + t676),
-                -(gcross_wx_leg4 * t752 + t786), gcross_wx_leg5 * t889 + t912,
-                -(minus_gcross_wx_leg6 * t1012 + t1035),
-                gcross_wx_leg1 * t1063 + gcylinder_wx_leg1 * t1057,
-                gcylinder_wx_leg2 * t1083 - minus_gcross_wx_leg2 * t1088,
-                gcross_wx_leg3 * t1122 - minus_gcylinder_wx_leg3 * t1126,
-                gcross_wx_leg4 * t1160 - minus_gcylinder_wx_leg4 * t1164,
-                gcross_wx_leg5 * t1183 + gcylinder_wx_leg5 * t1187,
-                -(minus_gcross_wx_leg6 * t1208 + minus_gcylinder_wx_leg6 * t1212),
-                gcross_wx_leg1 * t1244 - gcylinder_wx_leg1 * t1246,
-                -(minus_gcross_wx_leg2 * t1278 + gcylinder_wx_leg2 * t1280),
-                gcross_wx_leg3 * t1312 + minus_gcylinder_wx_leg3 * t1314,
-                gcross_wx_leg4 * t1346 + minus_gcylinder_wx_leg4 * t1348,
-                gcross_wx_leg5 * t1380 - gcylinder_wx_leg5 * t1382,
+                t29 * t179 - t34 * acceleration[1], 0.0, -(gcross_wx_leg1 * t379 + t403),
+                t565 - minus_gcross_wx_leg2 * t545, -(gcross_wx_leg3 * t640 + t674),
+                gcross_wx_leg4 * t776 - t799, gcross_wx_leg5 * t897 + t921,
+                -(minus_gcross_wx_leg6 * t1022 + t1045),
+                gcross_wx_leg1 * t1071 + gcylinder_wx_leg1 * t1067,
+                gcylinder_wx_leg2 * t1091 - minus_gcross_wx_leg2 * t1096,
+                gcross_wx_leg3 * t1130 - minus_gcylinder_wx_leg3 * t1134,
+                gcross_wx_leg4 * t1158 - minus_gcylinder_wx_leg4 * t1162,
+                gcross_wx_leg5 * t1186 + gcylinder_wx_leg5 * t1189,
+                -(minus_gcross_wx_leg6 * t1210 + minus_gcylinder_wx_leg6 * t1214),
+                gcross_wx_leg1 * t1246 - gcylinder_wx_leg1 * t1248,
+                -(minus_gcross_wx_leg2 * t1280 + gcylinder_wx_leg2 * t1282),
+                gcross_wx_leg3 * t1314 + minus_gcylinder_wx_leg3 * t1316,
+                gcross_wx_leg4 * t1348 + minus_gcylinder_wx_leg4 * t771,
+                gcross_wx_leg5 * t1381 - gcylinder_wx_leg5 * t1180,
                 minus_gcylinder_wx_leg6 * t1416 - minus_gcross_wx_leg6 * t1414,
-                gcross_wx_leg1 * t380 + t404, -(t567 - minus_gcross_wx_leg2 * t546),
-                t676 - gcross_wx_leg3 * t1458, t786 - gcross_wx_leg4 * t1471,
-                -(gcross_wx_leg5 * t888 + t912), minus_gcross_wx_leg6 * t1011 + t1035,
-                gcross_wx_leg1 * t1511 - gcylinder_wx_leg1 * t377,
-                gcylinder_wx_leg2 * t543 - minus_gcross_wx_leg2 * t1534,
-                gcross_wx_leg3 * t1555 - minus_gcylinder_wx_leg3 * t1117,
-                gcross_wx_leg4 * t1577 - minus_gcylinder_wx_leg4 * t1155,
-                gcross_wx_leg5 * t1599 + gcylinder_wx_leg5 * t883,
-                -(minus_gcross_wx_leg6 * t1621 + minus_gcylinder_wx_leg6 * t1008),
+                gcross_wx_leg1 * t378 + t403, -(t565 - minus_gcross_wx_leg2 * t544),
+                t674 - gcross_wx_leg3 * t1458, t799 - gcross_wx_leg4 * t1472,
+                -(gcross_wx_leg5 * t1485 + t921), minus_gcross_wx_leg6 * t1021 + t1045,
+                gcross_wx_leg1 * t1513 - gcylinder_wx_leg1 * t375,
+                gcylinder_wx_leg2 * t541 - minus_gcross_wx_leg2 * t1536,
+                gcross_wx_leg3 * t1557 - minus_gcylinder_wx_leg3 * t1125,
+                gcross_wx_leg4 * t1579 - minus_gcylinder_wx_leg4 * t1152,
+                gcross_wx_leg5 * t1601 + gcylinder_wx_leg5 * t1181,
+                -(minus_gcross_wx_leg6 * t1623 + minus_gcylinder_wx_leg6 * t1018),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                gcross_wx_leg1 * t1677 - gcylinder_wx_leg1 * t1679,
-                -(gcylinder_wx_leg2 * t1700 - minus_gcross_wx_leg2 * t1698),
-                minus_gcylinder_wx_leg3 * t1721 - gcross_wx_leg3 * t1719,
-                minus_gcylinder_wx_leg4 * t1742 - gcross_wx_leg4 * t1740,
-                gcross_wx_leg5 * t1761 - gcylinder_wx_leg5 * t1763,
-                minus_gcylinder_wx_leg6 * t1784 - minus_gcross_wx_leg6 * t1782,
-                -(gcross_wx_leg1 * t1805 + gcylinder_wx_leg1 * t1807),
-                gcylinder_wx_leg2 * t1825 + minus_gcross_wx_leg2 * t1823,
-                -(gcross_wx_leg3 * t1841 + minus_gcylinder_wx_leg3 * t1843),
-                -(gcross_wx_leg4 * t1859 + minus_gcylinder_wx_leg4 * t1861),
-                gcross_wx_leg5 * t1877 + gcylinder_wx_leg5 * t1879,
-                -(minus_gcross_wx_leg6 * t1895 + minus_gcylinder_wx_leg6 * t1897),
-                gcross_wx_leg1 * t1910, -(minus_gcross_wx_leg2 * t1917), gcross_wx_leg3 * t1924,
-                gcross_wx_leg4 * t1931, gcross_wx_leg5 * t1938, -(minus_gcross_wx_leg6 * t1945),
-                t253 * t1979 - t265 * t1974, -(t432 * t2016 + t440 * t2011),
-                t249 * t2053 + t261 * t2048, t430 * t2090 + t438 * t2085,
-                t252 * t2127 + t264 * t2122, -(t431 * t2164 + t439 * t2159),
-                t253 * t2188 - t265 * t2185, -(t432 * t2212 + t440 * t2209),
-                t249 * t2236 + t261 * t2233, t430 * t2260 + t438 * t2257,
-                t252 * t2284 + t264 * t2281, -(t431 * t2308 + t439 * t2305),
-                t253 * t2336 + t265 * t2331, -(t432 * t2364 + t440 * t2359),
-                t249 * t2392 - t261 * t2387, t430 * t2420 - t438 * t2415,
-                t252 * t2449 + t264 * t2444, -(t431 * t2477 + t439 * t2472),
+                gcross_wx_leg1 * t1679 - gcylinder_wx_leg1 * t1681,
+                -(gcylinder_wx_leg2 * t1702 - minus_gcross_wx_leg2 * t1700),
+                minus_gcylinder_wx_leg3 * t1723 - gcross_wx_leg3 * t1721,
+                minus_gcylinder_wx_leg4 * t1744 - gcross_wx_leg4 * t1742,
+                gcross_wx_leg5 * t1764 - gcylinder_wx_leg5 * t1766,
+                minus_gcylinder_wx_leg6 * t1787 - minus_gcross_wx_leg6 * t1785,
+                -(gcross_wx_leg1 * t1808 + gcylinder_wx_leg1 * t1810),
+                gcylinder_wx_leg2 * t1828 + minus_gcross_wx_leg2 * t1826,
+                -(gcross_wx_leg3 * t1844 + minus_gcylinder_wx_leg3 * t1846),
+                -(gcross_wx_leg4 * t1862 + minus_gcylinder_wx_leg4 * t1864),
+                gcross_wx_leg5 * t1763 + gcylinder_wx_leg5 * t1881,
+                -(minus_gcross_wx_leg6 * t1897 + minus_gcylinder_wx_leg6 * t1899),
+                gcross_wx_leg1 * t1912, -(minus_gcross_wx_leg2 * t1919), gcross_wx_leg3 * t1926,
+                gcross_wx_leg4 * t1933, gcross_wx_leg5 * t1940, -(minus_gcross_wx_leg6 * t1947),
+                t261 * t1981 - t243 * t1976, -(t431 * t2018 + t439 * t2013),
+                t257 * t2055 + t239 * t2050, t429 * t2092 + t437 * t2087,
+                t260 * t2129 + t242 * t2124, -(t430 * t2166 + t438 * t2161),
+                t261 * t2190 - t243 * t2187, -(t431 * t2214 + t439 * t2211),
+                t257 * t2238 + t239 * t2235, t429 * t2262 + t437 * t2259,
+                t260 * t2287 + t242 * t2284, -(t430 * t2311 + t438 * t2308),
+                t261 * t2339 + t243 * t2334, -(t431 * t2367 + t439 * t2362),
+                t257 * t2395 - t239 * t2390, t429 * t2424 - t437 * t2419,
+                t260 * t2453 + t242 * t2448, -(t430 * t2481 + t438 * t2476),
                 grod_wx_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wx_leg2 * minus_minus_rate_dot_rod_leg2,
                 grod_wx_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14440,12 +14441,12 @@ impl Hexapod {
                 grod_wx_leg1 * minus_minus_rate_rod_leg1, grod_wx_leg2 * minus_minus_rate_rod_leg2,
                 grod_wx_leg3 * minus_minus_rate_rod_leg3, grod_wx_leg4 * minus_minus_rate_rod_leg4,
                 grod_wx_leg5 * minus_minus_rate_rod_leg5, grod_wx_leg6 * minus_minus_rate_rod_leg6,
-                -::overact::math::signed(grod_wx_leg1, t2607),
-                -::overact::math::signed(grod_wx_leg2, t2614),
-                -::overact::math::signed(grod_wx_leg3, t2621),
-                -::overact::math::signed(grod_wx_leg4, t2628),
-                -::overact::math::signed(grod_wx_leg5, t2635),
-                -::overact::math::signed(grod_wx_leg6, t2642), grod_wx_leg1, grod_wx_leg2,
+                -::overact::math::signed(grod_wx_leg1, t2611),
+                -::overact::math::signed(grod_wx_leg2, t2618),
+                -::overact::math::signed(grod_wx_leg3, t2625),
+                -::overact::math::signed(grod_wx_leg4, t2632),
+                -::overact::math::signed(grod_wx_leg5, t2639),
+                -::overact::math::signed(grod_wx_leg6, t2646), grod_wx_leg1, grod_wx_leg2,
                 grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
             ],
             [
@@ -14453,60 +14454,60 @@ impl Hexapod {
                 t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
                 t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
                 t15 * acceleration[0] - t5 * t179, t44 * acceleration[0] - t19 * t179,
-                t34 * acceleration[0] - t25 * t179, 0.0, minus_gcross_wy_leg1 * t381 - t413,
-                minus_minus_gcross_wy_leg2 * t547 - t572, t685 - gcross_wy_leg3 * t642,
-                t795 - gcross_wy_leg4 * t752, t917 - minus_gcross_wy_leg5 * t889,
-                gcross_wy_leg6 * t1012 + t1044,
-                gcylinder_wy_leg1 * t1057 - minus_gcross_wy_leg1 * t1063,
-                minus_minus_gcross_wy_leg2 * t1088 - minus_gcylinder_wy_leg2 * t1083,
-                gcross_wy_leg3 * t1122 + gcylinder_wy_leg3 * t1126,
-                gcross_wy_leg4 * t1160 + gcylinder_wy_leg4 * t1164,
-                gcylinder_wy_leg5 * t1187 - minus_gcross_wy_leg5 * t1183,
-                gcross_wy_leg6 * t1208 + gcylinder_wy_leg6 * t1212,
-                -(minus_gcross_wy_leg1 * t1244 + gcylinder_wy_leg1 * t1246),
-                minus_minus_gcross_wy_leg2 * t1278 + minus_gcylinder_wy_leg2 * t1280,
-                gcross_wy_leg3 * t1312 - gcylinder_wy_leg3 * t1314,
-                gcross_wy_leg4 * t1346 - gcylinder_wy_leg4 * t1348,
-                -(minus_gcross_wy_leg5 * t1380 + gcylinder_wy_leg5 * t1382),
+                t34 * acceleration[0] - t25 * t179, 0.0, minus_gcross_wy_leg1 * t379 - t412,
+                minus_minus_gcross_wy_leg2 * t545 - t570, t683 - gcross_wy_leg3 * t640,
+                gcross_wy_leg4 * t776 + t808, t926 - minus_gcross_wy_leg5 * t897,
+                gcross_wy_leg6 * t1022 + t1054,
+                gcylinder_wy_leg1 * t1067 - minus_gcross_wy_leg1 * t1071,
+                minus_minus_gcross_wy_leg2 * t1096 - minus_gcylinder_wy_leg2 * t1091,
+                gcross_wy_leg3 * t1130 + gcylinder_wy_leg3 * t1134,
+                gcross_wy_leg4 * t1158 + gcylinder_wy_leg4 * t1162,
+                gcylinder_wy_leg5 * t1189 - minus_gcross_wy_leg5 * t1186,
+                gcross_wy_leg6 * t1210 + gcylinder_wy_leg6 * t1214,
+                -(minus_gcross_wy_leg1 * t1246 + gcylinder_wy_leg1 * t1248),
+                minus_minus_gcross_wy_leg2 * t1280 + minus_gcylinder_wy_leg2 * t1282,
+                gcross_wy_leg3 * t1314 - gcylinder_wy_leg3 * t1316,
+                gcross_wy_leg4 * t1348 - gcylinder_wy_leg4 * t771,
+                -(minus_gcross_wy_leg5 * t1381 + gcylinder_wy_leg5 * t1180),
                 gcross_wy_leg6 * t1414 - gcylinder_wy_leg6 * t1416,
-                t413 - minus_gcross_wy_leg1 * t380, t572 - minus_minus_gcross_wy_leg2 * t546,
-                -(gcross_wy_leg3 * t1458 + t685), -(gcross_wy_leg4 * t1471 + t795),
-                minus_gcross_wy_leg5 * t888 - t917, -(gcross_wy_leg6 * t1011 + t1044),
-                -(minus_gcross_wy_leg1 * t1511 + gcylinder_wy_leg1 * t377),
-                minus_minus_gcross_wy_leg2 * t1534 - minus_gcylinder_wy_leg2 * t543,
-                gcross_wy_leg3 * t1555 + gcylinder_wy_leg3 * t1117,
-                gcross_wy_leg4 * t1577 + gcylinder_wy_leg4 * t1155,
-                gcylinder_wy_leg5 * t883 - minus_gcross_wy_leg5 * t1599,
-                gcross_wy_leg6 * t1621 + gcylinder_wy_leg6 * t1008,
+                t412 - minus_gcross_wy_leg1 * t378, t570 - minus_minus_gcross_wy_leg2 * t544,
+                -(gcross_wy_leg3 * t1458 + t683), -(gcross_wy_leg4 * t1472 + t808),
+                minus_gcross_wy_leg5 * t1485 - t926, -(gcross_wy_leg6 * t1021 + t1054),
+                -(minus_gcross_wy_leg1 * t1513 + gcylinder_wy_leg1 * t375),
+                minus_minus_gcross_wy_leg2 * t1536 - minus_gcylinder_wy_leg2 * t541,
+                gcross_wy_leg3 * t1557 + gcylinder_wy_leg3 * t1125,
+                gcross_wy_leg4 * t1579 + gcylinder_wy_leg4 * t1152,
+                gcylinder_wy_leg5 * t1181 - minus_gcross_wy_leg5 * t1601,
+                gcross_wy_leg6 * t1623 + gcylinder_wy_leg6 * t1018,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                -(minus_gcross_wy_leg1 * t1677 + gcylinder_wy_leg1 * t1679),
-                minus_gcylinder_wy_leg2 * t1700 - minus_minus_gcross_wy_leg2 * t1698,
-                -(gcross_wy_leg3 * t1719 + gcylinder_wy_leg3 * t1721),
-                -(gcross_wy_leg4 * t1740 + gcylinder_wy_leg4 * t1742),
-                -(minus_gcross_wy_leg5 * t1761 + gcylinder_wy_leg5 * t1763),
-                gcross_wy_leg6 * t1782 - gcylinder_wy_leg6 * t1784,
-                minus_gcross_wy_leg1 * t1805 - gcylinder_wy_leg1 * t1807,
-                -(minus_minus_gcross_wy_leg2 * t1823 + minus_gcylinder_wy_leg2 * t1825),
-                gcylinder_wy_leg3 * t1843 - gcross_wy_leg3 * t1841,
-                gcylinder_wy_leg4 * t1861 - gcross_wy_leg4 * t1859,
-                gcylinder_wy_leg5 * t1879 - minus_gcross_wy_leg5 * t1877,
-                gcross_wy_leg6 * t1895 + gcylinder_wy_leg6 * t1897, -(minus_gcross_wy_leg1 * t1910),
-                minus_minus_gcross_wy_leg2 * t1917, gcross_wy_leg3 * t1924, gcross_wy_leg4 * t1931,
-                -(minus_gcross_wy_leg5 * t1938), gcross_wy_leg6 * t1945,
-                -(t265 * t1969 + t243 * t1979), t440 * t2006 + t426 * t2016,
-                t261 * t2043 - t239 * t2053, t438 * t2080 - t424 * t2090,
-                -(t264 * t2117 + t242 * t2127), t439 * t2154 + t425 * t2164,
-                -(t265 * t2182 + t243 * t2188), t440 * t2206 + t426 * t2212,
-                t261 * t2230 - t239 * t2236, t438 * t2254 - t424 * t2260,
-                -(t264 * t2278 + t242 * t2284), t439 * t2302 + t425 * t2308,
-                t265 * t2326 - t243 * t2336, t426 * t2364 - t440 * t2354,
-                t261 * t2382 - t239 * t2392, t438 * t2410 - t424 * t2420,
-                -(t264 * t2439 + t242 * t2449), t425 * t2477 - t439 * t2467,
+                -(minus_gcross_wy_leg1 * t1679 + gcylinder_wy_leg1 * t1681),
+                minus_gcylinder_wy_leg2 * t1702 - minus_minus_gcross_wy_leg2 * t1700,
+                -(gcross_wy_leg3 * t1721 + gcylinder_wy_leg3 * t1723),
+                -(gcross_wy_leg4 * t1742 + gcylinder_wy_leg4 * t1744),
+                -(minus_gcross_wy_leg5 * t1764 + gcylinder_wy_leg5 * t1766),
+                gcross_wy_leg6 * t1785 - gcylinder_wy_leg6 * t1787,
+                minus_gcross_wy_leg1 * t1808 - gcylinder_wy_leg1 * t1810,
+                -(minus_minus_gcross_wy_leg2 * t1826 + minus_gcylinder_wy_leg2 * t1828),
+                gcylinder_wy_leg3 * t1846 - gcross_wy_leg3 * t1844,
+                gcylinder_wy_leg4 * t1864 - gcross_wy_leg4 * t1862,
+                gcylinder_wy_leg5 * t1881 - minus_gcross_wy_leg5 * t1763,
+                gcross_wy_leg6 * t1897 + gcylinder_wy_leg6 * t1899, -(minus_gcross_wy_leg1 * t1912),
+                minus_minus_gcross_wy_leg2 * t1919, gcross_wy_leg3 * t1926, gcross_wy_leg4 * t1933,
+                -(minus_gcross_wy_leg5 * t1940), gcross_wy_leg6 * t1947,
+                -(t243 * t1971 + t251 * t1981), t439 * t2008 + t425 * t2018,
+                t239 * t2045 - t247 * t2055, t437 * t2082 - t423 * t2092,
+                -(t242 * t2119 + t250 * t2129), t438 * t2156 + t424 * t2166,
+                -(t243 * t2184 + t251 * t2190), t439 * t2208 + t425 * t2214,
+                t239 * t2232 - t247 * t2238, t437 * t2256 - t423 * t2262,
+                -(t242 * t2281 + t250 * t2287), t438 * t2305 + t424 * t2311,
+                t243 * t2329 - t251 * t2339, t425 * t2367 - t439 * t2357,
+                t239 * t2385 - t247 * t2395, t437 * t2414 - t423 * t2424,
+                -(t242 * t2443 + t250 * t2453), t424 * t2481 - t438 * t2471,
                 grod_wy_leg1 * minus_minus_rate_dot_rod_leg1,
                 grod_wy_leg2 * minus_minus_rate_dot_rod_leg2,
                 -(minus_grod_wy_leg3 * minus_minus_rate_dot_rod_leg3),
@@ -14518,12 +14519,12 @@ impl Hexapod {
                 -(minus_grod_wy_leg4 * minus_minus_rate_rod_leg4),
                 grod_wy_leg5 * minus_minus_rate_rod_leg5,
                 -(minus_grod_wy_leg6 * minus_minus_rate_rod_leg6),
-                -::overact::math::signed(grod_wy_leg1, t2607),
-                -::overact::math::signed(grod_wy_leg2, t2614),
-                ::overact::math::signed(minus_grod_wy_leg3, t2621),
-                ::overact::math::signed(minus_grod_wy_leg4, t2628),
-                -::overact::math::signed(grod_wy_leg5, t2635),
-                ::overact::math::signed(minus_grod_wy_leg6, t2642), grod_wy_leg1, grod_wy_leg2,
+                -::overact::math::signed(grod_wy_leg1, t2611),
+                -::overact::math::signed(grod_wy_leg2, t2618),
+                ::overact::math::signed(minus_grod_wy_leg3, t2625),
+                ::overact::math::signed(minus_grod_wy_leg4, t2632),
+                -::overact::math::signed(grod_wy_leg5, t2639),
+                ::overact::math::signed(minus_grod_wy_leg6, t2646), grod_wy_leg1, grod_wy_leg2,
                 -minus_grod_wy_leg3, -minus_grod_wy_leg4, grod_wy_leg5, -minus_grod_wy_leg6,
             ],
             [
@@ -14532,56 +14533,56 @@ impl Hexapod {
                 t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90,
                 t5 * acceleration[1] - t10 * acceleration[0],
                 t19 * acceleration[1] - t41 * acceleration[0],
-                t25 * acceleration[1] - t29 * acceleration[0], 0.0, t418 - gcross_wz_leg1 * t381,
-                gcross_wz_leg2 * t547 + t585, t690 + minus_gcross_wz_leg3 * t642,
-                t800 + minus_gcross_wz_leg4 * t752, gcross_wz_leg5 * t889 - t930,
-                gcross_wz_leg6 * t1012 + t1053,
-                gcross_wz_leg1 * t1063 - minus_gcylinder_wz_leg1 * t1057,
-                gcross_wz_leg2 * t1088 + minus_minus_gcylinder_wz_leg2 * t1083,
-                gcylinder_wz_leg3 * t1126 - minus_gcross_wz_leg3 * t1122,
-                gcylinder_wz_leg4 * t1164 - minus_gcross_wz_leg4 * t1160,
-                gcross_wz_leg5 * t1183 - minus_gcylinder_wz_leg5 * t1187,
-                gcross_wz_leg6 * t1208 + gcylinder_wz_leg6 * t1212,
-                gcross_wz_leg1 * t1244 + minus_gcylinder_wz_leg1 * t1246,
-                gcross_wz_leg2 * t1278 - minus_minus_gcylinder_wz_leg2 * t1280,
-                -(minus_gcross_wz_leg3 * t1312 + gcylinder_wz_leg3 * t1314),
-                -(minus_gcross_wz_leg4 * t1346 + gcylinder_wz_leg4 * t1348),
-                gcross_wz_leg5 * t1380 + minus_gcylinder_wz_leg5 * t1382,
-                gcross_wz_leg6 * t1414 - gcylinder_wz_leg6 * t1416, gcross_wz_leg1 * t380 - t418,
-                -(t585 + gcross_wz_leg2 * t546), minus_gcross_wz_leg3 * t1458 - t690,
-                minus_gcross_wz_leg4 * t1471 - t800, t930 - gcross_wz_leg5 * t888,
-                -(gcross_wz_leg6 * t1011 + t1053),
-                gcross_wz_leg1 * t1511 + minus_gcylinder_wz_leg1 * t377,
-                gcross_wz_leg2 * t1534 + minus_minus_gcylinder_wz_leg2 * t543,
-                gcylinder_wz_leg3 * t1117 - minus_gcross_wz_leg3 * t1555,
-                gcylinder_wz_leg4 * t1155 - minus_gcross_wz_leg4 * t1577,
-                gcross_wz_leg5 * t1599 - minus_gcylinder_wz_leg5 * t883,
-                gcross_wz_leg6 * t1621 + gcylinder_wz_leg6 * t1008,
+                t25 * acceleration[1] - t29 * acceleration[0], 0.0, t417 - gcross_wz_leg1 * t379,
+                gcross_wz_leg2 * t545 + t583, t688 + minus_gcross_wz_leg3 * t640,
+                t813 - minus_gcross_wz_leg4 * t776, gcross_wz_leg5 * t897 - t939,
+                gcross_wz_leg6 * t1022 + t1063,
+                gcross_wz_leg1 * t1071 - minus_gcylinder_wz_leg1 * t1067,
+                gcross_wz_leg2 * t1096 + minus_minus_gcylinder_wz_leg2 * t1091,
+                gcylinder_wz_leg3 * t1134 - minus_gcross_wz_leg3 * t1130,
+                gcylinder_wz_leg4 * t1162 - minus_gcross_wz_leg4 * t1158,
+                gcross_wz_leg5 * t1186 - minus_gcylinder_wz_leg5 * t1189,
+                gcross_wz_leg6 * t1210 + gcylinder_wz_leg6 * t1214,
+                gcross_wz_leg1 * t1246 + minus_gcylinder_wz_leg1 * t1248,
+                gcross_wz_leg2 * t1280 - minus_minus_gcylinder_wz_leg2 * t1282,
+                -(minus_gcross_wz_leg3 * t1314 + gcylinder_wz_leg3 * t1316),
+                -(minus_gcross_wz_leg4 * t1348 + gcylinder_wz_leg4 * t771),
+                gcross_wz_leg5 * t1381 + minus_gcylinder_wz_leg5 * t1180,
+                gcross_wz_leg6 * t1414 - gcylinder_wz_leg6 * t1416, gcross_wz_leg1 * t378 - t417,
+                -(t583 + gcross_wz_leg2 * t544), minus_gcross_wz_leg3 * t1458 - t688,
+                minus_gcross_wz_leg4 * t1472 - t813, t939 - gcross_wz_leg5 * t1485,
+                -(gcross_wz_leg6 * t1021 + t1063),
+                gcross_wz_leg1 * t1513 + minus_gcylinder_wz_leg1 * t375,
+                gcross_wz_leg2 * t1536 + minus_minus_gcylinder_wz_leg2 * t541,
+                gcylinder_wz_leg3 * t1125 - minus_gcross_wz_leg3 * t1557,
+                gcylinder_wz_leg4 * t1152 - minus_gcross_wz_leg4 * t1579,
+                gcross_wz_leg5 * t1601 - minus_gcylinder_wz_leg5 * t1181,
+                gcross_wz_leg6 * t1623 + gcylinder_wz_leg6 * t1018,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
                 minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t1677 + minus_gcylinder_wz_leg1 * t1679,
-                -(minus_minus_gcylinder_wz_leg2 * t1700 + gcross_wz_leg2 * t1698),
-                minus_gcross_wz_leg3 * t1719 - gcylinder_wz_leg3 * t1721,
-                minus_gcross_wz_leg4 * t1740 - gcylinder_wz_leg4 * t1742,
-                gcross_wz_leg5 * t1761 + minus_gcylinder_wz_leg5 * t1763,
-                gcross_wz_leg6 * t1782 - gcylinder_wz_leg6 * t1784, -(minus_grod_wz_leg1 * t1802),
-                -(minus_grod_wz_leg2 * t1820), grod_wz_leg3 * t1838, grod_wz_leg4 * t1856,
-                -(minus_grod_wz_leg5 * t1874), grod_wz_leg6 * t1892, gcross_wz_leg1 * t1910,
-                gcross_wz_leg2 * t1917, -(minus_gcross_wz_leg3 * t1924),
-                -(minus_gcross_wz_leg4 * t1931), gcross_wz_leg5 * t1938, gcross_wz_leg6 * t1945,
-                t243 * t1974 + t253 * t1969, t426 * t2011 - t432 * t2006,
-                -(t239 * t2048 + t249 * t2043), -(t424 * t2085 + t430 * t2080),
-                t252 * t2117 - t242 * t2122, t425 * t2159 - t431 * t2154,
-                t243 * t2185 + t253 * t2182, t426 * t2209 - t432 * t2206,
-                -(t239 * t2233 + t249 * t2230), -(t424 * t2257 + t430 * t2254),
-                t252 * t2278 - t242 * t2281, t425 * t2305 - t431 * t2302,
-                -(t243 * t2331 + t253 * t2326), t426 * t2359 + t432 * t2354,
-                t239 * t2387 - t249 * t2382, t424 * t2415 - t430 * t2410,
-                t252 * t2439 - t242 * t2444, t425 * t2472 + t431 * t2467,
+                gcross_wz_leg1 * t1679 + minus_gcylinder_wz_leg1 * t1681,
+                -(minus_minus_gcylinder_wz_leg2 * t1702 + gcross_wz_leg2 * t1700),
+                minus_gcross_wz_leg3 * t1721 - gcylinder_wz_leg3 * t1723,
+                minus_gcross_wz_leg4 * t1742 - gcylinder_wz_leg4 * t1744,
+                gcross_wz_leg5 * t1764 + minus_gcylinder_wz_leg5 * t1766,
+                gcross_wz_leg6 * t1785 - gcylinder_wz_leg6 * t1787, -(minus_grod_wz_leg1 * t1805),
+                -(minus_grod_wz_leg2 * t1823), grod_wz_leg3 * t1841, grod_wz_leg4 * t1859,
+                -(minus_grod_wz_leg5 * t1877), grod_wz_leg6 * t1894, gcross_wz_leg1 * t1912,
+                gcross_wz_leg2 * t1919, -(minus_gcross_wz_leg3 * t1926),
+                -(minus_gcross_wz_leg4 * t1933), gcross_wz_leg5 * t1940, gcross_wz_leg6 * t1947,
+                t251 * t1976 + t261 * t1971, t425 * t2013 - t431 * t2008,
+                -(t247 * t2050 + t257 * t2045), -(t423 * t2087 + t429 * t2082),
+                t260 * t2119 - t250 * t2124, t424 * t2161 - t430 * t2156,
+                t251 * t2187 + t261 * t2184, t425 * t2211 - t431 * t2208,
+                -(t247 * t2235 + t257 * t2232), -(t423 * t2259 + t429 * t2256),
+                t260 * t2281 - t250 * t2284, t424 * t2308 - t430 * t2305,
+                -(t251 * t2334 + t261 * t2329), t425 * t2362 + t431 * t2357,
+                t247 * t2390 - t257 * t2385, t423 * t2419 - t429 * t2414,
+                t260 * t2443 - t250 * t2448, t424 * t2476 + t430 * t2471,
                 -(minus_grod_wz_leg1 * minus_minus_rate_dot_rod_leg1),
                 -(minus_grod_wz_leg2 * minus_minus_rate_dot_rod_leg2),
                 grod_wz_leg3 * minus_minus_rate_dot_rod_leg3,
@@ -14593,12 +14594,12 @@ impl Hexapod {
                 grod_wz_leg3 * minus_minus_rate_rod_leg3, grod_wz_leg4 * minus_minus_rate_rod_leg4,
                 -(minus_grod_wz_leg5 * minus_minus_rate_rod_leg5),
                 grod_wz_leg6 * minus_minus_rate_rod_leg6,
-                ::overact::math::signed(minus_grod_wz_leg1, t2607),
-                ::overact::math::signed(minus_grod_wz_leg2, t2614),
-                -::overact::math::signed(grod_wz_leg3, t2621),
-                -::overact::math::signed(grod_wz_leg4, t2628),
-                ::overact::math::signed(minus_grod_wz_leg5, t2635),
-                -::overact::math::signed(grod_wz_leg6, t2642), -minus_grod_wz_leg1,
+                ::overact::math::signed(minus_grod_wz_leg1, t2611),
+                ::overact::math::signed(minus_grod_wz_leg2, t2618),
+                -::overact::math::signed(grod_wz_leg3, t2625),
+                -::overact::math::signed(grod_wz_leg4, t2632),
+                ::overact::math::signed(minus_grod_wz_leg5, t2639),
+                -::overact::math::signed(grod_wz_leg6, t2646), -minus_grod_wz_leg1,
                 -minus_grod_wz_leg2, grod_wz_leg3, grod_wz_leg4, -minus_grod_wz_leg5, grod_wz_leg6,
             ],
         ])
@@ -14614,7 +14615,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 2500 operations (885 additions, 1575 multiplications, 40 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1947 intermediates.
+    /// 2505 operations (883 additions, 1585 multiplications, 37 divisions), 0 square roots, 12 trigonometric pairs, 36 signs, 1952 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -14624,14 +14625,14 @@ impl Hexapod {
         twist: &[f64; 6],
         acceleration: &[f64; 6],
     ) -> Result<[[f64; 106]; 6], ::overact::Error> {
-        let [(minus_c_cross_leg1, s_cross_leg1),
-        (minus_c_cylinder_leg1, s_cylinder_leg1),
-        (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg2, s_cross_leg2),
-        (minus_c_cross_leg3, s_cross_leg3), (minus_c_cylinder_leg3, s_cylinder_leg3),
-        (minus_c_cross_leg4, s_cross_leg4), (minus_c_cylinder_leg4, s_cylinder_leg4),
-        (minus_c_cross_leg5, s_cross_leg5), (minus_c_cylinder_leg5, s_cylinder_leg5),
-        (minus_c_cross_leg6, s_cross_leg6), (minus_c_cylinder_leg6, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[4], joints[3], joints[6], joints[7], joints[9], joints[10],
+        let [(minus_c_cylinder_leg1, s_cylinder_leg1),
+        (minus_c_cross_leg1, s_cross_leg1), (minus_c_cross_leg2, s_cross_leg2),
+        (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
+        (minus_c_cylinder_leg3, s_cylinder_leg3), (minus_c_cross_leg4, s_cross_leg4),
+        (minus_c_cylinder_leg4, s_cylinder_leg4), (minus_c_cross_leg5, s_cross_leg5),
+        (minus_c_cylinder_leg5, s_cylinder_leg5), (minus_c_cross_leg6, s_cross_leg6),
+        (minus_c_cylinder_leg6, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
+            joints[1], joints[0], joints[3], joints[4], joints[6], joints[7], joints[9], joints[10],
             joints[12], joints[13], joints[15], joints[16],
         ]);
         let t0 = 2.0 * pose[5];
@@ -14707,9 +14708,8 @@ impl Hexapod {
         let t193 = t41 * t150 - t19 * t154 + t44 * t158;
         let t198 = t19 * t161 - t41 * t164 + t44 * t168;
         let t203 = t19 * t171 + t41 * t173 - t44 * t176;
-        let t241 = 0.9781476007338057 * minus_c_cylinder_leg1;
-        let t243 = 0.20791169081775931 * s_cylinder_leg1;
-        let t244 = minus_c_cross_leg1 * t241 - t243;
+        let t241 = 0.9781476007338057 * minus_c_cross_leg1;
+        let t244 = minus_c_cylinder_leg1 * t241 - 0.20791169081775931 * s_cylinder_leg1;
         let t245 = 1.0 / joints[2];
         let gcylinder_vx_leg1 = t244 * t245;
         let t247 = 0.9781476007338057 * s_cross_leg1;
@@ -14772,733 +14772,735 @@ impl Hexapod {
         let t327 = t325 + t326;
         let t329 = acceleration[2] + t327 - t324;
         let t331 = t247 * t310 - t269 * t319 + minus_c_cross_leg1 * t329;
-        let t332 = 0.9781476007338057 * s_cylinder_leg1;
-        let t334 = 0.20791169081775931 * minus_c_cylinder_leg1;
-        let minus_grod_vx_leg1 = minus_c_cross_leg1 * t332 + t334;
-        let minus_grod_vy_leg1 = t241 - minus_c_cross_leg1 * t243;
+        let minus_grod_vx_leg1 = s_cylinder_leg1 * t241
+            + 0.20791169081775931 * minus_c_cylinder_leg1;
+        let t337 = 0.20791169081775931 * minus_c_cross_leg1;
+        let minus_grod_vy_leg1 = 0.9781476007338057 * minus_c_cylinder_leg1
+            - s_cylinder_leg1 * t337;
         let grod_vz_leg1 = s_cross_leg1 * s_cylinder_leg1;
         let minus_rate_rod_leg1 = minus_grod_vx_leg1 * t267 + minus_grod_vy_leg1 * t283
             - grod_vz_leg1 * t293;
-        let t344 = minus_rate_rod_leg1 + minus_rate_rod_leg1;
-        let t346 = t331 + t298 * t344;
-        let t347 = t245 * t346;
-        let t348 = s_cylinder_leg1 * t347;
+        let t345 = 2.0 * minus_rate_rod_leg1;
+        let t347 = t331 + t298 * t345;
+        let t351 = minus_c_cylinder_leg1 * t337 + 0.9781476007338057 * s_cylinder_leg1;
+        let t354 = s_cross_leg1 * minus_c_cylinder_leg1;
+        let t356 = t244 * t267 - t351 * t283 - t354 * t293;
+        let minus_rate_dot_cross_leg1 = (t347 + 2.0 * (t299 * t356)) / t296;
+        let rate_cylinder_leg1 = t245 * t356;
+        let t362 = rate_cylinder_leg1 * t298;
+        let t363 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t365 = t362 + t363 + t362;
+        let t366 = minus_c_cylinder_leg1 * t365;
+        let t367 = t366 - minus_rate_dot_cross_leg1;
         let gcross_vy_leg1 = t269 / t296;
-        let t354 = minus_c_cross_leg1 * t334 + t332;
-        let minus_gcylinder_vy_leg1 = t354 * t245;
-        let t356 = minus_gcylinder_vy_leg1 * t300;
+        let minus_gcylinder_vy_leg1 = t351 * t245;
+        let t373 = minus_gcylinder_vy_leg1 * t300;
         let minus_gcross_vz_leg1 = minus_c_cross_leg1 / t296;
-        let t360 = s_cross_leg1 * minus_c_cylinder_leg1;
-        let minus_gcylinder_vz_leg1 = t360 * t245;
-        let t362 = minus_gcylinder_vz_leg1 * t300;
-        let t364 = t263 - t250;
-        let t366 = t259 - t254;
-        let gcylinder_wx_leg1 = t364 * minus_gcylinder_vy_leg1
-            - t366 * minus_gcylinder_vz_leg1;
-        let t369 = gcylinder_wx_leg1 * t300;
-        let minus_gcross_wx_leg1 = t366 * minus_gcross_vz_leg1 + t364 * gcross_vy_leg1;
-        let t375 = t279 - t272;
-        let gcross_wy_leg1 = t375 * minus_gcross_vz_leg1 - t364 * minus_gcross_vx_leg1;
-        let gcylinder_wy_leg1 = t364 * gcylinder_vx_leg1
-            + t375 * minus_gcylinder_vz_leg1;
-        let t383 = gcylinder_wy_leg1 * t300;
-        let gcross_wz_leg1 = t375 * gcross_vy_leg1 + t366 * minus_gcross_vx_leg1;
-        let minus_gcylinder_wz_leg1 = t375 * minus_gcylinder_vy_leg1
-            + t366 * gcylinder_vx_leg1;
-        let t392 = minus_gcylinder_wz_leg1 * t300;
-        let t398 = 0.9781476007338057 * minus_c_cross_leg2;
-        let t401 = minus_c_cylinder_leg2 * t398 + 0.20791169081775931 * s_cylinder_leg2;
-        let t402 = 1.0 / joints[5];
-        let gcylinder_vx_leg2 = t401 * t402;
-        let t404 = 0.9781476007338057 * s_cross_leg2;
-        let t405 = t262 - t261;
-        let t407 = t258 - t257;
-        let t409 = t405 * twist[4] - t407 * twist[5];
-        let t410 = t248 - t249;
-        let t412 = t252 - t253;
-        let t414 = t410 * twist[4] - t412 * twist[5];
-        let t416 = twist[0] - (t409 + t414);
-        let t418 = 0.20791169081775931 * s_cross_leg2;
-        let t419 = t278 - t277;
-        let t422 = t419 * twist[5] - t405 * twist[3];
-        let t423 = t270 - t271;
-        let t426 = t423 * twist[5] - t410 * twist[3];
-        let t428 = twist[1] - (t422 + t426);
-        let t433 = t407 * twist[3] - t419 * twist[4];
-        let t436 = t412 * twist[3] - t423 * twist[4];
-        let t438 = twist[2] - (t433 + t436);
-        let t440 = t404 * t416 + t418 * t428 + minus_c_cross_leg2 * t438;
-        let t441 = s_cylinder_leg2 * joints[5];
-        ::overact::guard::leg(t441, 0.5513142860394165, "leg2")?;
-        let minus_rate_cross_leg2 = t440 / t441;
-        let t443 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t444 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t445 = t443 * t444;
-        let t446 = gcylinder_vx_leg2 * t445;
-        let minus_gcross_vx_leg2 = t404 / t441;
-        let t448 = t307 - t306;
-        let t449 = t303 - t304;
-        let t451 = acceleration[0] - (t448 + t449);
-        let t453 = t316 - t315;
-        let t454 = t312 - t313;
-        let t456 = acceleration[1] - (t453 + t454);
-        let t459 = t326 - t325;
-        let t460 = t322 - t323;
-        let t462 = acceleration[2] - (t459 + t460);
-        let t464 = t404 * t451 + t418 * t456 + minus_c_cross_leg2 * t462;
-        let minus_grod_vx_leg2 = s_cylinder_leg2 * t398
-            - 0.20791169081775931 * minus_c_cylinder_leg2;
-        let t469 = 0.20791169081775931 * minus_c_cross_leg2;
-        let minus_grod_vy_leg2 = s_cylinder_leg2 * t469
-            + 0.9781476007338057 * minus_c_cylinder_leg2;
+        let minus_gcylinder_vz_leg1 = t354 * t245;
+        let t378 = minus_gcylinder_vz_leg1 * t300;
+        let t380 = t263 - t250;
+        let t382 = t259 - t254;
+        let gcylinder_wx_leg1 = t380 * minus_gcylinder_vy_leg1
+            - t382 * minus_gcylinder_vz_leg1;
+        let t385 = gcylinder_wx_leg1 * t300;
+        let minus_gcross_wx_leg1 = t382 * minus_gcross_vz_leg1 + t380 * gcross_vy_leg1;
+        let t391 = t279 - t272;
+        let gcross_wy_leg1 = t391 * minus_gcross_vz_leg1 - t380 * minus_gcross_vx_leg1;
+        let gcylinder_wy_leg1 = t380 * gcylinder_vx_leg1
+            + t391 * minus_gcylinder_vz_leg1;
+        let t399 = gcylinder_wy_leg1 * t300;
+        let gcross_wz_leg1 = t391 * gcross_vy_leg1 + t382 * minus_gcross_vx_leg1;
+        let minus_gcylinder_wz_leg1 = t391 * minus_gcylinder_vy_leg1
+            + t382 * gcylinder_vx_leg1;
+        let t408 = minus_gcylinder_wz_leg1 * t300;
+        let t414 = 0.9781476007338057 * minus_c_cylinder_leg2;
+        let t416 = 0.20791169081775931 * s_cylinder_leg2;
+        let t417 = minus_c_cross_leg2 * t414 + t416;
+        let t418 = 1.0 / joints[5];
+        let gcylinder_vx_leg2 = t417 * t418;
+        let t420 = 0.9781476007338057 * s_cross_leg2;
+        let t421 = t262 - t261;
+        let t423 = t258 - t257;
+        let t425 = t421 * twist[4] - t423 * twist[5];
+        let t426 = t248 - t249;
+        let t428 = t252 - t253;
+        let t430 = t426 * twist[4] - t428 * twist[5];
+        let t432 = twist[0] - (t425 + t430);
+        let t434 = 0.20791169081775931 * s_cross_leg2;
+        let t435 = t278 - t277;
+        let t438 = t435 * twist[5] - t421 * twist[3];
+        let t439 = t270 - t271;
+        let t442 = t439 * twist[5] - t426 * twist[3];
+        let t444 = twist[1] - (t438 + t442);
+        let t449 = t423 * twist[3] - t435 * twist[4];
+        let t452 = t428 * twist[3] - t439 * twist[4];
+        let t454 = twist[2] - (t449 + t452);
+        let t456 = t420 * t432 + t434 * t444 + minus_c_cross_leg2 * t454;
+        let t457 = s_cylinder_leg2 * joints[5];
+        ::overact::guard::leg(t457, 0.5513142860394165, "leg2")?;
+        let minus_rate_cross_leg2 = t456 / t457;
+        let t459 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t460 = minus_c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t461 = t459 * t460;
+        let t462 = gcylinder_vx_leg2 * t461;
+        let minus_gcross_vx_leg2 = t420 / t457;
+        let t464 = t307 - t306;
+        let t465 = t303 - t304;
+        let t467 = acceleration[0] - (t464 + t465);
+        let t469 = t316 - t315;
+        let t470 = t312 - t313;
+        let t472 = acceleration[1] - (t469 + t470);
+        let t475 = t326 - t325;
+        let t476 = t322 - t323;
+        let t478 = acceleration[2] - (t475 + t476);
+        let t480 = t420 * t467 + t434 * t472 + minus_c_cross_leg2 * t478;
+        let t481 = 0.9781476007338057 * s_cylinder_leg2;
+        let t483 = 0.20791169081775931 * minus_c_cylinder_leg2;
+        let minus_grod_vx_leg2 = minus_c_cross_leg2 * t481 - t483;
+        let minus_grod_vy_leg2 = minus_c_cross_leg2 * t416 + t414;
         let grod_vz_leg2 = s_cross_leg2 * s_cylinder_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t416 + minus_grod_vy_leg2 * t428
-            - grod_vz_leg2 * t438;
-        let t478 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
-        let t480 = t464 + t443 * t478;
-        let t484 = minus_c_cylinder_leg2 * t469 - 0.9781476007338057 * s_cylinder_leg2;
-        let t487 = s_cross_leg2 * minus_c_cylinder_leg2;
-        let t489 = t401 * t416 + t484 * t428 - t487 * t438;
-        let minus_rate_dot_cross_leg2 = (t480 + 2.0 * (t444 * t489)) / t441;
-        let rate_cylinder_leg2 = t402 * t489;
-        let t495 = rate_cylinder_leg2 * t443;
-        let t496 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t498 = t495 + t496 + t495;
-        let t499 = minus_c_cylinder_leg2 * t498;
-        let t500 = t499 - minus_rate_dot_cross_leg2;
-        let gcylinder_vy_leg2 = t484 * t402;
-        let t504 = gcylinder_vy_leg2 * t445;
-        let minus_gcross_vy_leg2 = t418 / t441;
-        let minus_gcross_vz_leg2 = minus_c_cross_leg2 / t441;
-        let minus_gcylinder_vz_leg2 = t487 * t402;
-        let t511 = minus_gcylinder_vz_leg2 * t445;
-        let t513 = t405 + t410;
-        let t515 = t407 + t412;
-        let gcross_wx_leg2 = t515 * minus_gcross_vz_leg2 - t513 * minus_gcross_vy_leg2;
-        let minus_minus_gcylinder_wx_leg2 = t515 * minus_gcylinder_vz_leg2
-            + t513 * gcylinder_vy_leg2;
-        let t522 = minus_minus_gcylinder_wx_leg2 * t445;
-        let t524 = t419 + t423;
-        let gcross_wy_leg2 = t513 * minus_gcross_vx_leg2 - t524 * minus_gcross_vz_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t432 + minus_grod_vy_leg2 * t444
+            - grod_vz_leg2 * t454;
+        let t493 = minus_rate_rod_leg2 + minus_rate_rod_leg2;
+        let t495 = t480 + t459 * t493;
+        let t496 = t418 * t495;
+        let t497 = s_cylinder_leg2 * t496;
+        let t501 = minus_c_cross_leg2 * t483 - t481;
+        let gcylinder_vy_leg2 = t501 * t418;
+        let t503 = gcylinder_vy_leg2 * t461;
+        let minus_gcross_vy_leg2 = t434 / t457;
+        let minus_gcross_vz_leg2 = minus_c_cross_leg2 / t457;
+        let t509 = s_cross_leg2 * minus_c_cylinder_leg2;
+        let minus_gcylinder_vz_leg2 = t509 * t418;
+        let t511 = minus_gcylinder_vz_leg2 * t461;
+        let t513 = t421 + t426;
+        let t516 = 0.14142135623730953 * (t10 + t41);
+        let minus_gcross_wx_leg2 = t513 * minus_gcross_vy_leg2
+            + t516 * minus_gcross_vz_leg2;
+        let minus_gcylinder_wx_leg2 = t516 * minus_gcylinder_vz_leg2
+            - t513 * gcylinder_vy_leg2;
+        let t523 = minus_gcylinder_wx_leg2 * t461;
+        let t525 = t435 + t439;
+        let gcross_wy_leg2 = t513 * minus_gcross_vx_leg2 - t525 * minus_gcross_vz_leg2;
         let minus_gcylinder_wy_leg2 = t513 * gcylinder_vx_leg2
-            + t524 * minus_gcylinder_vz_leg2;
-        let t532 = minus_gcylinder_wy_leg2 * t445;
-        let gcross_wz_leg2 = t524 * minus_gcross_vy_leg2 - t515 * minus_gcross_vx_leg2;
-        let gcylinder_wz_leg2 = t515 * gcylinder_vx_leg2 - t524 * gcylinder_vy_leg2;
-        let t541 = gcylinder_wz_leg2 * t445;
-        let t545 = 0.30901699437494734 * s_cross_leg3;
-        let t548 = s_cylinder_leg3 * joints[8];
-        ::overact::guard::leg(t548, 0.5513142860394162, "leg3")?;
-        let gcross_vx_leg3 = t545 / t548;
-        let t550 = 0.9510565162951536 * s_cross_leg3;
-        let t551 = acceleration[1] + t314;
-        let t553 = acceleration[0] + t305;
-        let t556 = acceleration[2] + t324;
-        let t558 = t550 * t551 - t545 * t553 + minus_c_cross_leg3 * t556;
-        let t559 = 0.9510565162951536 * s_cylinder_leg3;
-        let t560 = 0.30901699437494734 * minus_c_cylinder_leg3;
-        let t562 = t559 - minus_c_cross_leg3 * t560;
-        let t563 = twist[0] + t256;
-        let t565 = 0.9510565162951536 * minus_c_cylinder_leg3;
-        let t567 = 0.30901699437494734 * s_cylinder_leg3;
-        let t568 = minus_c_cross_leg3 * t565 + t567;
-        let t569 = twist[1] + t275;
-        let t572 = s_cross_leg3 * minus_c_cylinder_leg3;
-        let t573 = twist[2] + t288;
-        let t575 = t562 * t563 + t568 * t569 - t572 * t573;
-        let t580 = t550 * t569 - t545 * t563 + minus_c_cross_leg3 * t573;
-        let minus_rate_cross_leg3 = t580 / t548;
-        let t582 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t583 = t575 * t582;
-        let t586 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let minus_grod_vy_leg3 = t559 * minus_c_cross_leg3 - t560;
-        let grod_vx_leg3 = minus_c_cross_leg3 * t567 + t565;
+            + t525 * minus_gcylinder_vz_leg2;
+        let t533 = minus_gcylinder_wy_leg2 * t461;
+        let gcross_wz_leg2 = t516 * minus_gcross_vx_leg2 + t525 * minus_gcross_vy_leg2;
+        let minus_gcylinder_wz_leg2 = t525 * gcylinder_vy_leg2
+            + t516 * gcylinder_vx_leg2;
+        let t542 = minus_gcylinder_wz_leg2 * t461;
+        let t546 = 0.30901699437494734 * s_cross_leg3;
+        let t549 = s_cylinder_leg3 * joints[8];
+        ::overact::guard::leg(t549, 0.5513142860394162, "leg3")?;
+        let gcross_vx_leg3 = t546 / t549;
+        let t551 = 0.9510565162951536 * s_cross_leg3;
+        let t552 = acceleration[1] + t314;
+        let t554 = acceleration[0] + t305;
+        let t557 = acceleration[2] + t324;
+        let t559 = t551 * t552 - t546 * t554 + minus_c_cross_leg3 * t557;
+        let t560 = 0.9510565162951536 * s_cylinder_leg3;
+        let t561 = 0.30901699437494734 * minus_c_cylinder_leg3;
+        let t563 = t560 - minus_c_cross_leg3 * t561;
+        let t564 = twist[0] + t256;
+        let t566 = 0.9510565162951536 * minus_c_cylinder_leg3;
+        let t568 = 0.30901699437494734 * s_cylinder_leg3;
+        let t569 = minus_c_cross_leg3 * t566 + t568;
+        let t570 = twist[1] + t275;
+        let t573 = s_cross_leg3 * minus_c_cylinder_leg3;
+        let t574 = twist[2] + t288;
+        let t576 = t563 * t564 + t569 * t570 - t573 * t574;
+        let t581 = t551 * t570 - t546 * t564 + minus_c_cross_leg3 * t574;
+        let minus_rate_cross_leg3 = t581 / t549;
+        let t583 = minus_c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t584 = t576 * t583;
+        let t587 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let minus_grod_vy_leg3 = t560 * minus_c_cross_leg3 - t561;
+        let grod_vx_leg3 = minus_c_cross_leg3 * t568 + t566;
         let grod_vz_leg3 = s_cross_leg3 * s_cylinder_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t569 - grod_vx_leg3 * t563
-            - grod_vz_leg3 * t573;
-        let t597 = 2.0 * minus_rate_rod_leg3;
-        let t599 = t558 + t583 + t583 + t586 * t597;
-        let minus_rate_dot_cross_leg3 = t599 / t548;
-        let t601 = 1.0 / joints[8];
-        let rate_cylinder_leg3 = t601 * t575;
-        let t603 = rate_cylinder_leg3 * t586;
-        let t604 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t606 = t603 + t604 + t603;
-        let t607 = minus_c_cylinder_leg3 * t606;
-        let t608 = t607 - minus_rate_dot_cross_leg3;
-        let gcylinder_vx_leg3 = t562 * t601;
-        let t611 = t586 * t582;
-        let t612 = gcylinder_vx_leg3 * t611;
-        let gcylinder_vy_leg3 = t568 * t601;
-        let t615 = gcylinder_vy_leg3 * t611;
-        let minus_gcross_vy_leg3 = t550 / t548;
-        let minus_gcross_vz_leg3 = minus_c_cross_leg3 / t548;
-        let minus_gcylinder_vz_leg3 = t572 * t601;
-        let t622 = minus_gcylinder_vz_leg3 * t611;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t570 - grod_vx_leg3 * t564
+            - grod_vz_leg3 * t574;
+        let t598 = minus_rate_rod_leg3 + minus_rate_rod_leg3;
+        let minus_rate_dot_cross_leg3 = (t559 + t584 + t584 + t587 * t598) / t549;
+        let t602 = 1.0 / joints[8];
+        let rate_cylinder_leg3 = t602 * t576;
+        let t604 = rate_cylinder_leg3 * t587;
+        let t605 = minus_c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t607 = t604 + t605 + t604;
+        let t608 = minus_c_cylinder_leg3 * t607;
+        let t609 = t608 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t563 * t602;
+        let t612 = t587 * t583;
+        let t613 = gcylinder_vx_leg3 * t612;
+        let gcylinder_vy_leg3 = t569 * t602;
+        let t616 = gcylinder_vy_leg3 * t612;
+        let minus_gcross_vy_leg3 = t551 / t549;
+        let minus_gcross_vz_leg3 = minus_c_cross_leg3 / t549;
+        let minus_gcylinder_vz_leg3 = t573 * t602;
+        let t623 = minus_gcylinder_vz_leg3 * t612;
         let gcross_wx_leg3 = t250 * minus_gcross_vy_leg3 - t254 * minus_gcross_vz_leg3;
         let minus_gcylinder_wx_leg3 = t254 * minus_gcylinder_vz_leg3
             + t250 * gcylinder_vy_leg3;
-        let t631 = minus_gcylinder_wx_leg3 * t611;
+        let t632 = minus_gcylinder_wx_leg3 * t612;
         let gcross_wy_leg3 = t250 * gcross_vx_leg3 + t272 * minus_gcross_vz_leg3;
         let gcylinder_wy_leg3 = t250 * gcylinder_vx_leg3
             + t272 * minus_gcylinder_vz_leg3;
-        let t640 = gcylinder_wy_leg3 * t611;
+        let t641 = gcylinder_wy_leg3 * t612;
         let gcylinder_wz_leg3 = t272 * gcylinder_vy_leg3 - t254 * gcylinder_vx_leg3;
-        let t645 = gcylinder_wz_leg3 * t611;
+        let t646 = gcylinder_wz_leg3 * t612;
         let minus_gcross_wz_leg3 = t272 * minus_gcross_vy_leg3 + t254 * gcross_vx_leg3;
-        let t653 = 0.6691306063588579 * s_cross_leg4;
-        let t656 = s_cylinder_leg4 * joints[11];
-        ::overact::guard::leg(t656, 0.5513142860394165, "leg4")?;
-        let gcross_vx_leg4 = t653 / t656;
-        let t658 = 0.7431448254773945 * s_cross_leg4;
-        let t659 = acceleration[1] + t453;
-        let t661 = acceleration[0] + t448;
-        let t664 = acceleration[2] + t459;
-        let t666 = t658 * t659 - t653 * t661 + minus_c_cross_leg4 * t664;
-        let t668 = 0.6691306063588579 * minus_c_cross_leg4;
-        let t670 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t668;
-        let t671 = twist[0] + t409;
-        let t673 = 0.7431448254773945 * minus_c_cross_leg4;
-        let t676 = minus_c_cylinder_leg4 * t673 + 0.6691306063588579 * s_cylinder_leg4;
-        let t677 = twist[1] + t422;
-        let t680 = s_cross_leg4 * minus_c_cylinder_leg4;
-        let t681 = twist[2] + t433;
-        let t683 = t670 * t671 + t676 * t677 - t680 * t681;
-        let t688 = t658 * t677 - t653 * t671 + minus_c_cross_leg4 * t681;
-        let minus_rate_cross_leg4 = t688 / t656;
-        let t690 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t691 = t683 * t690;
-        let t694 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let minus_grod_vy_leg4 = s_cylinder_leg4 * t673
+        let t654 = 0.6691306063588579 * s_cross_leg4;
+        let t657 = s_cylinder_leg4 * joints[11];
+        ::overact::guard::leg(t657, 0.5513142860394165, "leg4")?;
+        let t658 = 1.0 / t657;
+        let gcross_vx_leg4 = t654 * t658;
+        let t660 = 1.0 / joints[11];
+        let t661 = 0.7431448254773945 * s_cross_leg4;
+        let t662 = acceleration[1] + t469;
+        let t664 = acceleration[0] + t464;
+        let t667 = acceleration[2] + t475;
+        let t669 = t661 * t662 - t654 * t664 + minus_c_cross_leg4 * t667;
+        let t670 = 0.7431448254773945 * minus_c_cross_leg4;
+        let minus_grod_vy_leg4 = s_cylinder_leg4 * t670
             - 0.6691306063588579 * minus_c_cylinder_leg4;
-        let grod_vx_leg4 = s_cylinder_leg4 * t668
+        let t674 = twist[1] + t438;
+        let t676 = 0.6691306063588579 * minus_c_cross_leg4;
+        let grod_vx_leg4 = s_cylinder_leg4 * t676
             + 0.7431448254773945 * minus_c_cylinder_leg4;
+        let t680 = twist[0] + t425;
         let grod_vz_leg4 = s_cross_leg4 * s_cylinder_leg4;
-        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t677 - grod_vx_leg4 * t671
-            - grod_vz_leg4 * t681;
-        let t707 = minus_rate_rod_leg4 + minus_rate_rod_leg4;
-        let minus_rate_dot_cross_leg4 = (t666 + t691 + t691 + t694 * t707) / t656;
-        let t711 = 1.0 / joints[11];
-        let rate_cylinder_leg4 = t711 * t683;
-        let t713 = rate_cylinder_leg4 * t694;
-        let t714 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t716 = t713 + t714 + t713;
-        let t717 = minus_c_cylinder_leg4 * t716;
-        let t718 = t717 - minus_rate_dot_cross_leg4;
-        let gcylinder_vx_leg4 = t670 * t711;
-        let t721 = t694 * t690;
-        let t722 = gcylinder_vx_leg4 * t721;
-        let gcylinder_vy_leg4 = t676 * t711;
-        let t725 = gcylinder_vy_leg4 * t721;
-        let minus_gcross_vy_leg4 = t658 / t656;
-        let minus_gcross_vz_leg4 = minus_c_cross_leg4 / t656;
-        let minus_gcylinder_vz_leg4 = t680 * t711;
-        let t732 = minus_gcylinder_vz_leg4 * t721;
-        let gcross_wx_leg4 = t405 * minus_gcross_vy_leg4 - t407 * minus_gcross_vz_leg4;
-        let minus_gcylinder_wx_leg4 = t407 * minus_gcylinder_vz_leg4
-            + t405 * gcylinder_vy_leg4;
-        let t741 = minus_gcylinder_wx_leg4 * t721;
-        let gcross_wy_leg4 = t405 * gcross_vx_leg4 + t419 * minus_gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t405 * gcylinder_vx_leg4
-            + t419 * minus_gcylinder_vz_leg4;
-        let t750 = gcylinder_wy_leg4 * t721;
-        let gcylinder_wz_leg4 = t419 * gcylinder_vy_leg4 - t407 * gcylinder_vx_leg4;
-        let t755 = gcylinder_wz_leg4 * t721;
-        let minus_gcross_wz_leg4 = t419 * minus_gcross_vy_leg4 + t407 * gcross_vx_leg4;
-        let t763 = 0.6691306063588579 * s_cross_leg5;
-        let t766 = s_cylinder_leg5 * joints[14];
-        ::overact::guard::leg(t766, 0.5513142860394162, "leg5")?;
-        let t767 = 1.0 / t766;
-        let gcross_vx_leg5 = t763 * t767;
-        let t769 = acceleration[2] - t327;
-        let t771 = acceleration[0] - t308;
-        let t773 = 0.7431448254773945 * s_cross_leg5;
-        let t774 = acceleration[1] - t317;
-        let t777 = minus_c_cross_leg5 * t769 - (t763 * t771 + t773 * t774);
-        let t778 = 0.6691306063588579 * s_cylinder_leg5;
-        let t779 = 0.7431448254773945 * minus_c_cylinder_leg5;
-        let t781 = t778 - minus_c_cross_leg5 * t779;
-        let t782 = twist[1] + t281;
-        let t784 = 0.6691306063588579 * minus_c_cylinder_leg5;
-        let t786 = 0.7431448254773945 * s_cylinder_leg5;
-        let t787 = minus_c_cross_leg5 * t784 + t786;
-        let t788 = twist[0] + t265;
-        let t791 = s_cross_leg5 * minus_c_cylinder_leg5;
-        let t792 = twist[2] + t291;
-        let t794 = t781 * t782 - t787 * t788 - t791 * t792;
-        let t799 = minus_c_cross_leg5 * t792 - (t763 * t788 + t773 * t782);
-        let minus_rate_cross_leg5 = t767 * t799;
-        let t801 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t802 = t794 * t801;
-        let t805 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_grod_vx_leg5 = t779 - t778 * minus_c_cross_leg5;
-        let grod_vy_leg5 = minus_c_cross_leg5 * t786 + t784;
+        let t684 = twist[2] + t449;
+        let minus_rate_rod_leg4 = minus_grod_vy_leg4 * t674 - grod_vx_leg4 * t680
+            - grod_vz_leg4 * t684;
+        let t691 = t661 * t674 - t654 * t680 + minus_c_cross_leg4 * t684;
+        let minus_rate_cross_leg4 = t658 * t691;
+        let t693 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let t695 = 2.0 * (minus_rate_rod_leg4 * t693);
+        let t696 = t669 + t695;
+        let t697 = t660 * t696;
+        let t698 = s_cylinder_leg4 * t697;
+        let t702 = 0.7431448254773945 * s_cylinder_leg4 - minus_c_cylinder_leg4 * t676;
+        let gcylinder_vx_leg4 = t702 * t660;
+        let t704 = minus_c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t705 = t693 * t704;
+        let t706 = gcylinder_vx_leg4 * t705;
+        let t710 = minus_c_cylinder_leg4 * t670 + 0.6691306063588579 * s_cylinder_leg4;
+        let gcylinder_vy_leg4 = t710 * t660;
+        let t712 = gcylinder_vy_leg4 * t705;
+        let minus_gcross_vy_leg4 = t661 * t658;
+        let minus_gcross_vz_leg4 = minus_c_cross_leg4 * t658;
+        let t718 = s_cross_leg4 * minus_c_cylinder_leg4;
+        let minus_gcylinder_vz_leg4 = t718 * t660;
+        let t720 = minus_gcylinder_vz_leg4 * t705;
+        let gcross_wx_leg4 = t421 * minus_gcross_vy_leg4 - t423 * minus_gcross_vz_leg4;
+        let minus_gcylinder_wx_leg4 = t423 * minus_gcylinder_vz_leg4
+            + t421 * gcylinder_vy_leg4;
+        let t729 = minus_gcylinder_wx_leg4 * t705;
+        let gcross_wy_leg4 = t421 * gcross_vx_leg4 + t435 * minus_gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t421 * gcylinder_vx_leg4
+            + t435 * minus_gcylinder_vz_leg4;
+        let t738 = gcylinder_wy_leg4 * t705;
+        let gcylinder_wz_leg4 = t435 * gcylinder_vy_leg4 - t423 * gcylinder_vx_leg4;
+        let t743 = gcylinder_wz_leg4 * t705;
+        let minus_gcross_wz_leg4 = t435 * minus_gcross_vy_leg4 + t423 * gcross_vx_leg4;
+        let t751 = 0.6691306063588579 * s_cross_leg5;
+        let t754 = s_cylinder_leg5 * joints[14];
+        ::overact::guard::leg(t754, 0.5513142860394162, "leg5")?;
+        let t755 = 1.0 / t754;
+        let gcross_vx_leg5 = t751 * t755;
+        let t757 = acceleration[2] - t327;
+        let t759 = acceleration[0] - t308;
+        let t761 = 0.7431448254773945 * s_cross_leg5;
+        let t762 = acceleration[1] - t317;
+        let t765 = minus_c_cross_leg5 * t757 - (t751 * t759 + t761 * t762);
+        let t766 = twist[2] + t291;
+        let t768 = twist[0] + t265;
+        let t770 = twist[1] + t281;
+        let t773 = minus_c_cross_leg5 * t766 - (t751 * t768 + t761 * t770);
+        let minus_rate_cross_leg5 = t755 * t773;
+        let t775 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let t777 = 0.6691306063588579 * minus_c_cross_leg5;
+        let minus_grod_vx_leg5 = 0.7431448254773945 * minus_c_cylinder_leg5
+            - s_cylinder_leg5 * t777;
+        let t781 = 0.7431448254773945 * minus_c_cross_leg5;
+        let grod_vy_leg5 = s_cylinder_leg5 * t781
+            + 0.6691306063588579 * minus_c_cylinder_leg5;
         let grod_vz_leg5 = s_cross_leg5 * s_cylinder_leg5;
-        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t788 - grod_vy_leg5 * t782
-            - grod_vz_leg5 * t792;
-        let t816 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
-        let minus_rate_dot_cross_leg5 = t767 * (t777 + t802 + t802 + t805 * t816);
-        let rate_cylinder_leg5 = t794 / joints[14];
-        let t821 = rate_cylinder_leg5 * t805;
-        let t822 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t824 = t821 + t822 + t821;
-        let t825 = minus_c_cylinder_leg5 * t824;
-        let t826 = t825 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t787 / joints[14];
-        let t829 = t805 * t801;
-        let t830 = minus_gcylinder_vx_leg5 * t829;
-        let gcross_vy_leg5 = t773 * t767;
-        let gcylinder_vy_leg5 = t781 / joints[14];
-        let t835 = gcylinder_vy_leg5 * t829;
-        let minus_gcross_vz_leg5 = minus_c_cross_leg5 * t767;
-        let minus_gcylinder_vz_leg5 = t791 / joints[14];
-        let t840 = minus_gcylinder_vz_leg5 * t829;
+        let minus_rate_rod_leg5 = minus_grod_vx_leg5 * t768 - grod_vy_leg5 * t770
+            - grod_vz_leg5 * t766;
+        let t790 = minus_rate_rod_leg5 + minus_rate_rod_leg5;
+        let t792 = t765 + t775 * t790;
+        let t793 = t792 / joints[14];
+        let t794 = s_cylinder_leg5 * t793;
+        let t798 = minus_c_cylinder_leg5 * t777 + 0.7431448254773945 * s_cylinder_leg5;
+        let minus_gcylinder_vx_leg5 = t798 / joints[14];
+        let t800 = minus_c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t801 = t775 * t800;
+        let t802 = minus_gcylinder_vx_leg5 * t801;
+        let gcross_vy_leg5 = t761 * t755;
+        let t808 = 0.6691306063588579 * s_cylinder_leg5 - minus_c_cylinder_leg5 * t781;
+        let gcylinder_vy_leg5 = t808 / joints[14];
+        let t810 = gcylinder_vy_leg5 * t801;
+        let minus_gcross_vz_leg5 = minus_c_cross_leg5 * t755;
+        let t814 = s_cross_leg5 * minus_c_cylinder_leg5;
+        let minus_gcylinder_vz_leg5 = t814 / joints[14];
+        let t816 = minus_gcylinder_vz_leg5 * t801;
         let gcross_wx_leg5 = t259 * minus_gcross_vz_leg5 + t263 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t259 * minus_gcylinder_vz_leg5
             + t263 * gcylinder_vy_leg5;
-        let t849 = gcylinder_wx_leg5 * t829;
+        let t825 = gcylinder_wx_leg5 * t801;
         let gcylinder_wy_leg5 = t263 * minus_gcylinder_vx_leg5
             - t279 * minus_gcylinder_vz_leg5;
-        let t854 = gcylinder_wy_leg5 * t829;
+        let t830 = gcylinder_wy_leg5 * t801;
         let minus_gcross_wy_leg5 = t263 * gcross_vx_leg5 + t279 * minus_gcross_vz_leg5;
         let gcross_wz_leg5 = t259 * gcross_vx_leg5 - t279 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t279 * gcylinder_vy_leg5
             + t259 * minus_gcylinder_vx_leg5;
-        let t867 = minus_gcylinder_wz_leg5 * t829;
-        let t871 = 0.30901699437494734 * s_cross_leg6;
-        let t874 = s_cylinder_leg6 * joints[17];
-        ::overact::guard::leg(t874, 0.5513142860394162, "leg6")?;
-        let gcross_vx_leg6 = t871 / t874;
-        let t876 = 1.0 / joints[17];
-        let t877 = acceleration[2] + t460;
-        let t879 = acceleration[0] + t449;
-        let t881 = 0.9510565162951536 * s_cross_leg6;
-        let t882 = acceleration[1] + t454;
-        let t885 = minus_c_cross_leg6 * t877 - (t871 * t879 + t881 * t882);
-        let t886 = twist[2] + t436;
-        let t888 = twist[0] + t414;
-        let t890 = twist[1] + t426;
-        let t893 = minus_c_cross_leg6 * t886 - (t871 * t888 + t881 * t890);
-        let minus_rate_cross_leg6 = t893 / t874;
-        let t895 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t897 = 0.30901699437494734 * minus_c_cross_leg6;
+        let t843 = minus_gcylinder_wz_leg5 * t801;
+        let t847 = 0.30901699437494734 * s_cross_leg6;
+        let t850 = s_cylinder_leg6 * joints[17];
+        ::overact::guard::leg(t850, 0.5513142860394162, "leg6")?;
+        let gcross_vx_leg6 = t847 / t850;
+        let t852 = 1.0 / joints[17];
+        let t853 = acceleration[2] + t476;
+        let t855 = acceleration[0] + t465;
+        let t857 = 0.9510565162951536 * s_cross_leg6;
+        let t858 = acceleration[1] + t470;
+        let t861 = minus_c_cross_leg6 * t853 - (t847 * t855 + t857 * t858);
+        let t862 = twist[2] + t452;
+        let t864 = twist[0] + t430;
+        let t866 = twist[1] + t442;
+        let t869 = minus_c_cross_leg6 * t862 - (t847 * t864 + t857 * t866);
+        let minus_rate_cross_leg6 = t869 / t850;
+        let t871 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t873 = 0.30901699437494734 * minus_c_cross_leg6;
         let minus_grod_vx_leg6 = 0.9510565162951536 * minus_c_cylinder_leg6
-            - s_cylinder_leg6 * t897;
-        let t901 = 0.9510565162951536 * minus_c_cross_leg6;
-        let grod_vy_leg6 = s_cylinder_leg6 * t901
+            - s_cylinder_leg6 * t873;
+        let t877 = 0.9510565162951536 * minus_c_cross_leg6;
+        let grod_vy_leg6 = s_cylinder_leg6 * t877
             + 0.30901699437494734 * minus_c_cylinder_leg6;
         let grod_vz_leg6 = s_cross_leg6 * s_cylinder_leg6;
-        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t888 - grod_vy_leg6 * t890
-            - grod_vz_leg6 * t886;
-        let t910 = 2.0 * minus_rate_rod_leg6;
-        let t912 = t885 + t895 * t910;
-        let t913 = t876 * t912;
-        let t914 = s_cylinder_leg6 * t913;
-        let t918 = minus_c_cylinder_leg6 * t897 + 0.9510565162951536 * s_cylinder_leg6;
-        let minus_gcylinder_vx_leg6 = t918 * t876;
-        let t920 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t921 = t895 * t920;
-        let t922 = minus_gcylinder_vx_leg6 * t921;
-        let gcross_vy_leg6 = t881 / t874;
-        let t928 = 0.30901699437494734 * s_cylinder_leg6 - minus_c_cylinder_leg6 * t901;
-        let gcylinder_vy_leg6 = t928 * t876;
-        let t930 = gcylinder_vy_leg6 * t921;
-        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t874;
-        let t934 = s_cross_leg6 * minus_c_cylinder_leg6;
-        let minus_gcylinder_vz_leg6 = t934 * t876;
-        let t936 = minus_gcylinder_vz_leg6 * t921;
-        let minus_gcross_wx_leg6 = t412 * minus_gcross_vz_leg6 + t410 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t412 * minus_gcylinder_vz_leg6
-            + t410 * gcylinder_vy_leg6;
-        let t945 = minus_gcylinder_wx_leg6 * t921;
-        let gcross_wy_leg6 = t410 * gcross_vx_leg6 + t423 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t423 * minus_gcylinder_vz_leg6
-            - t410 * minus_gcylinder_vx_leg6;
-        let t954 = gcylinder_wy_leg6 * t921;
-        let gcross_wz_leg6 = t423 * gcross_vy_leg6 - t412 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t423 * gcylinder_vy_leg6
-            + t412 * minus_gcylinder_vx_leg6;
-        let t963 = gcylinder_wz_leg6 * t921;
-        let t965 = t298 * t298;
-        let t966 = t299 * t299;
-        let t967 = t965 - t966;
-        let t973 = t244 * t267 - t354 * t283 - t360 * t293;
-        let rate_cylinder_leg1 = t245 * t973;
-        let t975 = rate_cylinder_leg1 * t298;
-        let t976 = t299 * t973;
-        let t978 = t346 + t976 + t976;
-        let minus_rate_dot_cross_leg1 = t978 / t296;
-        let t980 = minus_c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t982 = t975 + t980 + t975;
-        let t985 = s_cylinder_leg1 * t982 + minus_c_cylinder_leg1 * t347;
-        let t1003 = t443 * t443;
-        let t1004 = t444 * t444;
-        let t1005 = t1003 - t1004;
-        let t1010 = s_cylinder_leg2 * t498 + minus_c_cylinder_leg2 * (t402 * t480);
-        let t1029 = joints[8] * t608;
-        let t1032 = s_cylinder_leg3 * t606 - minus_c_cylinder_leg3 * (t1029 / t548);
-        let t1034 = t586 * t586;
-        let t1035 = t582 * t582;
-        let t1036 = t1034 - t1035;
-        let t1055 = joints[11] * t718;
-        let t1058 = s_cylinder_leg4 * t716 - minus_c_cylinder_leg4 * (t1055 / t656);
-        let t1060 = t694 * t694;
-        let t1061 = t690 * t690;
-        let t1062 = t1060 - t1061;
-        let t1082 = t826 * (joints[14] / t766);
-        let t1084 = s_cylinder_leg5 * t824 - minus_c_cylinder_leg5 * t1082;
-        let t1086 = t805 * t805;
-        let t1087 = t801 * t801;
-        let t1088 = t1086 - t1087;
-        let t1110 = t928 * t890 - t918 * t888 - t934 * t886;
-        let rate_cylinder_leg6 = t876 * t1110;
-        let t1112 = rate_cylinder_leg6 * t895;
-        let minus_rate_dot_cross_leg6 = (t912 + 2.0 * (t1110 * t920)) / t874;
-        let t1117 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1119 = t1112 + t1117 + t1112;
-        let t1122 = s_cylinder_leg6 * t1119 + minus_c_cylinder_leg6 * t913;
-        let t1124 = t895 * t895;
-        let t1125 = t920 * t920;
-        let t1126 = t1124 - t1125;
-        let t1148 = t244 * t310 - t354 * t319 - t360 * t329;
-        let t1150 = t1148 + rate_cylinder_leg1 * t344;
-        let t1151 = t245 * t1150;
-        let rate_dot_cylinder_leg1 = t1151 - t300;
-        let t1153 = rate_dot_cylinder_leg1 - t300;
-        let t1155 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t1158 = s_cylinder_leg1 * t1153 - minus_c_cylinder_leg1 * (t1155 - t965);
-        let t1160 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1182 = t401 * t451 + t484 * t456 - t487 * t462;
-        let t1184 = t1182 + rate_cylinder_leg2 * t478;
-        let t1185 = t402 * t1184;
-        let rate_dot_cylinder_leg2 = t1185 - t445;
-        let t1187 = rate_dot_cylinder_leg2 - t445;
-        let t1189 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t1192 = s_cylinder_leg2 * t1187 - minus_c_cylinder_leg2 * (t1189 - t1003);
-        let t1194 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1216 = t562 * t553 + t568 * t551 - t572 * t556;
-        let t1218 = t1216 + rate_cylinder_leg3 * t597;
-        let t1219 = t601 * t1218;
-        let rate_dot_cylinder_leg3 = t1219 - t611;
-        let t1221 = rate_dot_cylinder_leg3 - t611;
-        let t1223 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t1226 = s_cylinder_leg3 * t1221 - minus_c_cylinder_leg3 * (t1223 - t1034);
-        let t1228 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1250 = t670 * t661 + t676 * t659 - t680 * t664;
-        let t1252 = t1250 + rate_cylinder_leg4 * t707;
-        let t1253 = t711 * t1252;
-        let rate_dot_cylinder_leg4 = t1253 - t721;
-        let t1255 = rate_dot_cylinder_leg4 - t721;
-        let t1257 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t1260 = s_cylinder_leg4 * t1255 - minus_c_cylinder_leg4 * (t1257 - t1060);
-        let t1262 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1284 = t781 * t774 - t787 * t771 - t791 * t769;
-        let t1286 = t1284 + rate_cylinder_leg5 * t816;
-        let t1287 = t1286 / joints[14];
-        let rate_dot_cylinder_leg5 = t1287 - t829;
-        let t1289 = rate_dot_cylinder_leg5 - t829;
-        let t1291 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1294 = s_cylinder_leg5 * t1289 - minus_c_cylinder_leg5 * (t1291 - t1086);
-        let t1296 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1318 = t928 * t882 - t918 * t879 - t934 * t877;
-        let t1320 = t1318 + rate_cylinder_leg6 * t910;
-        let t1321 = t876 * t1320;
-        let rate_dot_cylinder_leg6 = t1321 - t921;
-        let t1323 = rate_dot_cylinder_leg6 - t921;
-        let t1325 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1328 = s_cylinder_leg6 * t1323 - minus_c_cylinder_leg6 * (t1325 - t1124);
-        let t1330 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1348 = minus_c_cylinder_leg1 * t982;
-        let t1409 = minus_c_cylinder_leg6 * t1119;
-        let t1426 = s_cylinder_leg1 * (t966 - t1155) - minus_c_cylinder_leg1 * t1151;
-        let t1448 = s_cylinder_leg2 * (t1004 - t1189) - minus_c_cylinder_leg2 * t1185;
-        let t1469 = s_cylinder_leg3 * (t1035 - t1223) - minus_c_cylinder_leg3 * t1219;
-        let t1491 = s_cylinder_leg4 * (t1061 - t1257) - minus_c_cylinder_leg4 * t1253;
-        let t1513 = s_cylinder_leg5 * (t1087 - t1291) - minus_c_cylinder_leg5 * t1287;
-        let t1535 = s_cylinder_leg6 * (t1125 - t1325) - minus_c_cylinder_leg6 * t1321;
-        let t1590 = 9.81 * minus_c_cross_leg1;
-        let t1591 = minus_c_cylinder_leg1 * t1590;
-        let t1593 = 9.81 * grod_vz_leg1;
-        let t1611 = 9.81 * minus_c_cross_leg2;
-        let t1612 = minus_c_cylinder_leg2 * t1611;
-        let t1614 = 9.81 * grod_vz_leg2;
-        let t1632 = 9.81 * minus_c_cross_leg3;
-        let t1633 = minus_c_cylinder_leg3 * t1632;
-        let t1635 = 9.81 * grod_vz_leg3;
-        let t1653 = 9.81 * minus_c_cross_leg4;
-        let t1654 = minus_c_cylinder_leg4 * t1653;
-        let t1656 = 9.81 * grod_vz_leg4;
-        let t1674 = 9.81 * minus_c_cross_leg5;
-        let t1675 = minus_c_cylinder_leg5 * t1674;
-        let t1677 = 9.81 * grod_vz_leg5;
-        let t1695 = 9.81 * minus_c_cross_leg6;
-        let t1696 = minus_c_cylinder_leg6 * t1695;
-        let t1698 = 9.81 * grod_vz_leg6;
-        let t1716 = t245 * t1593;
-        let t1719 = s_cylinder_leg1 * t1590;
-        let t1721 = 9.81 * t360;
-        let grod_wz_leg1 = minus_grod_vx_leg1 * t366 - minus_grod_vy_leg1 * t375;
-        let t1734 = t402 * t1614;
-        let t1737 = s_cylinder_leg2 * t1611;
-        let t1739 = 9.81 * t487;
-        let grod_wz_leg2 = minus_grod_vy_leg2 * t524 - minus_grod_vx_leg2 * t515;
-        let t1752 = t601 * t1635;
-        let t1755 = s_cylinder_leg3 * t1632;
-        let t1757 = 9.81 * t572;
+        let minus_rate_rod_leg6 = minus_grod_vx_leg6 * t864 - grod_vy_leg6 * t866
+            - grod_vz_leg6 * t862;
+        let t886 = 2.0 * minus_rate_rod_leg6;
+        let t888 = t861 + t871 * t886;
+        let t889 = t852 * t888;
+        let t890 = s_cylinder_leg6 * t889;
+        let t894 = minus_c_cylinder_leg6 * t873 + 0.9510565162951536 * s_cylinder_leg6;
+        let minus_gcylinder_vx_leg6 = t894 * t852;
+        let t896 = minus_c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t897 = t871 * t896;
+        let t898 = minus_gcylinder_vx_leg6 * t897;
+        let gcross_vy_leg6 = t857 / t850;
+        let t904 = 0.30901699437494734 * s_cylinder_leg6 - minus_c_cylinder_leg6 * t877;
+        let gcylinder_vy_leg6 = t904 * t852;
+        let t906 = gcylinder_vy_leg6 * t897;
+        let minus_gcross_vz_leg6 = minus_c_cross_leg6 / t850;
+        let t910 = s_cross_leg6 * minus_c_cylinder_leg6;
+        let minus_gcylinder_vz_leg6 = t910 * t852;
+        let t912 = minus_gcylinder_vz_leg6 * t897;
+        let minus_gcross_wx_leg6 = t428 * minus_gcross_vz_leg6 + t426 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t428 * minus_gcylinder_vz_leg6
+            + t426 * gcylinder_vy_leg6;
+        let t921 = minus_gcylinder_wx_leg6 * t897;
+        let gcross_wy_leg6 = t426 * gcross_vx_leg6 + t439 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t439 * minus_gcylinder_vz_leg6
+            - t426 * minus_gcylinder_vx_leg6;
+        let t930 = gcylinder_wy_leg6 * t897;
+        let gcross_wz_leg6 = t439 * gcross_vy_leg6 - t428 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t439 * gcylinder_vy_leg6
+            + t428 * minus_gcylinder_vx_leg6;
+        let t939 = gcylinder_wz_leg6 * t897;
+        let t941 = t298 * t298;
+        let t942 = t299 * t299;
+        let t943 = t941 - t942;
+        let t948 = s_cylinder_leg1 * t365 + minus_c_cylinder_leg1 * (t245 * t347);
+        let t966 = t459 * t459;
+        let t967 = t460 * t460;
+        let t968 = t966 - t967;
+        let t974 = t417 * t432 + t501 * t444 - t509 * t454;
+        let rate_cylinder_leg2 = t418 * t974;
+        let t976 = rate_cylinder_leg2 * t459;
+        let t977 = t460 * t974;
+        let minus_rate_dot_cross_leg2 = (t495 + t977 + t977) / t457;
+        let t981 = minus_c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t983 = t976 + t981 + t976;
+        let t986 = s_cylinder_leg2 * t983 + minus_c_cylinder_leg2 * t496;
+        let t1005 = joints[8] * t609;
+        let t1008 = s_cylinder_leg3 * t607 - minus_c_cylinder_leg3 * (t1005 / t549);
+        let t1010 = t587 * t587;
+        let t1011 = t583 * t583;
+        let t1012 = t1010 - t1011;
+        let t1034 = t702 * t680 + t710 * t674 - t718 * t684;
+        let rate_cylinder_leg4 = t660 * t1034;
+        let t1036 = rate_cylinder_leg4 * t693;
+        let t1037 = t1034 * t704;
+        let minus_rate_dot_cross_leg4 = t658 * (t669 + t1037 + t1037 + t695);
+        let t1042 = minus_c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1044 = t1036 + t1042 + t1036;
+        let t1047 = s_cylinder_leg4 * t1044 + minus_c_cylinder_leg4 * t697;
+        let t1049 = t693 * t693;
+        let t1050 = t704 * t704;
+        let t1051 = t1049 - t1050;
+        let t1073 = t808 * t770 - t798 * t768 - t814 * t766;
+        let rate_cylinder_leg5 = t1073 / joints[14];
+        let t1075 = rate_cylinder_leg5 * t775;
+        let minus_rate_dot_cross_leg5 = t755 * (t792 + 2.0 * (t1073 * t800));
+        let t1080 = minus_c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1082 = t1075 + t1080 + t1075;
+        let t1085 = s_cylinder_leg5 * t1082 + minus_c_cylinder_leg5 * t793;
+        let t1087 = t775 * t775;
+        let t1088 = t800 * t800;
+        let t1089 = t1087 - t1088;
+        let t1111 = t904 * t866 - t894 * t864 - t910 * t862;
+        let rate_cylinder_leg6 = t852 * t1111;
+        let t1113 = rate_cylinder_leg6 * t871;
+        let minus_rate_dot_cross_leg6 = (t888 + 2.0 * (t1111 * t896)) / t850;
+        let t1118 = minus_c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1120 = t1113 + t1118 + t1113;
+        let t1123 = s_cylinder_leg6 * t1120 + minus_c_cylinder_leg6 * t889;
+        let t1125 = t871 * t871;
+        let t1126 = t896 * t896;
+        let t1127 = t1125 - t1126;
+        let t1149 = t244 * t310 - t351 * t319 - t354 * t329;
+        let rate_dot_cylinder_leg1 = t245
+            * (t1149 - t295 * t299 + rate_cylinder_leg1 * t345);
+        let t1155 = rate_dot_cylinder_leg1 - t300;
+        let t1157 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t1160 = s_cylinder_leg1 * t1155 - minus_c_cylinder_leg1 * (t1157 - t941);
+        let t1162 = s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1184 = t417 * t467 + t501 * t472 - t509 * t478;
+        let t1186 = t1184 + rate_cylinder_leg2 * t493;
+        let t1187 = t1186 / joints[5];
+        let rate_dot_cylinder_leg2 = t1187 - t461;
+        let t1189 = rate_dot_cylinder_leg2 - t461;
+        let t1191 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t1194 = s_cylinder_leg2 * t1189 - minus_c_cylinder_leg2 * (t1191 - t966);
+        let t1196 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1218 = t563 * t554 + t569 * t552 - t573 * t557;
+        let t1220 = t1218 + rate_cylinder_leg3 * t598;
+        let t1221 = t602 * t1220;
+        let rate_dot_cylinder_leg3 = t1221 - t612;
+        let t1223 = rate_dot_cylinder_leg3 - t612;
+        let t1225 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t1228 = s_cylinder_leg3 * t1223 - minus_c_cylinder_leg3 * (t1225 - t1010);
+        let t1230 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1252 = t702 * t664 + t710 * t662 - t718 * t667;
+        let t1255 = t1252 + rate_cylinder_leg4 * (2.0 * minus_rate_rod_leg4);
+        let t1256 = t660 * t1255;
+        let rate_dot_cylinder_leg4 = t1256 - t705;
+        let t1258 = rate_dot_cylinder_leg4 - t705;
+        let t1260 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t1263 = s_cylinder_leg4 * t1258 - minus_c_cylinder_leg4 * (t1260 - t1049);
+        let t1265 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1287 = t808 * t762 - t798 * t759 - t814 * t757;
+        let t1289 = t1287 + rate_cylinder_leg5 * t790;
+        let t1290 = t1289 / joints[14];
+        let rate_dot_cylinder_leg5 = t1290 - t801;
+        let t1292 = rate_dot_cylinder_leg5 - t801;
+        let t1294 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1297 = s_cylinder_leg5 * t1292 - minus_c_cylinder_leg5 * (t1294 - t1087);
+        let t1299 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1321 = t904 * t858 - t894 * t855 - t910 * t853;
+        let t1323 = t1321 + rate_cylinder_leg6 * t886;
+        let t1324 = t852 * t1323;
+        let rate_dot_cylinder_leg6 = t1324 - t897;
+        let t1326 = rate_dot_cylinder_leg6 - t897;
+        let t1328 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1331 = s_cylinder_leg6 * t1326 - minus_c_cylinder_leg6 * (t1328 - t1125);
+        let t1333 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1363 = minus_c_cylinder_leg2 * t983;
+        let t1388 = minus_c_cylinder_leg4 * t1044;
+        let t1401 = minus_c_cylinder_leg5 * t1082;
+        let t1414 = minus_c_cylinder_leg6 * t1120;
+        let t1430 = t300 + rate_dot_cylinder_leg1;
+        let t1432 = s_cylinder_leg1 * (t942 - t1157) - minus_c_cylinder_leg1 * t1430;
+        let t1454 = s_cylinder_leg2 * (t967 - t1191) - minus_c_cylinder_leg2 * t1187;
+        let t1475 = s_cylinder_leg3 * (t1011 - t1225) - minus_c_cylinder_leg3 * t1221;
+        let t1497 = s_cylinder_leg4 * (t1050 - t1260) - minus_c_cylinder_leg4 * t1256;
+        let t1519 = s_cylinder_leg5 * (t1088 - t1294) - minus_c_cylinder_leg5 * t1290;
+        let t1541 = s_cylinder_leg6 * (t1126 - t1328) - minus_c_cylinder_leg6 * t1324;
+        let t1596 = 9.81 * minus_c_cross_leg1;
+        let t1597 = minus_c_cylinder_leg1 * t1596;
+        let t1599 = 9.81 * grod_vz_leg1;
+        let t1617 = 9.81 * minus_c_cross_leg2;
+        let t1618 = minus_c_cylinder_leg2 * t1617;
+        let t1620 = 9.81 * grod_vz_leg2;
+        let t1638 = 9.81 * minus_c_cross_leg3;
+        let t1639 = minus_c_cylinder_leg3 * t1638;
+        let t1641 = 9.81 * grod_vz_leg3;
+        let t1659 = 9.81 * minus_c_cross_leg4;
+        let t1660 = minus_c_cylinder_leg4 * t1659;
+        let t1662 = 9.81 * grod_vz_leg4;
+        let t1680 = 9.81 * minus_c_cross_leg5;
+        let t1681 = minus_c_cylinder_leg5 * t1680;
+        let t1683 = 9.81 * grod_vz_leg5;
+        let t1701 = 9.81 * minus_c_cross_leg6;
+        let t1702 = minus_c_cylinder_leg6 * t1701;
+        let t1704 = 9.81 * grod_vz_leg6;
+        let t1722 = t245 * t1599;
+        let t1725 = s_cylinder_leg1 * t1596;
+        let t1727 = 9.81 * t354;
+        let grod_wz_leg1 = minus_grod_vx_leg1 * t382 - minus_grod_vy_leg1 * t391;
+        let t1740 = t1620 / joints[5];
+        let t1743 = s_cylinder_leg2 * t1617;
+        let t1745 = 9.81 * t509;
+        let grod_wz_leg2 = minus_grod_vx_leg2 * t516 + minus_grod_vy_leg2 * t525;
+        let t1758 = t602 * t1641;
+        let t1761 = s_cylinder_leg3 * t1638;
+        let t1763 = 9.81 * t573;
         let minus_grod_wz_leg3 = minus_grod_vy_leg3 * t272 + grod_vx_leg3 * t254;
-        let t1770 = t711 * t1656;
-        let t1773 = s_cylinder_leg4 * t1653;
-        let t1775 = 9.81 * t680;
-        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t419 + grod_vx_leg4 * t407;
-        let t1788 = t1677 / joints[14];
-        let t1791 = s_cylinder_leg5 * t1674;
-        let t1793 = 9.81 * t791;
+        let t1776 = t660 * t1662;
+        let t1779 = s_cylinder_leg4 * t1659;
+        let t1781 = 9.81 * t718;
+        let minus_grod_wz_leg4 = minus_grod_vy_leg4 * t435 + grod_vx_leg4 * t423;
+        let t1794 = t1683 / joints[14];
+        let t1797 = s_cylinder_leg5 * t1680;
+        let t1799 = 9.81 * t814;
         let minus_grod_wz_leg5 = grod_vy_leg5 * t279 + minus_grod_vx_leg5 * t259;
-        let t1806 = t876 * t1698;
-        let t1809 = s_cylinder_leg6 * t1695;
-        let t1811 = 9.81 * t934;
-        let grod_wz_leg6 = grod_vy_leg6 * t423 + minus_grod_vx_leg6 * t412;
-        let t1824 = 9.81 * s_cross_leg1;
-        let t1831 = 9.81 * s_cross_leg2;
-        let t1838 = 9.81 * s_cross_leg3;
-        let t1845 = 9.81 * s_cross_leg4;
-        let t1852 = 9.81 * s_cross_leg5;
-        let t1859 = 9.81 * s_cross_leg6;
-        let t1870 = minus_grod_vx_leg1 * t310 + minus_grod_vy_leg1 * t319
+        let t1812 = t852 * t1704;
+        let t1815 = s_cylinder_leg6 * t1701;
+        let t1817 = 9.81 * t910;
+        let grod_wz_leg6 = grod_vy_leg6 * t439 + minus_grod_vx_leg6 * t428;
+        let t1830 = 9.81 * s_cross_leg1;
+        let t1837 = 9.81 * s_cross_leg2;
+        let t1844 = 9.81 * s_cross_leg3;
+        let t1851 = 9.81 * s_cross_leg4;
+        let t1858 = 9.81 * s_cross_leg5;
+        let t1865 = 9.81 * s_cross_leg6;
+        let t1876 = minus_grod_vx_leg1 * t310 + minus_grod_vy_leg1 * t319
             - grod_vz_leg1 * t329;
-        let t1871 = t1870 - t1593;
-        let t1874 = t1871 - joints[2] * (t966 + t1155);
-        let t1877 = t331 + t1590;
-        let t1879 = t296 * t982 + minus_c_cylinder_leg1 * t1877;
-        let t1883 = gcylinder_vx_leg1 * t1874 - minus_gcross_vx_leg1 * t1879
-            + minus_grod_vx_leg1 * t1153;
-        let t1888 = gcross_vy_leg1 * t1879 - minus_gcylinder_vy_leg1 * t1874
-            + minus_grod_vy_leg1 * t1153;
-        let t1893 = minus_gcross_vz_leg1 * t1879 + minus_gcylinder_vz_leg1 * t1874
-            + grod_vz_leg1 * t1153;
-        let t1907 = minus_grod_vx_leg2 * t451 + minus_grod_vy_leg2 * t456
-            - grod_vz_leg2 * t462;
-        let t1908 = t1907 - t1614;
-        let t1911 = t1908 - joints[5] * (t1004 + t1189);
-        let t1914 = t464 + t1611;
-        let t1916 = t441 * t498 + minus_c_cylinder_leg2 * t1914;
-        let t1920 = gcylinder_vx_leg2 * t1911 - minus_gcross_vx_leg2 * t1916
-            + minus_grod_vx_leg2 * t1187;
-        let t1925 = gcylinder_vy_leg2 * t1911 - minus_gcross_vy_leg2 * t1916
-            + minus_grod_vy_leg2 * t1187;
-        let t1930 = minus_gcross_vz_leg2 * t1916 + minus_gcylinder_vz_leg2 * t1911
-            + grod_vz_leg2 * t1187;
-        let t1941 = t558 + t1632;
-        let t1943 = t548 * t606 + minus_c_cylinder_leg3 * t1941;
-        let t1949 = minus_grod_vy_leg3 * t551 - grod_vx_leg3 * t553
-            - grod_vz_leg3 * t556;
-        let t1950 = t1949 - t1635;
-        let t1953 = t1950 - joints[8] * (t1035 + t1223);
-        let t1957 = gcross_vx_leg3 * t1943 + gcylinder_vx_leg3 * t1953
-            - grod_vx_leg3 * t1221;
-        let t1962 = gcylinder_vy_leg3 * t1953 - minus_gcross_vy_leg3 * t1943
-            + minus_grod_vy_leg3 * t1221;
-        let t1967 = minus_gcross_vz_leg3 * t1943 + minus_gcylinder_vz_leg3 * t1953
-            + grod_vz_leg3 * t1221;
-        let t1978 = t666 + t1653;
-        let t1980 = t656 * t716 + minus_c_cylinder_leg4 * t1978;
-        let t1986 = minus_grod_vy_leg4 * t659 - grod_vx_leg4 * t661
-            - grod_vz_leg4 * t664;
-        let t1987 = t1986 - t1656;
-        let t1990 = t1987 - joints[11] * (t1061 + t1257);
-        let t1994 = gcross_vx_leg4 * t1980 + gcylinder_vx_leg4 * t1990
-            - grod_vx_leg4 * t1255;
-        let t1999 = gcylinder_vy_leg4 * t1990 - minus_gcross_vy_leg4 * t1980
-            + minus_grod_vy_leg4 * t1255;
-        let t2004 = minus_gcross_vz_leg4 * t1980 + minus_gcylinder_vz_leg4 * t1990
-            + grod_vz_leg4 * t1255;
-        let t2015 = t777 + t1674;
-        let t2017 = t766 * t824 + minus_c_cylinder_leg5 * t2015;
-        let t2023 = minus_grod_vx_leg5 * t771 - grod_vy_leg5 * t774
-            - grod_vz_leg5 * t769;
-        let t2024 = t2023 - t1677;
-        let t2027 = t2024 - joints[14] * (t1087 + t1291);
-        let t2031 = gcross_vx_leg5 * t2017 - minus_gcylinder_vx_leg5 * t2027
-            + minus_grod_vx_leg5 * t1289;
-        let t2036 = gcross_vy_leg5 * t2017 + gcylinder_vy_leg5 * t2027
-            - grod_vy_leg5 * t1289;
-        let t2041 = minus_gcross_vz_leg5 * t2017 + minus_gcylinder_vz_leg5 * t2027
-            + grod_vz_leg5 * t1289;
-        let t2052 = t885 + t1695;
-        let t2054 = t874 * t1119 + minus_c_cylinder_leg6 * t2052;
-        let t2060 = minus_grod_vx_leg6 * t879 - grod_vy_leg6 * t882
-            - grod_vz_leg6 * t877;
-        let t2061 = t2060 - t1698;
-        let t2064 = t2061 - joints[17] * (t1125 + t1325);
-        let t2068 = gcross_vx_leg6 * t2054 - minus_gcylinder_vx_leg6 * t2064
-            + minus_grod_vx_leg6 * t1323;
-        let t2073 = gcross_vy_leg6 * t2054 + gcylinder_vy_leg6 * t2064
-            - grod_vy_leg6 * t1323;
-        let t2078 = minus_gcross_vz_leg6 * t2054 + minus_gcylinder_vz_leg6 * t2064
-            + grod_vz_leg6 * t1323;
-        let t2090 = t1148 - t1721;
-        let t2093 = t295 * minus_rate_cross_leg1
-            - (s_cylinder_leg1 * t1871 + minus_c_cylinder_leg1 * t2090);
-        let t2095 = t978 * minus_gcross_vz_leg1;
-        let t2097 = 0.9781476007338057 * t2095 - minus_gcross_vx_leg1 * t2093;
-        let t2100 = gcross_vy_leg1 * t2093 - 0.20791169081775931 * t2095;
-        let t2103 = minus_gcross_vz_leg1 * t2093
+        let t1877 = t1876 - t1599;
+        let t1880 = t1877 - joints[2] * (t942 + t1157);
+        let t1883 = t331 + t1596;
+        let t1885 = t296 * t365 + minus_c_cylinder_leg1 * t1883;
+        let t1889 = gcylinder_vx_leg1 * t1880 - minus_gcross_vx_leg1 * t1885
+            + minus_grod_vx_leg1 * t1155;
+        let t1894 = gcross_vy_leg1 * t1885 - minus_gcylinder_vy_leg1 * t1880
+            + minus_grod_vy_leg1 * t1155;
+        let t1899 = minus_gcross_vz_leg1 * t1885 + minus_gcylinder_vz_leg1 * t1880
+            + grod_vz_leg1 * t1155;
+        let t1913 = minus_grod_vx_leg2 * t467 + minus_grod_vy_leg2 * t472
+            - grod_vz_leg2 * t478;
+        let t1914 = t1913 - t1620;
+        let t1917 = t1914 - joints[5] * (t967 + t1191);
+        let t1920 = t480 + t1617;
+        let t1922 = t457 * t983 + minus_c_cylinder_leg2 * t1920;
+        let t1926 = gcylinder_vx_leg2 * t1917 - minus_gcross_vx_leg2 * t1922
+            + minus_grod_vx_leg2 * t1189;
+        let t1931 = gcylinder_vy_leg2 * t1917 - minus_gcross_vy_leg2 * t1922
+            + minus_grod_vy_leg2 * t1189;
+        let t1936 = minus_gcross_vz_leg2 * t1922 + minus_gcylinder_vz_leg2 * t1917
+            + grod_vz_leg2 * t1189;
+        let t1947 = t559 + t1638;
+        let t1949 = t549 * t607 + minus_c_cylinder_leg3 * t1947;
+        let t1955 = minus_grod_vy_leg3 * t552 - grod_vx_leg3 * t554
+            - grod_vz_leg3 * t557;
+        let t1956 = t1955 - t1641;
+        let t1959 = t1956 - joints[8] * (t1011 + t1225);
+        let t1963 = gcross_vx_leg3 * t1949 + gcylinder_vx_leg3 * t1959
+            - grod_vx_leg3 * t1223;
+        let t1968 = gcylinder_vy_leg3 * t1959 - minus_gcross_vy_leg3 * t1949
+            + minus_grod_vy_leg3 * t1223;
+        let t1973 = minus_gcross_vz_leg3 * t1949 + minus_gcylinder_vz_leg3 * t1959
+            + grod_vz_leg3 * t1223;
+        let t1984 = t669 + t1659;
+        let t1986 = t657 * t1044 + minus_c_cylinder_leg4 * t1984;
+        let t1992 = minus_grod_vy_leg4 * t662 - grod_vx_leg4 * t664
+            - grod_vz_leg4 * t667;
+        let t1993 = t1992 - t1662;
+        let t1996 = t1993 - joints[11] * (t1050 + t1260);
+        let t2000 = gcross_vx_leg4 * t1986 + gcylinder_vx_leg4 * t1996
+            - grod_vx_leg4 * t1258;
+        let t2005 = gcylinder_vy_leg4 * t1996 - minus_gcross_vy_leg4 * t1986
+            + minus_grod_vy_leg4 * t1258;
+        let t2010 = minus_gcross_vz_leg4 * t1986 + minus_gcylinder_vz_leg4 * t1996
+            + grod_vz_leg4 * t1258;
+        let t2021 = t765 + t1680;
+        let t2023 = t754 * t1082 + minus_c_cylinder_leg5 * t2021;
+        let t2029 = minus_grod_vx_leg5 * t759 - grod_vy_leg5 * t762
+            - grod_vz_leg5 * t757;
+        let t2030 = t2029 - t1683;
+        let t2033 = t2030 - joints[14] * (t1088 + t1294);
+        let t2037 = gcross_vx_leg5 * t2023 - minus_gcylinder_vx_leg5 * t2033
+            + minus_grod_vx_leg5 * t1292;
+        let t2042 = gcross_vy_leg5 * t2023 + gcylinder_vy_leg5 * t2033
+            - grod_vy_leg5 * t1292;
+        let t2047 = minus_gcross_vz_leg5 * t2023 + minus_gcylinder_vz_leg5 * t2033
+            + grod_vz_leg5 * t1292;
+        let t2058 = t861 + t1701;
+        let t2060 = t850 * t1120 + minus_c_cylinder_leg6 * t2058;
+        let t2066 = minus_grod_vx_leg6 * t855 - grod_vy_leg6 * t858
+            - grod_vz_leg6 * t853;
+        let t2067 = t2066 - t1704;
+        let t2070 = t2067 - joints[17] * (t1126 + t1328);
+        let t2074 = gcross_vx_leg6 * t2060 - minus_gcylinder_vx_leg6 * t2070
+            + minus_grod_vx_leg6 * t1326;
+        let t2079 = gcross_vy_leg6 * t2060 + gcylinder_vy_leg6 * t2070
+            - grod_vy_leg6 * t1326;
+        let t2084 = minus_gcross_vz_leg6 * t2060 + minus_gcylinder_vz_leg6 * t2070
+            + grod_vz_leg6 * t1326;
+        let t2096 = t1149 - t1727;
+        let t2099 = t295 * minus_rate_cross_leg1
+            - (s_cylinder_leg1 * t1877 + minus_c_cylinder_leg1 * t2096);
+        let t2102 = t241 * minus_rate_dot_cross_leg1 - minus_gcross_vx_leg1 * t2099;
+        let t2105 = gcross_vy_leg1 * t2099 - t337 * minus_rate_dot_cross_leg1;
+        let t2108 = minus_gcross_vz_leg1 * t2099
             + s_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2115 = t1182 - t1739;
-        let t2118 = t440 * minus_rate_cross_leg2
-            - (s_cylinder_leg2 * t1908 + minus_c_cylinder_leg2 * t2115);
-        let t2121 = t398 * minus_rate_dot_cross_leg2 - minus_gcross_vx_leg2 * t2118;
-        let t2124 = t469 * minus_rate_dot_cross_leg2 - minus_gcross_vy_leg2 * t2118;
-        let t2127 = minus_gcross_vz_leg2 * t2118
+        let t2120 = t1184 - t1745;
+        let t2123 = t456 * minus_rate_cross_leg2
+            - (s_cylinder_leg2 * t1914 + minus_c_cylinder_leg2 * t2120);
+        let t2125 = minus_c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t2127 = 0.9781476007338057 * t2125 - minus_gcross_vx_leg2 * t2123;
+        let t2130 = 0.20791169081775931 * t2125 - minus_gcross_vy_leg2 * t2123;
+        let t2133 = minus_gcross_vz_leg2 * t2123
             + s_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2139 = t1216 - t1757;
-        let t2142 = t580 * minus_rate_cross_leg3
-            - (s_cylinder_leg3 * t1950 + minus_c_cylinder_leg3 * t2139);
-        let t2144 = t599 * minus_gcross_vz_leg3;
-        let t2146 = gcross_vx_leg3 * t2142 - 0.30901699437494734 * t2144;
-        let t2149 = 0.9510565162951536 * t2144 - minus_gcross_vy_leg3 * t2142;
-        let t2152 = minus_gcross_vz_leg3 * t2142
+        let t2145 = t1218 - t1763;
+        let t2148 = t581 * minus_rate_cross_leg3
+            - (s_cylinder_leg3 * t1956 + minus_c_cylinder_leg3 * t2145);
+        let t2150 = minus_c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2152 = gcross_vx_leg3 * t2148 - 0.30901699437494734 * t2150;
+        let t2155 = 0.9510565162951536 * t2150 - minus_gcross_vy_leg3 * t2148;
+        let t2158 = minus_gcross_vz_leg3 * t2148
             + s_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2164 = t1250 - t1775;
-        let t2167 = t688 * minus_rate_cross_leg4
-            - (s_cylinder_leg4 * t1987 + minus_c_cylinder_leg4 * t2164);
-        let t2170 = gcross_vx_leg4 * t2167 - t668 * minus_rate_dot_cross_leg4;
-        let t2173 = t673 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t2167;
-        let t2176 = minus_gcross_vz_leg4 * t2167
+        let t2170 = t1252 - t1781;
+        let t2173 = t691 * minus_rate_cross_leg4
+            - (s_cylinder_leg4 * t1993 + minus_c_cylinder_leg4 * t2170);
+        let t2176 = gcross_vx_leg4 * t2173 - t676 * minus_rate_dot_cross_leg4;
+        let t2179 = t670 * minus_rate_dot_cross_leg4 - minus_gcross_vy_leg4 * t2173;
+        let t2182 = minus_gcross_vz_leg4 * t2173
             + s_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2188 = t1284 - t1793;
-        let t2191 = t799 * minus_rate_cross_leg5
-            - (s_cylinder_leg5 * t2024 + minus_c_cylinder_leg5 * t2188);
-        let t2193 = minus_c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2195 = gcross_vx_leg5 * t2191 - 0.6691306063588579 * t2193;
-        let t2198 = gcross_vy_leg5 * t2191 - 0.7431448254773945 * t2193;
-        let t2201 = minus_gcross_vz_leg5 * t2191
+        let t2194 = t1287 - t1799;
+        let t2197 = t773 * minus_rate_cross_leg5
+            - (s_cylinder_leg5 * t2030 + minus_c_cylinder_leg5 * t2194);
+        let t2200 = gcross_vx_leg5 * t2197 - t777 * minus_rate_dot_cross_leg5;
+        let t2203 = gcross_vy_leg5 * t2197 - t781 * minus_rate_dot_cross_leg5;
+        let t2206 = minus_gcross_vz_leg5 * t2197
             + s_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2213 = t1318 - t1811;
-        let t2216 = t893 * minus_rate_cross_leg6
-            - (s_cylinder_leg6 * t2061 + minus_c_cylinder_leg6 * t2213);
-        let t2219 = gcross_vx_leg6 * t2216 - t897 * minus_rate_dot_cross_leg6;
-        let t2222 = gcross_vy_leg6 * t2216 - t901 * minus_rate_dot_cross_leg6;
-        let t2225 = minus_gcross_vz_leg6 * t2216
+        let t2218 = t1321 - t1817;
+        let t2221 = t869 * minus_rate_cross_leg6
+            - (s_cylinder_leg6 * t2067 + minus_c_cylinder_leg6 * t2218);
+        let t2224 = gcross_vx_leg6 * t2221 - t873 * minus_rate_dot_cross_leg6;
+        let t2227 = gcross_vy_leg6 * t2221 - t877 * minus_rate_dot_cross_leg6;
+        let t2230 = minus_gcross_vz_leg6 * t2221
             + s_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2235 = t1150 + t2090;
-        let t2238 = s_cylinder_leg1 * (t1877 + t346);
-        let t2241 = t965 + t1155;
-        let t2243 = gcylinder_vx_leg1 * t2235 + minus_gcross_vx_leg1 * t2238
-            + minus_grod_vx_leg1 * t2241;
-        let t2248 = minus_grod_vy_leg1 * t2241
-            - (gcross_vy_leg1 * t2238 + minus_gcylinder_vy_leg1 * t2235);
-        let t2253 = minus_gcylinder_vz_leg1 * t2235 - minus_gcross_vz_leg1 * t2238
-            + grod_vz_leg1 * t2241;
-        let t2263 = t1184 + t2115;
-        let t2266 = s_cylinder_leg2 * (t1914 + t480);
-        let t2269 = t1003 + t1189;
-        let t2271 = gcylinder_vx_leg2 * t2263 + minus_gcross_vx_leg2 * t2266
-            + minus_grod_vx_leg2 * t2269;
-        let t2276 = gcylinder_vy_leg2 * t2263 + minus_gcross_vy_leg2 * t2266
-            + minus_grod_vy_leg2 * t2269;
-        let t2281 = minus_gcylinder_vz_leg2 * t2263 - minus_gcross_vz_leg2 * t2266
-            + grod_vz_leg2 * t2269;
-        let t2292 = t1029 - s_cylinder_leg3 * t1941;
-        let t2294 = t1218 + t2139;
-        let t2297 = t1034 + t1223;
-        let t2299 = gcross_vx_leg3 * t2292 + gcylinder_vx_leg3 * t2294
-            - grod_vx_leg3 * t2297;
-        let t2304 = gcylinder_vy_leg3 * t2294 - minus_gcross_vy_leg3 * t2292
-            + minus_grod_vy_leg3 * t2297;
-        let t2309 = minus_gcross_vz_leg3 * t2292 + minus_gcylinder_vz_leg3 * t2294
-            + grod_vz_leg3 * t2297;
-        let t2320 = t1055 - s_cylinder_leg4 * t1978;
-        let t2322 = t1252 + t2164;
-        let t2325 = t1060 + t1257;
-        let t2327 = gcross_vx_leg4 * t2320 + gcylinder_vx_leg4 * t2322
-            - grod_vx_leg4 * t2325;
-        let t2332 = gcylinder_vy_leg4 * t2322 - minus_gcross_vy_leg4 * t2320
-            + minus_grod_vy_leg4 * t2325;
-        let t2337 = minus_gcross_vz_leg4 * t2320 + minus_gcylinder_vz_leg4 * t2322
-            + grod_vz_leg4 * t2325;
-        let t2349 = t766 * t1082 - s_cylinder_leg5 * t2015;
-        let t2351 = t1286 + t2188;
-        let t2354 = t1086 + t1291;
-        let t2356 = gcross_vx_leg5 * t2349 - minus_gcylinder_vx_leg5 * t2351
-            + minus_grod_vx_leg5 * t2354;
-        let t2361 = gcross_vy_leg5 * t2349 + gcylinder_vy_leg5 * t2351
-            - grod_vy_leg5 * t2354;
-        let t2366 = minus_gcross_vz_leg5 * t2349 + minus_gcylinder_vz_leg5 * t2351
-            + grod_vz_leg5 * t2354;
-        let t2377 = s_cylinder_leg6 * (t2052 + t912);
-        let t2379 = t1320 + t2213;
-        let t2382 = t1124 + t1325;
-        let t2384 = minus_grod_vx_leg6 * t2382
-            - (gcross_vx_leg6 * t2377 + minus_gcylinder_vx_leg6 * t2379);
-        let t2389 = gcylinder_vy_leg6 * t2379 - gcross_vy_leg6 * t2377
-            - grod_vy_leg6 * t2382;
-        let t2394 = minus_gcylinder_vz_leg6 * t2379 - minus_gcross_vz_leg6 * t2377
-            + grod_vz_leg6 * t2382;
-        let minus_rate_dot_rod_leg1 = t1870 - joints[2] * t2241;
-        let grod_wx_leg1 = grod_vz_leg1 * t366 + minus_grod_vy_leg1 * t364;
-        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t364 + grod_vz_leg1 * t375;
-        let minus_rate_dot_rod_leg2 = t1907 - joints[5] * t2269;
-        let minus_grod_wx_leg2 = grod_vz_leg2 * t515 + minus_grod_vy_leg2 * t513;
-        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t513 + grod_vz_leg2 * t524;
-        let minus_rate_dot_rod_leg3 = t1949 - joints[8] * t2297;
+        let t2241 = joints[2] * t1430 + t2096;
+        let t2244 = s_cylinder_leg1 * (t1883 + t347);
+        let t2247 = t941 + t1157;
+        let t2249 = gcylinder_vx_leg1 * t2241 + minus_gcross_vx_leg1 * t2244
+            + minus_grod_vx_leg1 * t2247;
+        let t2254 = minus_grod_vy_leg1 * t2247
+            - (gcross_vy_leg1 * t2244 + minus_gcylinder_vy_leg1 * t2241);
+        let t2259 = minus_gcylinder_vz_leg1 * t2241 - minus_gcross_vz_leg1 * t2244
+            + grod_vz_leg1 * t2247;
+        let t2269 = t1186 + t2120;
+        let t2272 = s_cylinder_leg2 * (t1920 + t495);
+        let t2275 = t966 + t1191;
+        let t2277 = gcylinder_vx_leg2 * t2269 + minus_gcross_vx_leg2 * t2272
+            + minus_grod_vx_leg2 * t2275;
+        let t2282 = gcylinder_vy_leg2 * t2269 + minus_gcross_vy_leg2 * t2272
+            + minus_grod_vy_leg2 * t2275;
+        let t2287 = minus_gcylinder_vz_leg2 * t2269 - minus_gcross_vz_leg2 * t2272
+            + grod_vz_leg2 * t2275;
+        let t2298 = t1005 - s_cylinder_leg3 * t1947;
+        let t2300 = t1220 + t2145;
+        let t2303 = t1010 + t1225;
+        let t2305 = gcross_vx_leg3 * t2298 + gcylinder_vx_leg3 * t2300
+            - grod_vx_leg3 * t2303;
+        let t2310 = gcylinder_vy_leg3 * t2300 - minus_gcross_vy_leg3 * t2298
+            + minus_grod_vy_leg3 * t2303;
+        let t2315 = minus_gcross_vz_leg3 * t2298 + minus_gcylinder_vz_leg3 * t2300
+            + grod_vz_leg3 * t2303;
+        let t2326 = s_cylinder_leg4 * (t1984 + t696);
+        let t2328 = t1255 + t2170;
+        let t2331 = t1049 + t1260;
+        let t2333 = gcylinder_vx_leg4 * t2328 - gcross_vx_leg4 * t2326
+            - grod_vx_leg4 * t2331;
+        let t2338 = gcylinder_vy_leg4 * t2328 + minus_gcross_vy_leg4 * t2326
+            + minus_grod_vy_leg4 * t2331;
+        let t2343 = minus_gcylinder_vz_leg4 * t2328 - minus_gcross_vz_leg4 * t2326
+            + grod_vz_leg4 * t2331;
+        let t2354 = s_cylinder_leg5 * (t2021 + t792);
+        let t2356 = t1289 + t2194;
+        let t2359 = t1087 + t1294;
+        let t2361 = minus_grod_vx_leg5 * t2359
+            - (gcross_vx_leg5 * t2354 + minus_gcylinder_vx_leg5 * t2356);
+        let t2366 = gcylinder_vy_leg5 * t2356 - gcross_vy_leg5 * t2354
+            - grod_vy_leg5 * t2359;
+        let t2371 = minus_gcylinder_vz_leg5 * t2356 - minus_gcross_vz_leg5 * t2354
+            + grod_vz_leg5 * t2359;
+        let t2382 = s_cylinder_leg6 * (t2058 + t888);
+        let t2384 = t1323 + t2218;
+        let t2387 = t1125 + t1328;
+        let t2389 = minus_grod_vx_leg6 * t2387
+            - (gcross_vx_leg6 * t2382 + minus_gcylinder_vx_leg6 * t2384);
+        let t2394 = gcylinder_vy_leg6 * t2384 - gcross_vy_leg6 * t2382
+            - grod_vy_leg6 * t2387;
+        let t2399 = minus_gcylinder_vz_leg6 * t2384 - minus_gcross_vz_leg6 * t2382
+            + grod_vz_leg6 * t2387;
+        let minus_rate_dot_rod_leg1 = t1876 - joints[2] * t2247;
+        let grod_wx_leg1 = grod_vz_leg1 * t382 + minus_grod_vy_leg1 * t380;
+        let minus_grod_wy_leg1 = minus_grod_vx_leg1 * t380 + grod_vz_leg1 * t391;
+        let minus_rate_dot_rod_leg2 = t1913 - joints[5] * t2275;
+        let grod_wx_leg2 = grod_vz_leg2 * t516 - minus_grod_vy_leg2 * t513;
+        let minus_minus_grod_wy_leg2 = minus_grod_vx_leg2 * t513 + grod_vz_leg2 * t525;
+        let minus_rate_dot_rod_leg3 = t1955 - joints[8] * t2303;
         let grod_wx_leg3 = grod_vz_leg3 * t254 + minus_grod_vy_leg3 * t250;
         let grod_wy_leg3 = grod_vx_leg3 * t250 - grod_vz_leg3 * t272;
-        let minus_rate_dot_rod_leg4 = t1986 - joints[11] * t2325;
-        let grod_wx_leg4 = grod_vz_leg4 * t407 + minus_grod_vy_leg4 * t405;
-        let grod_wy_leg4 = grod_vx_leg4 * t405 - grod_vz_leg4 * t419;
-        let minus_rate_dot_rod_leg5 = t2023 - joints[14] * t2354;
+        let minus_rate_dot_rod_leg4 = t1992 - joints[11] * t2331;
+        let grod_wx_leg4 = grod_vz_leg4 * t423 + minus_grod_vy_leg4 * t421;
+        let grod_wy_leg4 = grod_vx_leg4 * t421 - grod_vz_leg4 * t435;
+        let minus_rate_dot_rod_leg5 = t2029 - joints[14] * t2359;
         let grod_wx_leg5 = grod_vy_leg5 * t263 - grod_vz_leg5 * t259;
         let grod_wy_leg5 = minus_grod_vx_leg5 * t263 + grod_vz_leg5 * t279;
-        let minus_rate_dot_rod_leg6 = t2060 - joints[17] * t2382;
-        let grod_wx_leg6 = grod_vz_leg6 * t412 - grod_vy_leg6 * t410;
-        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t410 + grod_vz_leg6 * t423;
+        let minus_rate_dot_rod_leg6 = t2066 - joints[17] * t2387;
+        let grod_wx_leg6 = grod_vz_leg6 * t428 - grod_vy_leg6 * t426;
+        let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t426 + grod_vz_leg6 * t439;
         Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
-                acceleration[0], t301 + minus_gcross_vx_leg1 * t348,
-                t446 - minus_gcross_vx_leg2 * t500, gcross_vx_leg3 * t608 + t612,
-                gcross_vx_leg4 * t718 + t722, gcross_vx_leg5 * t826 - t830,
-                -(gcross_vx_leg6 * t914 + t922),
-                gcylinder_vx_leg1 * t967 - minus_gcross_vx_leg1 * t985,
-                gcylinder_vx_leg2 * t1005 - minus_gcross_vx_leg2 * t1010,
-                gcross_vx_leg3 * t1032 + gcylinder_vx_leg3 * t1036,
-                gcross_vx_leg4 * t1058 + gcylinder_vx_leg4 * t1062,
-                gcross_vx_leg5 * t1084 - minus_gcylinder_vx_leg5 * t1088,
-                gcross_vx_leg6 * t1122 - minus_gcylinder_vx_leg6 * t1126,
-                -(minus_gcross_vx_leg1 * t1158 + gcylinder_vx_leg1 * t1160),
-                -(minus_gcross_vx_leg2 * t1192 + gcylinder_vx_leg2 * t1194),
-                gcross_vx_leg3 * t1226 - gcylinder_vx_leg3 * t1228,
-                gcross_vx_leg4 * t1260 - gcylinder_vx_leg4 * t1262,
-                gcross_vx_leg5 * t1294 + minus_gcylinder_vx_leg5 * t1296,
-                gcross_vx_leg6 * t1328 + minus_gcylinder_vx_leg6 * t1330,
-                minus_gcross_vx_leg1 * t1348 - t301, minus_gcross_vx_leg2 * t499 - t446,
-                -(gcross_vx_leg3 * t607 + t612), -(gcross_vx_leg4 * t717 + t722),
-                t830 - gcross_vx_leg5 * t825, t922 - gcross_vx_leg6 * t1409,
-                gcylinder_vx_leg1 * t980 - minus_gcross_vx_leg1 * t1426,
-                gcylinder_vx_leg2 * t496 - minus_gcross_vx_leg2 * t1448,
-                gcross_vx_leg3 * t1469 + gcylinder_vx_leg3 * t604,
-                gcross_vx_leg4 * t1491 + gcylinder_vx_leg4 * t714,
-                gcross_vx_leg5 * t1513 - minus_gcylinder_vx_leg5 * t822,
-                gcross_vx_leg6 * t1535 - minus_gcylinder_vx_leg6 * t1117,
+                acceleration[0], t301 - minus_gcross_vx_leg1 * t367,
+                t462 + minus_gcross_vx_leg2 * t497, gcross_vx_leg3 * t609 + t613,
+                t706 - gcross_vx_leg4 * t698, -(gcross_vx_leg5 * t794 + t802),
+                -(gcross_vx_leg6 * t890 + t898),
+                gcylinder_vx_leg1 * t943 - minus_gcross_vx_leg1 * t948,
+                gcylinder_vx_leg2 * t968 - minus_gcross_vx_leg2 * t986,
+                gcross_vx_leg3 * t1008 + gcylinder_vx_leg3 * t1012,
+                gcross_vx_leg4 * t1047 + gcylinder_vx_leg4 * t1051,
+                gcross_vx_leg5 * t1085 - minus_gcylinder_vx_leg5 * t1089,
+                gcross_vx_leg6 * t1123 - minus_gcylinder_vx_leg6 * t1127,
+                -(minus_gcross_vx_leg1 * t1160 + gcylinder_vx_leg1 * t1162),
+                -(minus_gcross_vx_leg2 * t1194 + gcylinder_vx_leg2 * t1196),
+                gcross_vx_leg3 * t1228 - gcylinder_vx_leg3 * t1230,
+                gcross_vx_leg4 * t1263 - gcylinder_vx_leg4 * t1265,
+                gcross_vx_leg5 * t1297 + minus_gcylinder_vx_leg5 * t1299,
+                gcross_vx_leg6 * t1331 + minus_gcylinder_vx_leg6 * t1333,
+                minus_gcross_vx_leg1 * t366 - t301, minus_gcross_vx_leg2 * t1363 - t462,
+                -(gcross_vx_leg3 * t608 + t613), -(gcross_vx_leg4 * t1388 + t706),
+                t802 - gcross_vx_leg5 * t1401, t898 - gcross_vx_leg6 * t1414,
+                gcylinder_vx_leg1 * t363 - minus_gcross_vx_leg1 * t1432,
+                gcylinder_vx_leg2 * t981 - minus_gcross_vx_leg2 * t1454,
+                gcross_vx_leg3 * t1475 + gcylinder_vx_leg3 * t605,
+                gcross_vx_leg4 * t1497 + gcylinder_vx_leg4 * t1042,
+                gcross_vx_leg5 * t1519 - minus_gcylinder_vx_leg5 * t1080,
+                gcross_vx_leg6 * t1541 - minus_gcylinder_vx_leg6 * t1118,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t1591 + gcylinder_vx_leg1 * t1593),
-                -(minus_gcross_vx_leg2 * t1612 + gcylinder_vx_leg2 * t1614),
-                gcross_vx_leg3 * t1633 - gcylinder_vx_leg3 * t1635,
-                gcross_vx_leg4 * t1654 - gcylinder_vx_leg4 * t1656,
-                gcross_vx_leg5 * t1675 + minus_gcylinder_vx_leg5 * t1677,
-                gcross_vx_leg6 * t1696 + minus_gcylinder_vx_leg6 * t1698,
-                -(minus_grod_vx_leg1 * t1716), -(minus_grod_vx_leg2 * t1734), grod_vx_leg3 * t1752,
-                grod_vx_leg4 * t1770, -(minus_grod_vx_leg5 * t1788), -(minus_grod_vx_leg6 * t1806),
-                -(minus_gcross_vx_leg1 * t1824), -(minus_gcross_vx_leg2 * t1831),
-                gcross_vx_leg3 * t1838, gcross_vx_leg4 * t1845, gcross_vx_leg5 * t1852,
-                gcross_vx_leg6 * t1859, t1883, t1920, t1957, t1994, t2031, t2068, t2097, t2121,
-                t2146, t2170, t2195, t2219, t2243, t2271, t2299, t2327, t2356, t2384,
+                -(minus_gcross_vx_leg1 * t1597 + gcylinder_vx_leg1 * t1599),
+                -(minus_gcross_vx_leg2 * t1618 + gcylinder_vx_leg2 * t1620),
+                gcross_vx_leg3 * t1639 - gcylinder_vx_leg3 * t1641,
+                gcross_vx_leg4 * t1660 - gcylinder_vx_leg4 * t1662,
+                gcross_vx_leg5 * t1681 + minus_gcylinder_vx_leg5 * t1683,
+                gcross_vx_leg6 * t1702 + minus_gcylinder_vx_leg6 * t1704,
+                -(minus_grod_vx_leg1 * t1722), -(minus_grod_vx_leg2 * t1740), grod_vx_leg3 * t1758,
+                grod_vx_leg4 * t1776, -(minus_grod_vx_leg5 * t1794), -(minus_grod_vx_leg6 * t1812),
+                -(minus_gcross_vx_leg1 * t1830), -(minus_gcross_vx_leg2 * t1837),
+                gcross_vx_leg3 * t1844, gcross_vx_leg4 * t1851, gcross_vx_leg5 * t1858,
+                gcross_vx_leg6 * t1865, t1889, t1926, t1963, t2000, t2037, t2074, t2102, t2127,
+                t2152, t2176, t2200, t2224, t2249, t2277, t2305, t2333, t2361, t2389,
                 minus_grod_vx_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
                 -(grod_vx_leg3 * minus_rate_dot_rod_leg3),
@@ -15519,50 +15521,49 @@ impl Hexapod {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t170, t198, t25 * t161 - t29 * t164 + t34 * t168,
-                acceleration[1], -(gcross_vy_leg1 * t348 + t356),
-                t504 - minus_gcross_vy_leg2 * t500, t615 - minus_gcross_vy_leg3 * t608,
-                t725 - minus_gcross_vy_leg4 * t718, gcross_vy_leg5 * t826 + t835,
-                t930 - gcross_vy_leg6 * t914,
-                gcross_vy_leg1 * t985 - minus_gcylinder_vy_leg1 * t967,
-                gcylinder_vy_leg2 * t1005 - minus_gcross_vy_leg2 * t1010,
-                gcylinder_vy_leg3 * t1036 - minus_gcross_vy_leg3 * t1032,
-                gcylinder_vy_leg4 * t1062 - minus_gcross_vy_leg4 * t1058,
-                gcross_vy_leg5 * t1084 + gcylinder_vy_leg5 * t1088,
-                gcross_vy_leg6 * t1122 + gcylinder_vy_leg6 * t1126,
-                gcross_vy_leg1 * t1158 + minus_gcylinder_vy_leg1 * t1160,
-                -(minus_gcross_vy_leg2 * t1192 + gcylinder_vy_leg2 * t1194),
-                -(minus_gcross_vy_leg3 * t1226 + gcylinder_vy_leg3 * t1228),
-                -(minus_gcross_vy_leg4 * t1260 + gcylinder_vy_leg4 * t1262),
-                gcross_vy_leg5 * t1294 - gcylinder_vy_leg5 * t1296,
-                gcross_vy_leg6 * t1328 - gcylinder_vy_leg6 * t1330, t356 - gcross_vy_leg1 * t1348,
-                minus_gcross_vy_leg2 * t499 - t504, minus_gcross_vy_leg3 * t607 - t615,
-                minus_gcross_vy_leg4 * t717 - t725, -(gcross_vy_leg5 * t825 + t835),
-                -(gcross_vy_leg6 * t1409 + t930),
-                gcross_vy_leg1 * t1426 - minus_gcylinder_vy_leg1 * t980,
-                gcylinder_vy_leg2 * t496 - minus_gcross_vy_leg2 * t1448,
-                gcylinder_vy_leg3 * t604 - minus_gcross_vy_leg3 * t1469,
-                gcylinder_vy_leg4 * t714 - minus_gcross_vy_leg4 * t1491,
-                gcross_vy_leg5 * t1513 + gcylinder_vy_leg5 * t822,
-                gcross_vy_leg6 * t1535 + gcylinder_vy_leg6 * t1117,
+                acceleration[1], gcross_vy_leg1 * t367 - t373, t503 + minus_gcross_vy_leg2 * t497,
+                t616 - minus_gcross_vy_leg3 * t609, t712 + minus_gcross_vy_leg4 * t698,
+                t810 - gcross_vy_leg5 * t794, t906 - gcross_vy_leg6 * t890,
+                gcross_vy_leg1 * t948 - minus_gcylinder_vy_leg1 * t943,
+                gcylinder_vy_leg2 * t968 - minus_gcross_vy_leg2 * t986,
+                gcylinder_vy_leg3 * t1012 - minus_gcross_vy_leg3 * t1008,
+                gcylinder_vy_leg4 * t1051 - minus_gcross_vy_leg4 * t1047,
+                gcross_vy_leg5 * t1085 + gcylinder_vy_leg5 * t1089,
+                gcross_vy_leg6 * t1123 + gcylinder_vy_leg6 * t1127,
+                gcross_vy_leg1 * t1160 + minus_gcylinder_vy_leg1 * t1162,
+                -(minus_gcross_vy_leg2 * t1194 + gcylinder_vy_leg2 * t1196),
+                -(minus_gcross_vy_leg3 * t1228 + gcylinder_vy_leg3 * t1230),
+                -(minus_gcross_vy_leg4 * t1263 + gcylinder_vy_leg4 * t1265),
+                gcross_vy_leg5 * t1297 - gcylinder_vy_leg5 * t1299,
+                gcross_vy_leg6 * t1331 - gcylinder_vy_leg6 * t1333, t373 - gcross_vy_leg1 * t366,
+                minus_gcross_vy_leg2 * t1363 - t503, minus_gcross_vy_leg3 * t608 - t616,
+                minus_gcross_vy_leg4 * t1388 - t712, -(gcross_vy_leg5 * t1401 + t810),
+                -(gcross_vy_leg6 * t1414 + t906),
+                gcross_vy_leg1 * t1432 - minus_gcylinder_vy_leg1 * t363,
+                gcylinder_vy_leg2 * t981 - minus_gcross_vy_leg2 * t1454,
+                gcylinder_vy_leg3 * t605 - minus_gcross_vy_leg3 * t1475,
+                gcylinder_vy_leg4 * t1042 - minus_gcross_vy_leg4 * t1497,
+                gcross_vy_leg5 * t1519 + gcylinder_vy_leg5 * t1080,
+                gcross_vy_leg6 * t1541 + gcylinder_vy_leg6 * t1118,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 gcylinder_vy_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t1591 + minus_gcylinder_vy_leg1 * t1593,
-                -(minus_gcross_vy_leg2 * t1612 + gcylinder_vy_leg2 * t1614),
-                -(minus_gcross_vy_leg3 * t1633 + gcylinder_vy_leg3 * t1635),
-                -(minus_gcross_vy_leg4 * t1654 + gcylinder_vy_leg4 * t1656),
-                gcross_vy_leg5 * t1675 - gcylinder_vy_leg5 * t1677,
-                gcross_vy_leg6 * t1696 - gcylinder_vy_leg6 * t1698, -(minus_grod_vy_leg1 * t1716),
-                -(minus_grod_vy_leg2 * t1734), -(minus_grod_vy_leg3 * t1752),
-                -(minus_grod_vy_leg4 * t1770), grod_vy_leg5 * t1788, grod_vy_leg6 * t1806,
-                gcross_vy_leg1 * t1824, -(minus_gcross_vy_leg2 * t1831),
-                -(minus_gcross_vy_leg3 * t1838), -(minus_gcross_vy_leg4 * t1845),
-                gcross_vy_leg5 * t1852, gcross_vy_leg6 * t1859, t1888, t1925, t1962, t1999, t2036,
-                t2073, t2100, t2124, t2149, t2173, t2198, t2222, t2248, t2276, t2304, t2332, t2361,
-                t2389, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
+                gcross_vy_leg1 * t1597 + minus_gcylinder_vy_leg1 * t1599,
+                -(minus_gcross_vy_leg2 * t1618 + gcylinder_vy_leg2 * t1620),
+                -(minus_gcross_vy_leg3 * t1639 + gcylinder_vy_leg3 * t1641),
+                -(minus_gcross_vy_leg4 * t1660 + gcylinder_vy_leg4 * t1662),
+                gcross_vy_leg5 * t1681 - gcylinder_vy_leg5 * t1683,
+                gcross_vy_leg6 * t1702 - gcylinder_vy_leg6 * t1704, -(minus_grod_vy_leg1 * t1722),
+                -(minus_grod_vy_leg2 * t1740), -(minus_grod_vy_leg3 * t1758),
+                -(minus_grod_vy_leg4 * t1776), grod_vy_leg5 * t1794, grod_vy_leg6 * t1812,
+                gcross_vy_leg1 * t1830, -(minus_gcross_vy_leg2 * t1837),
+                -(minus_gcross_vy_leg3 * t1844), -(minus_gcross_vy_leg4 * t1851),
+                gcross_vy_leg5 * t1858, gcross_vy_leg6 * t1865, t1894, t1931, t1968, t2005, t2042,
+                t2079, t2105, t2130, t2155, t2179, t2203, t2227, t2254, t2282, t2310, t2338, t2366,
+                t2394, minus_grod_vy_leg1 * minus_rate_dot_rod_leg1,
                 minus_grod_vy_leg2 * minus_rate_dot_rod_leg2,
                 minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
                 minus_grod_vy_leg4 * minus_rate_dot_rod_leg4,
@@ -15582,53 +15583,53 @@ impl Hexapod {
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t178, t203, t25 * t171 + t29 * t173 - t34 * t176,
-                t179, -(t362 - minus_gcross_vz_leg1 * t348), -(minus_gcross_vz_leg2 * t500 + t511),
-                -(minus_gcross_vz_leg3 * t608 + t622), -(minus_gcross_vz_leg4 * t718 + t732),
-                -(minus_gcross_vz_leg5 * t826 + t840), -(t936 - minus_gcross_vz_leg6 * t914),
-                -(minus_gcross_vz_leg1 * t985 + minus_gcylinder_vz_leg1 * t967),
-                -(minus_gcross_vz_leg2 * t1010 + minus_gcylinder_vz_leg2 * t1005),
-                -(minus_gcross_vz_leg3 * t1032 + minus_gcylinder_vz_leg3 * t1036),
-                -(minus_gcross_vz_leg4 * t1058 + minus_gcylinder_vz_leg4 * t1062),
-                -(minus_gcross_vz_leg5 * t1084 + minus_gcylinder_vz_leg5 * t1088),
-                -(minus_gcross_vz_leg6 * t1122 + minus_gcylinder_vz_leg6 * t1126),
-                minus_gcylinder_vz_leg1 * t1160 - minus_gcross_vz_leg1 * t1158,
-                minus_gcylinder_vz_leg2 * t1194 - minus_gcross_vz_leg2 * t1192,
-                minus_gcylinder_vz_leg3 * t1228 - minus_gcross_vz_leg3 * t1226,
-                minus_gcylinder_vz_leg4 * t1262 - minus_gcross_vz_leg4 * t1260,
-                minus_gcylinder_vz_leg5 * t1296 - minus_gcross_vz_leg5 * t1294,
-                minus_gcylinder_vz_leg6 * t1330 - minus_gcross_vz_leg6 * t1328,
-                minus_gcross_vz_leg1 * t1348 + t362, minus_gcross_vz_leg2 * t499 + t511,
-                minus_gcross_vz_leg3 * t607 + t622, minus_gcross_vz_leg4 * t717 + t732,
-                minus_gcross_vz_leg5 * t825 + t840, minus_gcross_vz_leg6 * t1409 + t936,
-                -(minus_gcross_vz_leg1 * t1426 + minus_gcylinder_vz_leg1 * t980),
-                -(minus_gcross_vz_leg2 * t1448 + minus_gcylinder_vz_leg2 * t496),
-                -(minus_gcross_vz_leg3 * t1469 + minus_gcylinder_vz_leg3 * t604),
-                -(minus_gcross_vz_leg4 * t1491 + minus_gcylinder_vz_leg4 * t714),
-                -(minus_gcross_vz_leg5 * t1513 + minus_gcylinder_vz_leg5 * t822),
-                -(minus_gcross_vz_leg6 * t1535 + minus_gcylinder_vz_leg6 * t1117),
+                t179, -(minus_gcross_vz_leg1 * t367 + t378), -(t511 - minus_gcross_vz_leg2 * t497),
+                -(minus_gcross_vz_leg3 * t609 + t623), -(t720 - minus_gcross_vz_leg4 * t698),
+                -(t816 - minus_gcross_vz_leg5 * t794), -(t912 - minus_gcross_vz_leg6 * t890),
+                -(minus_gcross_vz_leg1 * t948 + minus_gcylinder_vz_leg1 * t943),
+                -(minus_gcross_vz_leg2 * t986 + minus_gcylinder_vz_leg2 * t968),
+                -(minus_gcross_vz_leg3 * t1008 + minus_gcylinder_vz_leg3 * t1012),
+                -(minus_gcross_vz_leg4 * t1047 + minus_gcylinder_vz_leg4 * t1051),
+                -(minus_gcross_vz_leg5 * t1085 + minus_gcylinder_vz_leg5 * t1089),
+                -(minus_gcross_vz_leg6 * t1123 + minus_gcylinder_vz_leg6 * t1127),
+                minus_gcylinder_vz_leg1 * t1162 - minus_gcross_vz_leg1 * t1160,
+                minus_gcylinder_vz_leg2 * t1196 - minus_gcross_vz_leg2 * t1194,
+                minus_gcylinder_vz_leg3 * t1230 - minus_gcross_vz_leg3 * t1228,
+                minus_gcylinder_vz_leg4 * t1265 - minus_gcross_vz_leg4 * t1263,
+                minus_gcylinder_vz_leg5 * t1299 - minus_gcross_vz_leg5 * t1297,
+                minus_gcylinder_vz_leg6 * t1333 - minus_gcross_vz_leg6 * t1331,
+                minus_gcross_vz_leg1 * t366 + t378, minus_gcross_vz_leg2 * t1363 + t511,
+                minus_gcross_vz_leg3 * t608 + t623, minus_gcross_vz_leg4 * t1388 + t720,
+                minus_gcross_vz_leg5 * t1401 + t816, minus_gcross_vz_leg6 * t1414 + t912,
+                -(minus_gcross_vz_leg1 * t1432 + minus_gcylinder_vz_leg1 * t363),
+                -(minus_gcross_vz_leg2 * t1454 + minus_gcylinder_vz_leg2 * t981),
+                -(minus_gcross_vz_leg3 * t1475 + minus_gcylinder_vz_leg3 * t605),
+                -(minus_gcross_vz_leg4 * t1497 + minus_gcylinder_vz_leg4 * t1042),
+                -(minus_gcross_vz_leg5 * t1519 + minus_gcylinder_vz_leg5 * t1080),
+                -(minus_gcross_vz_leg6 * t1541 + minus_gcylinder_vz_leg6 * t1118),
                 -(minus_gcylinder_vz_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                minus_gcylinder_vz_leg1 * t1593 - minus_gcross_vz_leg1 * t1591,
-                minus_gcylinder_vz_leg2 * t1614 - minus_gcross_vz_leg2 * t1612,
-                minus_gcylinder_vz_leg3 * t1635 - minus_gcross_vz_leg3 * t1633,
-                minus_gcylinder_vz_leg4 * t1656 - minus_gcross_vz_leg4 * t1654,
-                minus_gcylinder_vz_leg5 * t1677 - minus_gcross_vz_leg5 * t1675,
-                minus_gcylinder_vz_leg6 * t1698 - minus_gcross_vz_leg6 * t1696,
-                -(minus_gcross_vz_leg1 * t1719 + minus_gcylinder_vz_leg1 * t1721),
-                -(minus_gcross_vz_leg2 * t1737 + minus_gcylinder_vz_leg2 * t1739),
-                -(minus_gcross_vz_leg3 * t1755 + minus_gcylinder_vz_leg3 * t1757),
-                -(minus_gcross_vz_leg4 * t1773 + minus_gcylinder_vz_leg4 * t1775),
-                -(minus_gcross_vz_leg5 * t1791 + minus_gcylinder_vz_leg5 * t1793),
-                -(minus_gcross_vz_leg6 * t1809 + minus_gcylinder_vz_leg6 * t1811),
-                -(minus_gcross_vz_leg1 * t1824), -(minus_gcross_vz_leg2 * t1831),
-                -(minus_gcross_vz_leg3 * t1838), -(minus_gcross_vz_leg4 * t1845),
-                -(minus_gcross_vz_leg5 * t1852), -(minus_gcross_vz_leg6 * t1859), -t1893, -t1930,
-                -t1967, -t2004, -t2041, -t2078, -t2103, -t2127, -t2152, -t2176, -t2201, -t2225,
-                -t2253, -t2281, -t2309, -t2337, -t2366, -t2394,
+                minus_gcylinder_vz_leg1 * t1599 - minus_gcross_vz_leg1 * t1597,
+                minus_gcylinder_vz_leg2 * t1620 - minus_gcross_vz_leg2 * t1618,
+                minus_gcylinder_vz_leg3 * t1641 - minus_gcross_vz_leg3 * t1639,
+                minus_gcylinder_vz_leg4 * t1662 - minus_gcross_vz_leg4 * t1660,
+                minus_gcylinder_vz_leg5 * t1683 - minus_gcross_vz_leg5 * t1681,
+                minus_gcylinder_vz_leg6 * t1704 - minus_gcross_vz_leg6 * t1702,
+                -(minus_gcross_vz_leg1 * t1725 + minus_gcylinder_vz_leg1 * t1727),
+                -(minus_gcross_vz_leg2 * t1743 + minus_gcylinder_vz_leg2 * t1745),
+                -(minus_gcross_vz_leg3 * t1761 + minus_gcylinder_vz_leg3 * t1763),
+                -(minus_gcross_vz_leg4 * t1779 + minus_gcylinder_vz_leg4 * t1781),
+                -(minus_gcross_vz_leg5 * t1797 + minus_gcylinder_vz_leg5 * t1799),
+                -(minus_gcross_vz_leg6 * t1815 + minus_gcylinder_vz_leg6 * t1817),
+                -(minus_gcross_vz_leg1 * t1830), -(minus_gcross_vz_leg2 * t1837),
+                -(minus_gcross_vz_leg3 * t1844), -(minus_gcross_vz_leg4 * t1851),
+                -(minus_gcross_vz_leg5 * t1858), -(minus_gcross_vz_leg6 * t1865), -t1899, -t1936,
+                -t1973, -t2010, -t2047, -t2084, -t2108, -t2133, -t2158, -t2182, -t2206, -t2230,
+                -t2259, -t2287, -t2315, -t2343, -t2371, -t2399,
                 -(grod_vz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_vz_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_vz_leg3 * minus_rate_dot_rod_leg3),
@@ -15651,135 +15652,134 @@ impl Hexapod {
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
                 t5 * t122 + t19 * t124 + t25 * t127, t111 - t38 + t25 * t90,
                 t10 * t179 - t15 * acceleration[1], t41 * t179 - t44 * acceleration[1],
-                t29 * t179 - t34 * acceleration[1], 0.0, t369 + minus_gcross_wx_leg1 * t348,
-                gcross_wx_leg2 * t500 + t522, gcross_wx_leg3 * t608 - t631,
-                gcross_wx_leg4 * t718 - t741, gcross_wx_leg5 * t826 + t849,
-                -(t945 - minus_gcross_wx_leg6 * t914),
-                gcylinder_wx_leg1 * t967 - minus_gcross_wx_leg1 * t985,
-                gcross_wx_leg2 * t1010 + minus_minus_gcylinder_wx_leg2 * t1005,
-                gcross_wx_leg3 * t1032 - minus_gcylinder_wx_leg3 * t1036,
-                gcross_wx_leg4 * t1058 - minus_gcylinder_wx_leg4 * t1062,
-                gcross_wx_leg5 * t1084 + gcylinder_wx_leg5 * t1088,
-                -(minus_gcross_wx_leg6 * t1122 + minus_gcylinder_wx_leg6 * t1126),
-                -(minus_gcross_wx_leg1 * t1158 + gcylinder_wx_leg1 * t1160),
-                gcross_wx_leg2 * t1192 - minus_minus_gcylinder_wx_leg2 * t1194,
-                gcross_wx_leg3 * t1226 + minus_gcylinder_wx_leg3 * t1228,
-                gcross_wx_leg4 * t1260 + minus_gcylinder_wx_leg4 * t1262,
-                gcross_wx_leg5 * t1294 - gcylinder_wx_leg5 * t1296,
-                minus_gcylinder_wx_leg6 * t1330 - minus_gcross_wx_leg6 * t1328,
-                minus_gcross_wx_leg1 * t1348 - t369, -(t522 + gcross_wx_leg2 * t499),
-                t631 - gcross_wx_leg3 * t607, t741 - gcross_wx_leg4 * t717,
-                -(gcross_wx_leg5 * t825 + t849), minus_gcross_wx_leg6 * t1409 + t945,
-                gcylinder_wx_leg1 * t980 - minus_gcross_wx_leg1 * t1426,
-                gcross_wx_leg2 * t1448 + minus_minus_gcylinder_wx_leg2 * t496,
-                gcross_wx_leg3 * t1469 - minus_gcylinder_wx_leg3 * t604,
-                gcross_wx_leg4 * t1491 - minus_gcylinder_wx_leg4 * t714,
-                gcross_wx_leg5 * t1513 + gcylinder_wx_leg5 * t822,
-                -(minus_gcross_wx_leg6 * t1535 + minus_gcylinder_wx_leg6 * t1117),
+                t29 * t179 - t34 * acceleration[1], 0.0, t385 - minus_gcross_wx_leg1 * t367,
+                minus_gcross_wx_leg2 * t497 - t523, gcross_wx_leg3 * t609 - t632,
+                -(gcross_wx_leg4 * t698 + t729), t825 - gcross_wx_leg5 * t794,
+                -(t921 - minus_gcross_wx_leg6 * t890),
+                gcylinder_wx_leg1 * t943 - minus_gcross_wx_leg1 * t948,
+                -(minus_gcross_wx_leg2 * t986 + minus_gcylinder_wx_leg2 * t968),
+                gcross_wx_leg3 * t1008 - minus_gcylinder_wx_leg3 * t1012,
+                gcross_wx_leg4 * t1047 - minus_gcylinder_wx_leg4 * t1051,
+                gcross_wx_leg5 * t1085 + gcylinder_wx_leg5 * t1089,
+                -(minus_gcross_wx_leg6 * t1123 + minus_gcylinder_wx_leg6 * t1127),
+                -(minus_gcross_wx_leg1 * t1160 + gcylinder_wx_leg1 * t1162),
+                minus_gcylinder_wx_leg2 * t1196 - minus_gcross_wx_leg2 * t1194,
+                gcross_wx_leg3 * t1228 + minus_gcylinder_wx_leg3 * t1230,
+                gcross_wx_leg4 * t1263 + minus_gcylinder_wx_leg4 * t1265,
+                gcross_wx_leg5 * t1297 - gcylinder_wx_leg5 * t1299,
+                minus_gcylinder_wx_leg6 * t1333 - minus_gcross_wx_leg6 * t1331,
+                minus_gcross_wx_leg1 * t366 - t385, t523 + minus_gcross_wx_leg2 * t1363,
+                t632 - gcross_wx_leg3 * t608, t729 - gcross_wx_leg4 * t1388,
+                -(gcross_wx_leg5 * t1401 + t825), minus_gcross_wx_leg6 * t1414 + t921,
+                gcylinder_wx_leg1 * t363 - minus_gcross_wx_leg1 * t1432,
+                -(minus_gcross_wx_leg2 * t1454 + minus_gcylinder_wx_leg2 * t981),
+                gcross_wx_leg3 * t1475 - minus_gcylinder_wx_leg3 * t605,
+                gcross_wx_leg4 * t1497 - minus_gcylinder_wx_leg4 * t1042,
+                gcross_wx_leg5 * t1519 + gcylinder_wx_leg5 * t1080,
+                -(minus_gcross_wx_leg6 * t1541 + minus_gcylinder_wx_leg6 * t1118),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
-                minus_minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
+                -(minus_gcylinder_wx_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_wx_leg1 * t1591 + gcylinder_wx_leg1 * t1593),
-                gcross_wx_leg2 * t1612 - minus_minus_gcylinder_wx_leg2 * t1614,
-                gcross_wx_leg3 * t1633 + minus_gcylinder_wx_leg3 * t1635,
-                gcross_wx_leg4 * t1654 + minus_gcylinder_wx_leg4 * t1656,
-                gcross_wx_leg5 * t1675 - gcylinder_wx_leg5 * t1677,
-                minus_gcylinder_wx_leg6 * t1698 - minus_gcross_wx_leg6 * t1696,
-                gcylinder_wx_leg1 * t1721 - minus_gcross_wx_leg1 * t1719,
-                gcross_wx_leg2 * t1737 + minus_minus_gcylinder_wx_leg2 * t1739,
-                gcross_wx_leg3 * t1755 - minus_gcylinder_wx_leg3 * t1757,
-                gcross_wx_leg4 * t1773 - minus_gcylinder_wx_leg4 * t1775,
-                gcross_wx_leg5 * t1791 + gcylinder_wx_leg5 * t1793,
-                -(minus_gcross_wx_leg6 * t1809 + minus_gcylinder_wx_leg6 * t1811),
-                -(minus_gcross_wx_leg1 * t1824), gcross_wx_leg2 * t1831, gcross_wx_leg3 * t1838,
-                gcross_wx_leg4 * t1845, gcross_wx_leg5 * t1852, -(minus_gcross_wx_leg6 * t1859),
-                -(t366 * t1893 + t364 * t1888), t515 * t1930 + t513 * t1925,
-                -(t254 * t1967 + t250 * t1962), -(t407 * t2004 + t405 * t1999),
-                t259 * t2041 + t263 * t2036, -(t412 * t2078 + t410 * t2073),
-                -(t366 * t2103 + t364 * t2100), t515 * t2127 + t513 * t2124,
-                -(t254 * t2152 + t250 * t2149), -(t407 * t2176 + t405 * t2173),
-                t259 * t2201 + t263 * t2198, -(t412 * t2225 + t410 * t2222),
-                -(t366 * t2253 + t364 * t2248), t515 * t2281 + t513 * t2276,
-                -(t254 * t2309 + t250 * t2304), -(t407 * t2337 + t405 * t2332),
-                t259 * t2366 + t263 * t2361, -(t412 * t2394 + t410 * t2389),
-                -(grod_wx_leg1 * minus_rate_dot_rod_leg1),
-                minus_grod_wx_leg2 * minus_rate_dot_rod_leg2,
+                -(minus_gcross_wx_leg1 * t1597 + gcylinder_wx_leg1 * t1599),
+                minus_gcylinder_wx_leg2 * t1620 - minus_gcross_wx_leg2 * t1618,
+                gcross_wx_leg3 * t1639 + minus_gcylinder_wx_leg3 * t1641,
+                gcross_wx_leg4 * t1660 + minus_gcylinder_wx_leg4 * t1662,
+                gcross_wx_leg5 * t1681 - gcylinder_wx_leg5 * t1683,
+                minus_gcylinder_wx_leg6 * t1704 - minus_gcross_wx_leg6 * t1702,
+                gcylinder_wx_leg1 * t1727 - minus_gcross_wx_leg1 * t1725,
+                -(minus_gcross_wx_leg2 * t1743 + minus_gcylinder_wx_leg2 * t1745),
+                gcross_wx_leg3 * t1761 - minus_gcylinder_wx_leg3 * t1763,
+                gcross_wx_leg4 * t1779 - minus_gcylinder_wx_leg4 * t1781,
+                gcross_wx_leg5 * t1797 + gcylinder_wx_leg5 * t1799,
+                -(minus_gcross_wx_leg6 * t1815 + minus_gcylinder_wx_leg6 * t1817),
+                -(minus_gcross_wx_leg1 * t1830), -(minus_gcross_wx_leg2 * t1837),
+                gcross_wx_leg3 * t1844, gcross_wx_leg4 * t1851, gcross_wx_leg5 * t1858,
+                -(minus_gcross_wx_leg6 * t1865), -(t382 * t1899 + t380 * t1894),
+                -(t516 * t1936 - t513 * t1931), -(t254 * t1973 + t250 * t1968),
+                -(t423 * t2010 + t421 * t2005), t259 * t2047 + t263 * t2042,
+                -(t428 * t2084 + t426 * t2079), -(t382 * t2108 + t380 * t2105),
+                -(t516 * t2133 - t513 * t2130), -(t254 * t2158 + t250 * t2155),
+                -(t423 * t2182 + t421 * t2179), t259 * t2206 + t263 * t2203,
+                -(t428 * t2230 + t426 * t2227), -(t382 * t2259 + t380 * t2254),
+                -(t516 * t2287 - t513 * t2282), -(t254 * t2315 + t250 * t2310),
+                -(t423 * t2343 + t421 * t2338), t259 * t2371 + t263 * t2366,
+                -(t428 * t2399 + t426 * t2394), -(grod_wx_leg1 * minus_rate_dot_rod_leg1),
+                -(grod_wx_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wx_leg3 * minus_rate_dot_rod_leg3),
                 -(grod_wx_leg4 * minus_rate_dot_rod_leg4),
                 -(grod_wx_leg5 * minus_rate_dot_rod_leg5),
                 -(grod_wx_leg6 * minus_rate_dot_rod_leg6), -(grod_wx_leg1 * minus_rate_rod_leg1),
-                minus_grod_wx_leg2 * minus_rate_rod_leg2, -(grod_wx_leg3 * minus_rate_rod_leg3),
+                -(grod_wx_leg2 * minus_rate_rod_leg2), -(grod_wx_leg3 * minus_rate_rod_leg3),
                 -(grod_wx_leg4 * minus_rate_rod_leg4), -(grod_wx_leg5 * minus_rate_rod_leg5),
                 -(grod_wx_leg6 * minus_rate_rod_leg6),
                 -::overact::math::signed(grod_wx_leg1, minus_rate_rod_leg1),
-                ::overact::math::signed(minus_grod_wx_leg2, minus_rate_rod_leg2),
+                -::overact::math::signed(grod_wx_leg2, minus_rate_rod_leg2),
                 -::overact::math::signed(grod_wx_leg3, minus_rate_rod_leg3),
                 -::overact::math::signed(grod_wx_leg4, minus_rate_rod_leg4),
                 -::overact::math::signed(grod_wx_leg5, minus_rate_rod_leg5),
                 -::overact::math::signed(grod_wx_leg6, minus_rate_rod_leg6), grod_wx_leg1,
-                -minus_grod_wx_leg2, grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
+                grod_wx_leg2, grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
             ],
             [
                 t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t73,
                 t10 * t91 + t41 * t94 + t29 * t97, t41 * t64 - t115 + t53,
                 t10 * t122 + t41 * t124 + t29 * t127, t115 - t51 + t29 * t90,
                 t15 * acceleration[0] - t5 * t179, t44 * acceleration[0] - t19 * t179,
-                t34 * acceleration[0] - t25 * t179, 0.0, t383 - gcross_wy_leg1 * t348,
-                gcross_wy_leg2 * t500 - t532, gcross_wy_leg3 * t608 + t640,
-                gcross_wy_leg4 * t718 + t750, t854 - minus_gcross_wy_leg5 * t826,
-                t954 - gcross_wy_leg6 * t914, gcross_wy_leg1 * t985 + gcylinder_wy_leg1 * t967,
-                gcross_wy_leg2 * t1010 - minus_gcylinder_wy_leg2 * t1005,
-                gcross_wy_leg3 * t1032 + gcylinder_wy_leg3 * t1036,
-                gcross_wy_leg4 * t1058 + gcylinder_wy_leg4 * t1062,
-                gcylinder_wy_leg5 * t1088 - minus_gcross_wy_leg5 * t1084,
-                gcross_wy_leg6 * t1122 + gcylinder_wy_leg6 * t1126,
-                gcross_wy_leg1 * t1158 - gcylinder_wy_leg1 * t1160,
-                gcross_wy_leg2 * t1192 + minus_gcylinder_wy_leg2 * t1194,
-                gcross_wy_leg3 * t1226 - gcylinder_wy_leg3 * t1228,
-                gcross_wy_leg4 * t1260 - gcylinder_wy_leg4 * t1262,
-                -(minus_gcross_wy_leg5 * t1294 + gcylinder_wy_leg5 * t1296),
-                gcross_wy_leg6 * t1328 - gcylinder_wy_leg6 * t1330,
-                -(gcross_wy_leg1 * t1348 + t383), -(gcross_wy_leg2 * t499 - t532),
-                -(gcross_wy_leg3 * t607 + t640), -(gcross_wy_leg4 * t717 + t750),
-                minus_gcross_wy_leg5 * t825 - t854, -(gcross_wy_leg6 * t1409 + t954),
-                gcross_wy_leg1 * t1426 + gcylinder_wy_leg1 * t980,
-                gcross_wy_leg2 * t1448 - minus_gcylinder_wy_leg2 * t496,
-                gcross_wy_leg3 * t1469 + gcylinder_wy_leg3 * t604,
-                gcross_wy_leg4 * t1491 + gcylinder_wy_leg4 * t714,
-                gcylinder_wy_leg5 * t822 - minus_gcross_wy_leg5 * t1513,
-                gcross_wy_leg6 * t1535 + gcylinder_wy_leg6 * t1117,
+                t34 * acceleration[0] - t25 * t179, 0.0, gcross_wy_leg1 * t367 + t399,
+                -(gcross_wy_leg2 * t497 + t533), gcross_wy_leg3 * t609 + t641,
+                t738 - gcross_wy_leg4 * t698, t830 + minus_gcross_wy_leg5 * t794,
+                t930 - gcross_wy_leg6 * t890, gcross_wy_leg1 * t948 + gcylinder_wy_leg1 * t943,
+                gcross_wy_leg2 * t986 - minus_gcylinder_wy_leg2 * t968,
+                gcross_wy_leg3 * t1008 + gcylinder_wy_leg3 * t1012,
+                gcross_wy_leg4 * t1047 + gcylinder_wy_leg4 * t1051,
+                gcylinder_wy_leg5 * t1089 - minus_gcross_wy_leg5 * t1085,
+                gcross_wy_leg6 * t1123 + gcylinder_wy_leg6 * t1127,
+                gcross_wy_leg1 * t1160 - gcylinder_wy_leg1 * t1162,
+                gcross_wy_leg2 * t1194 + minus_gcylinder_wy_leg2 * t1196,
+                gcross_wy_leg3 * t1228 - gcylinder_wy_leg3 * t1230,
+                gcross_wy_leg4 * t1263 - gcylinder_wy_leg4 * t1265,
+                -(minus_gcross_wy_leg5 * t1297 + gcylinder_wy_leg5 * t1299),
+                gcross_wy_leg6 * t1331 - gcylinder_wy_leg6 * t1333, -(gcross_wy_leg1 * t366 + t399),
+                -(gcross_wy_leg2 * t1363 - t533), -(gcross_wy_leg3 * t608 + t641),
+                -(gcross_wy_leg4 * t1388 + t738), minus_gcross_wy_leg5 * t1401 - t830,
+                -(gcross_wy_leg6 * t1414 + t930), gcross_wy_leg1 * t1432 + gcylinder_wy_leg1 * t363,
+                gcross_wy_leg2 * t1454 - minus_gcylinder_wy_leg2 * t981,
+                gcross_wy_leg3 * t1475 + gcylinder_wy_leg3 * t605,
+                gcross_wy_leg4 * t1497 + gcylinder_wy_leg4 * t1042,
+                gcylinder_wy_leg5 * t1080 - minus_gcross_wy_leg5 * t1519,
+                gcross_wy_leg6 * t1541 + gcylinder_wy_leg6 * t1118,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                gcross_wy_leg1 * t1591 - gcylinder_wy_leg1 * t1593,
-                gcross_wy_leg2 * t1612 + minus_gcylinder_wy_leg2 * t1614,
-                gcross_wy_leg3 * t1633 - gcylinder_wy_leg3 * t1635,
-                gcross_wy_leg4 * t1654 - gcylinder_wy_leg4 * t1656,
-                -(minus_gcross_wy_leg5 * t1675 + gcylinder_wy_leg5 * t1677),
-                gcross_wy_leg6 * t1696 - gcylinder_wy_leg6 * t1698,
-                gcross_wy_leg1 * t1719 + gcylinder_wy_leg1 * t1721,
-                gcross_wy_leg2 * t1737 - minus_gcylinder_wy_leg2 * t1739,
-                gcross_wy_leg3 * t1755 + gcylinder_wy_leg3 * t1757,
-                gcross_wy_leg4 * t1773 + gcylinder_wy_leg4 * t1775,
-                gcylinder_wy_leg5 * t1793 - minus_gcross_wy_leg5 * t1791,
-                gcross_wy_leg6 * t1809 + gcylinder_wy_leg6 * t1811, gcross_wy_leg1 * t1824,
-                gcross_wy_leg2 * t1831, gcross_wy_leg3 * t1838, gcross_wy_leg4 * t1845,
-                -(minus_gcross_wy_leg5 * t1852), gcross_wy_leg6 * t1859,
-                t364 * t1883 + t375 * t1893, -(t513 * t1920 + t524 * t1930),
-                t250 * t1957 + t272 * t1967, t405 * t1994 + t419 * t2004,
-                -(t263 * t2031 + t279 * t2041), t410 * t2068 + t423 * t2078,
-                t364 * t2097 + t375 * t2103, -(t513 * t2121 + t524 * t2127),
-                t250 * t2146 + t272 * t2152, t405 * t2170 + t419 * t2176,
-                -(t263 * t2195 + t279 * t2201), t410 * t2219 + t423 * t2225,
-                t364 * t2243 + t375 * t2253, -(t513 * t2271 + t524 * t2281),
-                t250 * t2299 + t272 * t2309, t405 * t2327 + t419 * t2337,
-                -(t263 * t2356 + t279 * t2366), t410 * t2384 + t423 * t2394,
+                gcross_wy_leg1 * t1597 - gcylinder_wy_leg1 * t1599,
+                gcross_wy_leg2 * t1618 + minus_gcylinder_wy_leg2 * t1620,
+                gcross_wy_leg3 * t1639 - gcylinder_wy_leg3 * t1641,
+                gcross_wy_leg4 * t1660 - gcylinder_wy_leg4 * t1662,
+                -(minus_gcross_wy_leg5 * t1681 + gcylinder_wy_leg5 * t1683),
+                gcross_wy_leg6 * t1702 - gcylinder_wy_leg6 * t1704,
+                gcross_wy_leg1 * t1725 + gcylinder_wy_leg1 * t1727,
+                gcross_wy_leg2 * t1743 - minus_gcylinder_wy_leg2 * t1745,
+                gcross_wy_leg3 * t1761 + gcylinder_wy_leg3 * t1763,
+                gcross_wy_leg4 * t1779 + gcylinder_wy_leg4 * t1781,
+                gcylinder_wy_leg5 * t1799 - minus_gcross_wy_leg5 * t1797,
+                gcross_wy_leg6 * t1815 + gcylinder_wy_leg6 * t1817, gcross_wy_leg1 * t1830,
+                gcross_wy_leg2 * t1837, gcross_wy_leg3 * t1844, gcross_wy_leg4 * t1851,
+                -(minus_gcross_wy_leg5 * t1858), gcross_wy_leg6 * t1865,
+                t380 * t1889 + t391 * t1899, -(t513 * t1926 + t525 * t1936),
+                t250 * t1963 + t272 * t1973, t421 * t2000 + t435 * t2010,
+                -(t263 * t2037 + t279 * t2047), t426 * t2074 + t439 * t2084,
+                t380 * t2102 + t391 * t2108, -(t513 * t2127 + t525 * t2133),
+                t250 * t2152 + t272 * t2158, t421 * t2176 + t435 * t2182,
+                -(t263 * t2200 + t279 * t2206), t426 * t2224 + t439 * t2230,
+                t380 * t2249 + t391 * t2259, -(t513 * t2277 + t525 * t2287),
+                t250 * t2305 + t272 * t2315, t421 * t2333 + t435 * t2343,
+                -(t263 * t2361 + t279 * t2371), t426 * t2389 + t439 * t2399,
                 minus_grod_wy_leg1 * minus_rate_dot_rod_leg1,
                 -(minus_minus_grod_wy_leg2 * minus_rate_dot_rod_leg2),
                 -(grod_wy_leg3 * minus_rate_dot_rod_leg3),
@@ -15805,56 +15805,56 @@ impl Hexapod {
                 t15 * t122 + t44 * t124 + t34 * t127, t119 - t56 + t34 * t90,
                 t5 * acceleration[1] - t10 * acceleration[0],
                 t19 * acceleration[1] - t41 * acceleration[0],
-                t25 * acceleration[1] - t29 * acceleration[0], 0.0, -(gcross_wz_leg1 * t348 + t392),
-                gcross_wz_leg2 * t500 + t541, t645 - minus_gcross_wz_leg3 * t608,
-                t755 - minus_gcross_wz_leg4 * t718, gcross_wz_leg5 * t826 - t867,
-                t963 - gcross_wz_leg6 * t914,
-                gcross_wz_leg1 * t985 - minus_gcylinder_wz_leg1 * t967,
-                gcross_wz_leg2 * t1010 + gcylinder_wz_leg2 * t1005,
-                gcylinder_wz_leg3 * t1036 - minus_gcross_wz_leg3 * t1032,
-                gcylinder_wz_leg4 * t1062 - minus_gcross_wz_leg4 * t1058,
-                gcross_wz_leg5 * t1084 - minus_gcylinder_wz_leg5 * t1088,
-                gcross_wz_leg6 * t1122 + gcylinder_wz_leg6 * t1126,
-                gcross_wz_leg1 * t1158 + minus_gcylinder_wz_leg1 * t1160,
-                gcross_wz_leg2 * t1192 - gcylinder_wz_leg2 * t1194,
-                -(minus_gcross_wz_leg3 * t1226 + gcylinder_wz_leg3 * t1228),
-                -(minus_gcross_wz_leg4 * t1260 + gcylinder_wz_leg4 * t1262),
-                gcross_wz_leg5 * t1294 + minus_gcylinder_wz_leg5 * t1296,
-                gcross_wz_leg6 * t1328 - gcylinder_wz_leg6 * t1330, t392 - gcross_wz_leg1 * t1348,
-                -(gcross_wz_leg2 * t499 + t541), minus_gcross_wz_leg3 * t607 - t645,
-                minus_gcross_wz_leg4 * t717 - t755, t867 - gcross_wz_leg5 * t825,
-                -(gcross_wz_leg6 * t1409 + t963),
-                gcross_wz_leg1 * t1426 - minus_gcylinder_wz_leg1 * t980,
-                gcross_wz_leg2 * t1448 + gcylinder_wz_leg2 * t496,
-                gcylinder_wz_leg3 * t604 - minus_gcross_wz_leg3 * t1469,
-                gcylinder_wz_leg4 * t714 - minus_gcross_wz_leg4 * t1491,
-                gcross_wz_leg5 * t1513 - minus_gcylinder_wz_leg5 * t822,
-                gcross_wz_leg6 * t1535 + gcylinder_wz_leg6 * t1117,
+                t25 * acceleration[1] - t29 * acceleration[0], 0.0, gcross_wz_leg1 * t367 - t408,
+                -(gcross_wz_leg2 * t497 + t542), t646 - minus_gcross_wz_leg3 * t609,
+                t743 + minus_gcross_wz_leg4 * t698, -(gcross_wz_leg5 * t794 + t843),
+                t939 - gcross_wz_leg6 * t890,
+                gcross_wz_leg1 * t948 - minus_gcylinder_wz_leg1 * t943,
+                gcross_wz_leg2 * t986 - minus_gcylinder_wz_leg2 * t968,
+                gcylinder_wz_leg3 * t1012 - minus_gcross_wz_leg3 * t1008,
+                gcylinder_wz_leg4 * t1051 - minus_gcross_wz_leg4 * t1047,
+                gcross_wz_leg5 * t1085 - minus_gcylinder_wz_leg5 * t1089,
+                gcross_wz_leg6 * t1123 + gcylinder_wz_leg6 * t1127,
+                gcross_wz_leg1 * t1160 + minus_gcylinder_wz_leg1 * t1162,
+                gcross_wz_leg2 * t1194 + minus_gcylinder_wz_leg2 * t1196,
+                -(minus_gcross_wz_leg3 * t1228 + gcylinder_wz_leg3 * t1230),
+                -(minus_gcross_wz_leg4 * t1263 + gcylinder_wz_leg4 * t1265),
+                gcross_wz_leg5 * t1297 + minus_gcylinder_wz_leg5 * t1299,
+                gcross_wz_leg6 * t1331 - gcylinder_wz_leg6 * t1333, t408 - gcross_wz_leg1 * t366,
+                -(gcross_wz_leg2 * t1363 - t542), minus_gcross_wz_leg3 * t608 - t646,
+                minus_gcross_wz_leg4 * t1388 - t743, t843 - gcross_wz_leg5 * t1401,
+                -(gcross_wz_leg6 * t1414 + t939),
+                gcross_wz_leg1 * t1432 - minus_gcylinder_wz_leg1 * t363,
+                gcross_wz_leg2 * t1454 - minus_gcylinder_wz_leg2 * t981,
+                gcylinder_wz_leg3 * t605 - minus_gcross_wz_leg3 * t1475,
+                gcylinder_wz_leg4 * t1042 - minus_gcross_wz_leg4 * t1497,
+                gcross_wz_leg5 * t1519 - minus_gcylinder_wz_leg5 * t1080,
+                gcross_wz_leg6 * t1541 + gcylinder_wz_leg6 * t1118,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
-                gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
+                -(minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t1591 + minus_gcylinder_wz_leg1 * t1593,
-                gcross_wz_leg2 * t1612 - gcylinder_wz_leg2 * t1614,
-                -(minus_gcross_wz_leg3 * t1633 + gcylinder_wz_leg3 * t1635),
-                -(minus_gcross_wz_leg4 * t1654 + gcylinder_wz_leg4 * t1656),
-                gcross_wz_leg5 * t1675 + minus_gcylinder_wz_leg5 * t1677,
-                gcross_wz_leg6 * t1696 - gcylinder_wz_leg6 * t1698, grod_wz_leg1 * t1716,
-                grod_wz_leg2 * t1734, -(minus_grod_wz_leg3 * t1752), -(minus_grod_wz_leg4 * t1770),
-                -(minus_grod_wz_leg5 * t1788), grod_wz_leg6 * t1806, gcross_wz_leg1 * t1824,
-                gcross_wz_leg2 * t1831, -(minus_gcross_wz_leg3 * t1838),
-                -(minus_gcross_wz_leg4 * t1845), gcross_wz_leg5 * t1852, gcross_wz_leg6 * t1859,
-                t375 * t1888 - t366 * t1883, t515 * t1920 - t524 * t1925,
-                t272 * t1962 - t254 * t1957, t419 * t1999 - t407 * t1994,
-                t259 * t2031 - t279 * t2036, t423 * t2073 - t412 * t2068,
-                t375 * t2100 - t366 * t2097, t515 * t2121 - t524 * t2124,
-                t272 * t2149 - t254 * t2146, t419 * t2173 - t407 * t2170,
-                t259 * t2195 - t279 * t2198, t423 * t2222 - t412 * t2219,
-                t375 * t2248 - t366 * t2243, t515 * t2271 - t524 * t2276,
-                t272 * t2304 - t254 * t2299, t419 * t2332 - t407 * t2327,
-                t259 * t2356 - t279 * t2361, t423 * t2389 - t412 * t2384,
+                gcross_wz_leg1 * t1597 + minus_gcylinder_wz_leg1 * t1599,
+                gcross_wz_leg2 * t1618 + minus_gcylinder_wz_leg2 * t1620,
+                -(minus_gcross_wz_leg3 * t1639 + gcylinder_wz_leg3 * t1641),
+                -(minus_gcross_wz_leg4 * t1660 + gcylinder_wz_leg4 * t1662),
+                gcross_wz_leg5 * t1681 + minus_gcylinder_wz_leg5 * t1683,
+                gcross_wz_leg6 * t1702 - gcylinder_wz_leg6 * t1704, grod_wz_leg1 * t1722,
+                grod_wz_leg2 * t1740, -(minus_grod_wz_leg3 * t1758), -(minus_grod_wz_leg4 * t1776),
+                -(minus_grod_wz_leg5 * t1794), grod_wz_leg6 * t1812, gcross_wz_leg1 * t1830,
+                gcross_wz_leg2 * t1837, -(minus_gcross_wz_leg3 * t1844),
+                -(minus_gcross_wz_leg4 * t1851), gcross_wz_leg5 * t1858, gcross_wz_leg6 * t1865,
+                t391 * t1894 - t382 * t1889, -(t525 * t1931 + t516 * t1926),
+                t272 * t1968 - t254 * t1963, t435 * t2005 - t423 * t2000,
+                t259 * t2037 - t279 * t2042, t439 * t2079 - t428 * t2074,
+                t391 * t2105 - t382 * t2102, -(t525 * t2130 + t516 * t2127),
+                t272 * t2155 - t254 * t2152, t435 * t2179 - t423 * t2176,
+                t259 * t2200 - t279 * t2203, t439 * t2227 - t428 * t2224,
+                t391 * t2254 - t382 * t2249, -(t525 * t2282 + t516 * t2277),
+                t272 * t2310 - t254 * t2305, t435 * t2338 - t423 * t2333,
+                t259 * t2361 - t279 * t2366, t439 * t2394 - t428 * t2389,
                 -(grod_wz_leg1 * minus_rate_dot_rod_leg1),
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
                 minus_grod_wz_leg3 * minus_rate_dot_rod_leg3,
@@ -15886,7 +15886,7 @@ impl Hexapod {
     /// Output: 6 x 106.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 3177 operations (1225 additions, 1878 multiplications, 74 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2610 intermediates.
+    /// 3189 operations (1227 additions, 1909 multiplications, 53 divisions), 12 square roots, 0 trigonometric pairs, 36 signs, 2622 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -15943,1133 +15943,1138 @@ impl Hexapod {
         let t51 = t48 * t48 + t33 * t33;
         let t52 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(t52, 0.5513142860385972, "leg1")?;
-        let c_cross_leg1 = t33 / t52;
-        let t56 = 0.20791169081775931 * t43 + 0.9781476007338057 * t46;
-        let t58 = t51 + t56 * t56;
-        ::overact::guard::reach(t58, "leg1")?;
-        let t59 = ::overact::math::sqrt(t58);
-        ::overact::guard::leg(t59, 0.5619721604570214, "leg1")?;
-        let c_cylinder_leg1 = t52 / t59;
+        let t53 = 1.0 / t52;
+        let c_cross_leg1 = t33 * t53;
+        let t57 = 0.20791169081775931 * t43 + 0.9781476007338057 * t46;
+        let t59 = t51 + t57 * t57;
+        ::overact::guard::reach(t59, "leg1")?;
+        let t60 = ::overact::math::sqrt(t59);
+        ::overact::guard::leg(t60, 0.5619721604570214, "leg1")?;
+        let c_cylinder_leg1 = t52 / t60;
         let grod_vz_leg1 = c_cross_leg1 * c_cylinder_leg1;
-        let minus_minus_grod_vy_leg1 = t46 / t59;
+        let minus_minus_grod_vy_leg1 = t46 / t60;
         let grod_wx_leg1 = t19 * grod_vz_leg1 - t32 * minus_minus_grod_vy_leg1;
-        let grod_vx_leg1 = t43 / t59;
-        let grod_wy_leg1 = t32 * grod_vx_leg1 - t41 * grod_vz_leg1;
-        let t70 = grod_wy_leg1 * actuator_velocities[0];
+        let t68 = t17 - t16;
+        let t69 = t10 - t14;
+        let t70 = t68 + t69;
         let t71 = t30 - t29;
         let t72 = t23 - t27;
         let t73 = t71 + t72;
-        let t74 = t39 - t38;
-        let t75 = t34 - t36;
-        let t76 = t74 + t75;
-        let t78 = pose[0] - t76 - 0.3912590402935223;
-        let t80 = t17 - t16;
-        let t81 = t10 - t14;
-        let t82 = t80 + t81;
-        let t84 = pose[1] - t82 - 0.08316467632710373;
-        let t86 = 0.9781476007338057 * t78 + 0.20791169081775931 * t84;
-        let t88 = pose[2] - t73;
-        let t90 = t86 * t86 + t88 * t88;
-        let t93 = 0.20791169081775931 * t78 - 0.9781476007338057 * t84;
-        let t95 = t90 + t93 * t93;
+        let t74 = pose[2] - t73;
+        let t75 = t39 - t38;
+        let t76 = t34 - t36;
+        let t77 = t75 + t76;
+        let t79 = pose[0] - t77 - 0.3912590402935223;
+        let t82 = pose[1] - t70 - 0.08316467632710373;
+        let t84 = 0.9781476007338057 * t79 + 0.20791169081775931 * t82;
+        let t87 = t84 * t84 + t74 * t74;
+        let t88 = ::overact::math::sqrt(t87);
+        ::overact::guard::leg(t88, 0.5513142860385972, "leg2")?;
+        let t89 = 1.0 / t88;
+        let c_cross_leg2 = t74 * t89;
+        let t93 = 0.20791169081775931 * t79 - 0.9781476007338057 * t82;
+        let t95 = t87 + t93 * t93;
         ::overact::guard::reach(t95, "leg2")?;
         let t96 = ::overact::math::sqrt(t95);
         ::overact::guard::leg(t96, 0.5619721604570214, "leg2")?;
-        let grod_vx_leg2 = t78 / t96;
-        let t99 = ::overact::math::sqrt(t90);
-        ::overact::guard::leg(t99, 0.5513142860385972, "leg2")?;
-        let t100 = 1.0 / t99;
-        let c_cross_leg2 = t88 * t100;
-        let c_cylinder_leg2 = t99 / t96;
+        let c_cylinder_leg2 = t88 / t96;
         let grod_vz_leg2 = c_cross_leg2 * c_cylinder_leg2;
-        let grod_wy_leg2 = t76 * grod_vz_leg2 - t73 * grod_vx_leg2;
-        let t106 = grod_wy_leg2 * actuator_velocities[1];
-        let t109 = pose[0] + t37 + 0.12360679774997894;
-        let t111 = pose[1] + t15 - 0.3804226065180615;
-        let t114 = 0.9510565162951536 * t111 - 0.30901699437494734 * t109;
-        let t116 = pose[2] + t28;
-        let t118 = t114 * t114 + t116 * t116;
-        let t121 = 0.9510565162951536 * t109 + 0.30901699437494734 * t111;
-        let t123 = t118 + t121 * t121;
+        let t100 = 1.0 / t96;
+        let minus_minus_grod_vy_leg2 = t82 * t100;
+        let grod_wx_leg2 = t73 * minus_minus_grod_vy_leg2 - t70 * grod_vz_leg2;
+        let t106 = pose[2] + t28;
+        let t108 = pose[1] + t15 - 0.3804226065180615;
+        let t111 = pose[0] + t37 + 0.12360679774997894;
+        let t113 = 0.9510565162951536 * t108 - 0.30901699437494734 * t111;
+        let t116 = t113 * t113 + t106 * t106;
+        let t117 = ::overact::math::sqrt(t116);
+        ::overact::guard::leg(t117, 0.5513142860385972, "leg3")?;
+        let c_cross_leg3 = t106 / t117;
+        let t121 = 0.9510565162951536 * t111 + 0.30901699437494734 * t108;
+        let t123 = t116 + t121 * t121;
         ::overact::guard::reach(t123, "leg3")?;
         let t124 = ::overact::math::sqrt(t123);
         ::overact::guard::leg(t124, 0.5619721604570214, "leg3")?;
-        let t125 = 1.0 / t124;
-        let minus_minus_grod_vx_leg3 = t109 * t125;
-        let t128 = ::overact::math::sqrt(t118);
-        ::overact::guard::leg(t128, 0.5513142860385972, "leg3")?;
-        let c_cross_leg3 = t116 / t128;
-        let c_cylinder_leg3 = t128 * t125;
+        let c_cylinder_leg3 = t117 / t124;
         let grod_vz_leg3 = c_cross_leg3 * c_cylinder_leg3;
-        let minus_grod_wy_leg3 = t37 * grod_vz_leg3 - t28 * minus_minus_grod_vx_leg3;
-        let t134 = minus_grod_wy_leg3 * actuator_velocities[2];
-        let t137 = pose[0] + t74 + 0.2676522425435432;
-        let t139 = pose[1] + t80 - 0.2972579301909578;
-        let t142 = 0.7431448254773945 * t139 - 0.6691306063588579 * t137;
-        let t144 = pose[2] + t71;
-        let t146 = t142 * t142 + t144 * t144;
-        let t149 = 0.7431448254773945 * t137 + 0.6691306063588579 * t139;
-        let t151 = t146 + t149 * t149;
-        ::overact::guard::reach(t151, "leg4")?;
-        let t152 = ::overact::math::sqrt(t151);
-        ::overact::guard::leg(t152, 0.5619721604570214, "leg4")?;
-        let t153 = 1.0 / t152;
-        let minus_minus_grod_vx_leg4 = t137 * t153;
-        let t156 = ::overact::math::sqrt(t146);
-        ::overact::guard::leg(t156, 0.5513142860385972, "leg4")?;
-        let t157 = 1.0 / t156;
-        let c_cross_leg4 = t144 * t157;
-        let c_cylinder_leg4 = t156 / t152;
-        let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
-        let minus_grod_wy_leg4 = t74 * grod_vz_leg4 - t71 * minus_minus_grod_vx_leg4;
-        let t163 = minus_grod_wy_leg4 * actuator_velocities[3];
-        let t166 = pose[0] - t40 + 0.2676522425435432;
-        let t169 = pose[1] - t18 + 0.2972579301909578;
-        let t171 = 0.6691306063588579 * t166 + 0.7431448254773945 * t169;
-        let t173 = pose[2] - t31;
-        let t175 = t171 * t171 + t173 * t173;
-        let t178 = 0.6691306063588579 * t169 - 0.7431448254773945 * t166;
-        let t180 = t175 + t178 * t178;
-        ::overact::guard::reach(t180, "leg5")?;
-        let t181 = ::overact::math::sqrt(t180);
-        ::overact::guard::leg(t181, 0.5619721604570214, "leg5")?;
-        let minus_minus_grod_vx_leg5 = t166 / t181;
-        let t184 = ::overact::math::sqrt(t175);
-        ::overact::guard::leg(t184, 0.5513142860385972, "leg5")?;
-        let t185 = 1.0 / t184;
-        let c_cross_leg5 = t173 * t185;
-        let c_cylinder_leg5 = t184 / t181;
-        let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
-        let grod_wy_leg5 = t40 * grod_vz_leg5 - t31 * minus_minus_grod_vx_leg5;
-        let t191 = grod_wy_leg5 * actuator_velocities[4];
-        let t194 = pose[0] + t75 + 0.12360679774997894;
-        let t197 = pose[1] + t81 + 0.3804226065180615;
-        let t199 = 0.30901699437494734 * t194 + 0.9510565162951536 * t197;
-        let t201 = pose[2] + t72;
-        let t203 = t199 * t199 + t201 * t201;
-        let t206 = 0.30901699437494734 * t197 - 0.9510565162951536 * t194;
-        let t208 = t203 + t206 * t206;
-        ::overact::guard::reach(t208, "leg6")?;
-        let t209 = ::overact::math::sqrt(t208);
-        ::overact::guard::leg(t209, 0.5619721604570214, "leg6")?;
-        let minus_minus_grod_vx_leg6 = t194 / t209;
-        let t212 = ::overact::math::sqrt(t203);
-        ::overact::guard::leg(t212, 0.5513142860385972, "leg6")?;
-        let t213 = 1.0 / t212;
-        let c_cross_leg6 = t201 * t213;
-        let c_cylinder_leg6 = t212 / t209;
-        let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
-        let minus_grod_wy_leg6 = t75 * grod_vz_leg6 - t72 * minus_minus_grod_vx_leg6;
-        let t219 = minus_grod_wy_leg6 * actuator_velocities[5];
-        let t221 = grod_vx_leg1 * actuator_velocities[0];
-        let t222 = grod_vx_leg2 * actuator_velocities[1];
-        let t224 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
-        let t226 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
-        let t228 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
-        let t230 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
-        let t231 = t221 + t222 + t224 + t226 + t228 + t230;
-        let t242 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
-            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
-            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
-            + minus_minus_grod_vx_leg5 * grod_wy_leg5
-            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
-        let t245 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
-        let t253 = t245 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
-            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
-            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
-            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
-        ::overact::guard::platform(t253, 0.625174737048712, "actuators")?;
-        ::overact::guard::platform(t253, 0.625174737048712, "actuators")?;
-        let t254 = t242 / t253;
-        let t259 = 1.0 / t96;
-        let minus_minus_grod_vy_leg2 = t84 * t259;
-        let grod_wx_leg2 = t73 * minus_minus_grod_vy_leg2 - t82 * grod_vz_leg2;
-        let grod_vy_leg3 = t111 / t124;
+        let t128 = 1.0 / t124;
+        let grod_vy_leg3 = t108 * t128;
         let grod_wx_leg3 = t15 * grod_vz_leg3 - t28 * grod_vy_leg3;
-        let grod_vy_leg4 = t139 * t153;
-        let grod_wx_leg4 = t80 * grod_vz_leg4 - t71 * grod_vy_leg4;
-        let t277 = 1.0 / t181;
-        let grod_vy_leg5 = t169 * t277;
+        let t134 = pose[2] + t71;
+        let t136 = pose[1] + t68 - 0.2972579301909578;
+        let t139 = pose[0] + t75 + 0.2676522425435432;
+        let t141 = 0.7431448254773945 * t136 - 0.6691306063588579 * t139;
+        let t144 = t141 * t141 + t134 * t134;
+        let t145 = ::overact::math::sqrt(t144);
+        ::overact::guard::leg(t145, 0.5513142860385972, "leg4")?;
+        let t146 = 1.0 / t145;
+        let c_cross_leg4 = t134 * t146;
+        let t150 = 0.7431448254773945 * t139 + 0.6691306063588579 * t136;
+        let t152 = t144 + t150 * t150;
+        ::overact::guard::reach(t152, "leg4")?;
+        let t153 = ::overact::math::sqrt(t152);
+        ::overact::guard::leg(t153, 0.5619721604570214, "leg4")?;
+        let c_cylinder_leg4 = t145 / t153;
+        let grod_vz_leg4 = c_cross_leg4 * c_cylinder_leg4;
+        let t157 = 1.0 / t153;
+        let grod_vy_leg4 = t136 * t157;
+        let grod_wx_leg4 = t68 * grod_vz_leg4 - t71 * grod_vy_leg4;
+        let t164 = pose[1] - t18 + 0.2972579301909578;
+        let t166 = pose[0] - t40 + 0.2676522425435432;
+        let t169 = 0.6691306063588579 * t166 + 0.7431448254773945 * t164;
+        let t171 = pose[2] - t31;
+        let t173 = t169 * t169 + t171 * t171;
+        let t176 = 0.6691306063588579 * t164 - 0.7431448254773945 * t166;
+        let t178 = t173 + t176 * t176;
+        ::overact::guard::reach(t178, "leg5")?;
+        let t179 = ::overact::math::sqrt(t178);
+        ::overact::guard::leg(t179, 0.5619721604570214, "leg5")?;
+        let t180 = 1.0 / t179;
+        let grod_vy_leg5 = t164 * t180;
+        let t183 = ::overact::math::sqrt(t173);
+        ::overact::guard::leg(t183, 0.5513142860385972, "leg5")?;
+        let t184 = 1.0 / t183;
+        let c_cross_leg5 = t171 * t184;
+        let c_cylinder_leg5 = t183 / t179;
+        let grod_vz_leg5 = c_cross_leg5 * c_cylinder_leg5;
         let grod_wx_leg5 = t31 * grod_vy_leg5 - t18 * grod_vz_leg5;
-        let t285 = 1.0 / t209;
-        let grod_vy_leg6 = t197 * t285;
-        let grod_wx_leg6 = t81 * grod_vz_leg6 - t72 * grod_vy_leg6;
-        let t290 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
+        let t192 = pose[2] + t72;
+        let t194 = pose[0] + t76 + 0.12360679774997894;
+        let t197 = pose[1] + t69 + 0.3804226065180615;
+        let t199 = 0.30901699437494734 * t194 + 0.9510565162951536 * t197;
+        let t202 = t199 * t199 + t192 * t192;
+        let t203 = ::overact::math::sqrt(t202);
+        ::overact::guard::leg(t203, 0.5513142860385972, "leg6")?;
+        let t204 = 1.0 / t203;
+        let c_cross_leg6 = t192 * t204;
+        let t208 = 0.30901699437494734 * t197 - 0.9510565162951536 * t194;
+        let t210 = t202 + t208 * t208;
+        ::overact::guard::reach(t210, "leg6")?;
+        let t211 = ::overact::math::sqrt(t210);
+        ::overact::guard::leg(t211, 0.5619721604570214, "leg6")?;
+        let c_cylinder_leg6 = t203 / t211;
+        let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
+        let grod_vy_leg6 = t197 / t211;
+        let grod_wx_leg6 = t69 * grod_vz_leg6 - t72 * grod_vy_leg6;
+        let t219 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
+            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
+            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
+        let grod_vx_leg1 = t43 / t60;
+        let grod_vx_leg2 = t79 / t96;
+        let minus_minus_grod_vx_leg3 = t111 * t128;
+        let minus_minus_grod_vx_leg4 = t139 / t153;
+        let minus_minus_grod_vx_leg5 = t166 / t179;
+        let t234 = 1.0 / t211;
+        let minus_minus_grod_vx_leg6 = t194 * t234;
+        let t237 = grod_vx_leg1 * grod_wx_leg1 + grod_vx_leg2 * grod_wx_leg2
             + minus_minus_grod_vx_leg3 * grod_wx_leg3
             + minus_minus_grod_vx_leg4 * grod_wx_leg4
             + minus_minus_grod_vx_leg5 * grod_wx_leg5
             + minus_minus_grod_vx_leg6 * grod_wx_leg6;
-        let grod_wz_leg3 = t37 * grod_vy_leg3 - t15 * minus_minus_grod_vx_leg3;
-        let minus_grod_wz_leg1 = t19 * grod_vx_leg1 - t41 * minus_minus_grod_vy_leg1;
-        let minus_grod_wz_leg2 = t76 * minus_minus_grod_vy_leg2 - t82 * grod_vx_leg2;
-        let grod_wz_leg4 = t74 * grod_vy_leg4 - t80 * minus_minus_grod_vx_leg4;
-        let minus_grod_wz_leg5 = t40 * grod_vy_leg5 - t18 * minus_minus_grod_vx_leg5;
-        let grod_wz_leg6 = t75 * grod_vy_leg6 - t81 * minus_minus_grod_vx_leg6;
-        let t319 = grod_vz_leg3 * grod_wz_leg3
-            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
-            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
-            + grod_vz_leg6 * grod_wz_leg6;
-        let t331 = grod_vx_leg1 * minus_minus_grod_vy_leg1
+        let t240 = grod_vx_leg1 * grod_vx_leg1 + grod_vx_leg2 * grod_vx_leg2;
+        let t248 = t240 + minus_minus_grod_vx_leg3 * minus_minus_grod_vx_leg3
+            + minus_minus_grod_vx_leg4 * minus_minus_grod_vx_leg4
+            + minus_minus_grod_vx_leg5 * minus_minus_grod_vx_leg5
+            + minus_minus_grod_vx_leg6 * minus_minus_grod_vx_leg6;
+        ::overact::guard::platform(t248, 0.625174737048712, "actuators")?;
+        ::overact::guard::platform(t248, 0.625174737048712, "actuators")?;
+        let t249 = 1.0 / t248;
+        let t250 = t237 * t249;
+        let t263 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
+            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
+            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
+        let t274 = grod_vx_leg1 * minus_minus_grod_vy_leg1
             + grod_vx_leg2 * minus_minus_grod_vy_leg2
             + minus_minus_grod_vx_leg3 * grod_vy_leg3
             + minus_minus_grod_vx_leg4 * grod_vy_leg4
             + minus_minus_grod_vx_leg5 * grod_vy_leg5
             + minus_minus_grod_vx_leg6 * grod_vy_leg6;
-        let t333 = t290 + t319 + t331 * t254;
-        let t336 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
+        let t276 = t263 - t274 * t250;
+        let t279 = minus_minus_grod_vy_leg1 * minus_minus_grod_vy_leg1
             + minus_minus_grod_vy_leg2 * minus_minus_grod_vy_leg2;
-        let t345 = t331 / t253;
-        let t347 = t336 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
-            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t331 * t345;
-        ::overact::guard::platform(t347, 0.6251747370487124, "actuators")?;
-        ::overact::guard::platform(t347, 0.6251747370487124, "actuators")?;
-        let t348 = t333 / t347;
-        let t349 = grod_vy_leg3 * actuator_velocities[2];
-        let t350 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
-        let t351 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
-        let t354 = grod_vy_leg4 * actuator_velocities[3];
-        let t356 = grod_vy_leg5 * actuator_velocities[4];
-        let t358 = grod_vy_leg6 * actuator_velocities[5];
-        let t361 = t349 + t350 + t351 + t354 + t356 + t358 - t231 * t345;
-        let t374 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
-            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
-            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
-        let t385 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
+        let t288 = t274 * t249;
+        let t290 = t279 + grod_vy_leg3 * grod_vy_leg3 + grod_vy_leg4 * grod_vy_leg4
+            + grod_vy_leg5 * grod_vy_leg5 + grod_vy_leg6 * grod_vy_leg6 - t274 * t288;
+        ::overact::guard::platform(t290, 0.6251747370487124, "actuators")?;
+        ::overact::guard::platform(t290, 0.6251747370487124, "actuators")?;
+        let t291 = 1.0 / t290;
+        let t292 = t276 * t291;
+        let t305 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
+            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
+            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
+        let t316 = grod_vz_leg1 * grod_vx_leg1 + grod_vz_leg2 * grod_vx_leg2
             + grod_vz_leg3 * minus_minus_grod_vx_leg3
             + grod_vz_leg4 * minus_minus_grod_vx_leg4
             + grod_vz_leg5 * minus_minus_grod_vx_leg5
             + grod_vz_leg6 * minus_minus_grod_vx_leg6;
-        let t398 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
+        let t329 = grod_vz_leg3 * grod_vy_leg3 + grod_vz_leg1 * minus_minus_grod_vy_leg1
             + grod_vz_leg2 * minus_minus_grod_vy_leg2 + grod_vz_leg4 * grod_vy_leg4
             + grod_vz_leg5 * grod_vy_leg5 + grod_vz_leg6 * grod_vy_leg6;
-        let t399 = t385 / t253;
-        let t401 = t398 - t331 * t399;
-        let t403 = t374 - t385 * t254 + t401 * t348;
-        let t413 = 2.0 - t245 - t336 + grod_vz_leg3 * grod_vz_leg3
+        let t330 = t316 * t249;
+        let t332 = t329 - t274 * t330;
+        let t334 = t305 - t316 * t250 - t332 * t292;
+        let t344 = 2.0 - t240 - t279 + grod_vz_leg3 * grod_vz_leg3
             + grod_vz_leg4 * grod_vz_leg4 + grod_vz_leg5 * grod_vz_leg5
             + grod_vz_leg6 * grod_vz_leg6;
-        let t416 = t401 / t347;
-        let t418 = t413 - t385 * t399 - t401 * t416;
-        ::overact::guard::platform(t418, 4.7496505259025765, "actuators")?;
-        ::overact::guard::platform(t418, 4.7496505259025765, "actuators")?;
-        let t419 = t403 / t418;
-        let t420 = grod_vz_leg1 * actuator_velocities[0];
-        let t421 = grod_vz_leg2 * actuator_velocities[1];
-        let t423 = grod_vz_leg3 * actuator_velocities[2];
-        let t425 = grod_vz_leg4 * actuator_velocities[3];
-        let t427 = grod_vz_leg5 * actuator_velocities[4];
-        let t429 = grod_vz_leg6 * actuator_velocities[5];
-        let t434 = t420 + t421 + t423 + t425 + t427 + t429 - t231 * t399 - t416 * t361;
-        let t436 = t70 + t106 - t134 - t163 + t191 - t219 - t231 * t254 + t348 * t361
-            - t419 * t434;
-        let t447 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
+        let t347 = t332 * t291;
+        let t349 = t344 - t316 * t330 - t332 * t347;
+        ::overact::guard::platform(t349, 4.7496505259025765, "actuators")?;
+        ::overact::guard::platform(t349, 4.7496505259025765, "actuators")?;
+        let t350 = 1.0 / t349;
+        let t351 = t334 * t350;
+        let t353 = t219 - t237 * t250 - t276 * t292 - t334 * t351;
+        ::overact::guard::platform(t353, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t353, 0.06850454637148076, "actuators")?;
+        let t354 = 1.0 / t353;
+        let grod_wy_leg1 = t32 * grod_vx_leg1 - t41 * grod_vz_leg1;
+        let t358 = grod_wy_leg1 * actuator_velocities[0];
+        let grod_wy_leg2 = t77 * grod_vz_leg2 - t73 * grod_vx_leg2;
+        let t362 = grod_wy_leg2 * actuator_velocities[1];
+        let minus_grod_wy_leg3 = t37 * grod_vz_leg3 - t28 * minus_minus_grod_vx_leg3;
+        let t367 = minus_grod_wy_leg3 * actuator_velocities[2];
+        let minus_grod_wy_leg4 = t75 * grod_vz_leg4 - t71 * minus_minus_grod_vx_leg4;
+        let t372 = minus_grod_wy_leg4 * actuator_velocities[3];
+        let grod_wy_leg5 = t40 * grod_vz_leg5 - t31 * minus_minus_grod_vx_leg5;
+        let t377 = grod_wy_leg5 * actuator_velocities[4];
+        let minus_grod_wy_leg6 = t76 * grod_vz_leg6 - t72 * minus_minus_grod_vx_leg6;
+        let t382 = minus_grod_wy_leg6 * actuator_velocities[5];
+        let t384 = grod_vx_leg1 * actuator_velocities[0];
+        let t385 = grod_vx_leg2 * actuator_velocities[1];
+        let t387 = minus_minus_grod_vx_leg3 * actuator_velocities[2];
+        let t389 = minus_minus_grod_vx_leg4 * actuator_velocities[3];
+        let t391 = minus_minus_grod_vx_leg5 * actuator_velocities[4];
+        let t393 = minus_minus_grod_vx_leg6 * actuator_velocities[5];
+        let t394 = t384 + t385 + t387 + t389 + t391 + t393;
+        let t405 = grod_vx_leg1 * grod_wy_leg1 + grod_vx_leg2 * grod_wy_leg2
+            - minus_minus_grod_vx_leg3 * minus_grod_wy_leg3
+            - minus_minus_grod_vx_leg4 * minus_grod_wy_leg4
+            + minus_minus_grod_vx_leg5 * grod_wy_leg5
+            - minus_minus_grod_vx_leg6 * minus_grod_wy_leg6;
+        let t406 = t405 * t249;
+        let grod_wz_leg3 = t37 * grod_vy_leg3 - t15 * minus_minus_grod_vx_leg3;
+        let minus_grod_wz_leg1 = t19 * grod_vx_leg1 - t41 * minus_minus_grod_vy_leg1;
+        let minus_grod_wz_leg2 = t77 * minus_minus_grod_vy_leg2 - t70 * grod_vx_leg2;
+        let grod_wz_leg4 = t75 * grod_vy_leg4 - t68 * minus_minus_grod_vx_leg4;
+        let minus_grod_wz_leg5 = t40 * grod_vy_leg5 - t18 * minus_minus_grod_vx_leg5;
+        let grod_wz_leg6 = t76 * grod_vy_leg6 - t69 * minus_minus_grod_vx_leg6;
+        let t437 = grod_vz_leg3 * grod_wz_leg3
+            - (grod_vz_leg1 * minus_grod_wz_leg1 + grod_vz_leg2 * minus_grod_wz_leg2)
+            + grod_vz_leg4 * grod_wz_leg4 - grod_vz_leg5 * minus_grod_wz_leg5
+            + grod_vz_leg6 * grod_wz_leg6;
+        let t440 = t237 + t437 + t274 * t406;
+        let t441 = t440 * t291;
+        let t442 = grod_vy_leg3 * actuator_velocities[2];
+        let t443 = minus_minus_grod_vy_leg1 * actuator_velocities[0];
+        let t444 = minus_minus_grod_vy_leg2 * actuator_velocities[1];
+        let t447 = grod_vy_leg4 * actuator_velocities[3];
+        let t449 = grod_vy_leg5 * actuator_velocities[4];
+        let t451 = grod_vy_leg6 * actuator_velocities[5];
+        let t454 = t442 + t443 + t444 + t447 + t449 + t451 - t394 * t288;
+        let t467 = grod_vz_leg1 * grod_wy_leg1 + grod_vz_leg2 * grod_wy_leg2
+            - grod_vz_leg3 * minus_grod_wy_leg3 - grod_vz_leg4 * minus_grod_wy_leg4
+            + grod_vz_leg5 * grod_wy_leg5 - grod_vz_leg6 * minus_grod_wy_leg6;
+        let t471 = t467 - t316 * t406 + t332 * t441;
+        let t472 = t471 * t350;
+        let t473 = grod_vz_leg1 * actuator_velocities[0];
+        let t474 = grod_vz_leg2 * actuator_velocities[1];
+        let t476 = grod_vz_leg3 * actuator_velocities[2];
+        let t478 = grod_vz_leg4 * actuator_velocities[3];
+        let t480 = grod_vz_leg5 * actuator_velocities[4];
+        let t482 = grod_vz_leg6 * actuator_velocities[5];
+        let t487 = t473 + t474 + t476 + t478 + t480 + t482 - t394 * t330 - t347 * t454;
+        let t489 = t358 + t362 - t367 - t372 + t377 - t382 - t394 * t406 + t441 * t454
+            - t472 * t487;
+        let t500 = grod_wx_leg1 * grod_wy_leg1 + grod_wx_leg2 * grod_wy_leg2
             - grod_wx_leg3 * minus_grod_wy_leg3 - grod_wx_leg4 * minus_grod_wy_leg4
             + grod_wx_leg5 * grod_wy_leg5 - grod_wx_leg6 * minus_grod_wy_leg6;
-        let t460 = grod_vy_leg3 * grod_wx_leg3 + minus_minus_grod_vy_leg1 * grod_wx_leg1
-            + minus_minus_grod_vy_leg2 * grod_wx_leg2 + grod_vy_leg4 * grod_wx_leg4
-            + grod_vy_leg5 * grod_wx_leg5 + grod_vy_leg6 * grod_wx_leg6;
-        let t461 = t290 / t253;
-        let t463 = t460 - t331 * t461;
-        let t476 = grod_vz_leg1 * grod_wx_leg1 + grod_vz_leg2 * grod_wx_leg2
-            + grod_vz_leg3 * grod_wx_leg3 + grod_vz_leg4 * grod_wx_leg4
-            + grod_vz_leg5 * grod_wx_leg5 + grod_vz_leg6 * grod_wx_leg6;
-        let t479 = t463 / t347;
-        let t481 = t476 - t385 * t461 - t401 * t479;
-        let t483 = t447 - t290 * t254 + t463 * t348 - t481 * t419;
-        let t494 = grod_wx_leg1 * grod_wx_leg1 + grod_wx_leg2 * grod_wx_leg2
-            + grod_wx_leg3 * grod_wx_leg3 + grod_wx_leg4 * grod_wx_leg4
-            + grod_wx_leg5 * grod_wx_leg5 + grod_wx_leg6 * grod_wx_leg6;
-        let t499 = t481 / t418;
-        let t501 = t494 - t290 * t461 - t463 * t479 - t481 * t499;
-        ::overact::guard::platform(t501, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t501, 0.06850454637148076, "actuators")?;
-        let t502 = t483 / t501;
-        let t503 = grod_wx_leg1 * actuator_velocities[0];
-        let t504 = grod_wx_leg2 * actuator_velocities[1];
-        let t506 = grod_wx_leg3 * actuator_velocities[2];
-        let t508 = grod_wx_leg4 * actuator_velocities[3];
-        let t510 = grod_wx_leg5 * actuator_velocities[4];
-        let t512 = grod_wx_leg6 * actuator_velocities[5];
-        let t519 = t503 + t504 + t506 + t508 + t510 + t512 - t231 * t461 - t479 * t361
-            - t499 * t434;
-        let t521 = t436 - t502 * t519;
-        let t532 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
+        let t506 = t500 - t237 * t406 + t276 * t441 - t334 * t472;
+        let t507 = t506 * t354;
+        let t508 = grod_wx_leg1 * actuator_velocities[0];
+        let t509 = grod_wx_leg2 * actuator_velocities[1];
+        let t511 = grod_wx_leg3 * actuator_velocities[2];
+        let t513 = grod_wx_leg4 * actuator_velocities[3];
+        let t515 = grod_wx_leg5 * actuator_velocities[4];
+        let t517 = grod_wx_leg6 * actuator_velocities[5];
+        let t524 = t508 + t509 + t511 + t513 + t515 + t517 - t394 * t250 - t292 * t454
+            - t351 * t487;
+        let t526 = t489 - t507 * t524;
+        let t537 = grod_wy_leg1 * grod_wy_leg1 + grod_wy_leg2 * grod_wy_leg2
             + minus_grod_wy_leg3 * minus_grod_wy_leg3
             + minus_grod_wy_leg4 * minus_grod_wy_leg4 + grod_wy_leg5 * grod_wy_leg5
             + minus_grod_wy_leg6 * minus_grod_wy_leg6;
-        let t540 = t532 - t242 * t254 - t333 * t348 - t403 * t419 - t483 * t502;
-        ::overact::guard::platform(t540, 0.06850454637148076, "actuators")?;
-        ::overact::guard::platform(t540, 0.06850454637148076, "actuators")?;
-        let t552 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
+        let t545 = t537 - t405 * t406 - t440 * t441 - t471 * t472 - t506 * t507;
+        ::overact::guard::platform(t545, 0.06850454637148076, "actuators")?;
+        ::overact::guard::platform(t545, 0.06850454637148076, "actuators")?;
+        let t557 = grod_wy_leg1 * minus_grod_wz_leg1 + grod_wy_leg2 * minus_grod_wz_leg2
             + minus_grod_wy_leg3 * grod_wz_leg3 + minus_grod_wy_leg4 * grod_wz_leg4
             + grod_wy_leg5 * minus_grod_wz_leg5 + minus_grod_wy_leg6 * grod_wz_leg6;
-        let t563 = minus_minus_grod_vx_leg6 * grod_wz_leg6
+        let t568 = minus_minus_grod_vx_leg6 * grod_wz_leg6
             - (minus_minus_grod_vx_leg5 * minus_grod_wz_leg5
                 + grod_vx_leg1 * minus_grod_wz_leg1 + grod_vx_leg2 * minus_grod_wz_leg2
                 - minus_minus_grod_vx_leg3 * grod_wz_leg3
                 - minus_minus_grod_vx_leg4 * grod_wz_leg4);
-        let t564 = t563 / t253;
-        let t577 = grod_vy_leg3 * grod_wz_leg3
+        let t569 = t568 * t249;
+        let t582 = grod_vy_leg3 * grod_wz_leg3
             - (minus_minus_grod_vy_leg1 * minus_grod_wz_leg1
                 + minus_minus_grod_vy_leg2 * minus_grod_wz_leg2)
             + grod_vy_leg4 * grod_wz_leg4 - grod_vy_leg5 * minus_grod_wz_leg5
             + grod_vy_leg6 * grod_wz_leg6;
-        let t579 = t577 - t331 * t564;
-        let t580 = t579 / t347;
-        let t586 = t319 - t385 * t564 - t401 * t580;
-        let t587 = t586 / t418;
-        let t600 = grod_wx_leg3 * grod_wz_leg3
+        let t584 = t582 - t274 * t569;
+        let t585 = t584 * t291;
+        let t591 = t437 - t316 * t569 - t332 * t585;
+        let t592 = t591 * t350;
+        let t605 = grod_wx_leg3 * grod_wz_leg3
             - (grod_wx_leg1 * minus_grod_wz_leg1 + grod_wx_leg2 * minus_grod_wz_leg2)
             + grod_wx_leg4 * grod_wz_leg4 - grod_wx_leg5 * minus_grod_wz_leg5
             + grod_wx_leg6 * grod_wz_leg6;
-        let t606 = t600 - t290 * t564 - t463 * t580 - t481 * t587;
-        let t607 = t606 / t501;
-        let t609 = t552 + t242 * t564 - t333 * t580 + t403 * t587 + t483 * t607;
-        let t610 = t609 / t540;
-        let t611 = grod_wz_leg3 * actuator_velocities[2];
-        let t612 = minus_grod_wz_leg1 * actuator_velocities[0];
-        let t613 = minus_grod_wz_leg2 * actuator_velocities[1];
-        let t616 = grod_wz_leg4 * actuator_velocities[3];
-        let t618 = minus_grod_wz_leg5 * actuator_velocities[4];
-        let t620 = grod_wz_leg6 * actuator_velocities[5];
-        let t627 = t611 - (t612 + t613) + t616 - t618 + t620 - t231 * t564 - t580 * t361
-            - t587 * t434;
-        let t642 = minus_grod_wz_leg1 * minus_grod_wz_leg1
+        let t611 = t605 - t237 * t569 - t276 * t585 - t334 * t592;
+        let t612 = t611 * t354;
+        let t614 = t557 + t405 * t569 - t440 * t585 + t471 * t592 + t506 * t612;
+        let t615 = t614 / t545;
+        let t616 = grod_wz_leg3 * actuator_velocities[2];
+        let t617 = minus_grod_wz_leg1 * actuator_velocities[0];
+        let t618 = minus_grod_wz_leg2 * actuator_velocities[1];
+        let t621 = grod_wz_leg4 * actuator_velocities[3];
+        let t623 = minus_grod_wz_leg5 * actuator_velocities[4];
+        let t625 = grod_wz_leg6 * actuator_velocities[5];
+        let t632 = t616 - (t617 + t618) + t621 - t623 + t625 - t394 * t569 - t585 * t454
+            - t592 * t487;
+        let t647 = minus_grod_wz_leg1 * minus_grod_wz_leg1
             + minus_grod_wz_leg2 * minus_grod_wz_leg2 + grod_wz_leg3 * grod_wz_leg3
             + grod_wz_leg4 * grod_wz_leg4 + minus_grod_wz_leg5 * minus_grod_wz_leg5
             + grod_wz_leg6 * grod_wz_leg6;
-        let t652 = t642 - t563 * t564 - t579 * t580 - t586 * t587 - t606 * t607
-            - t609 * t610;
-        ::overact::guard::platform(t652, 0.03606775827473607, "actuators")?;
-        ::overact::guard::platform(t652, 0.03606775827473607, "actuators")?;
-        let t653 = (t627 - t607 * t519 + t610 * t521) / t652;
-        let t655 = t521 / t540 + t610 * t653;
-        let t660 = t519 / t501 - t502 * t655 - t607 * t653;
-        let t661 = t655 * t660;
-        let t663 = t660 * t660;
-        let t664 = t653 * t653;
-        let t665 = t663 + t664;
-        let t666 = t9 * t665;
-        let t668 = t653 * t655;
-        let t670 = t5 * t661 - t666 + t22 * t668;
-        let t671 = 0.05176380902050415 * t670;
-        let t673 = t13 * t665;
-        let t676 = t35 * t661 - t673 + t26 * t668;
-        let t677 = 0.19318516525781368 * t676;
-        let t678 = t671 + t677;
-        let t679 = 0.19318516525781368 * t670;
-        let t680 = 0.05176380902050415 * t676;
-        let t681 = t679 + t680;
-        let t685 = t655 * t655;
-        let t686 = t685 + t664;
-        let t687 = t5 * t686;
-        let t689 = t653 * t660;
-        let t691 = t9 * t661 - t687 + t22 * t689;
-        let t692 = 0.05176380902050415 * t691;
-        let t694 = t35 * t686;
-        let t697 = t13 * t661 - t694 + t26 * t689;
-        let t698 = 0.19318516525781368 * t697;
-        let t699 = t692 + t698;
-        let t700 = 0.19318516525781368 * t691;
-        let t701 = 0.05176380902050415 * t697;
-        let t702 = t700 + t701;
-        let t708 = t5 * t660 + t9 * t655;
-        let t710 = t663 + t685;
-        let t711 = t22 * t710;
-        let t712 = t653 * t708 - t711;
-        let t713 = 0.05176380902050415 * t712;
-        let t716 = t35 * t660 + t13 * t655;
-        let t718 = t26 * t710;
-        let t719 = t653 * t716 - t718;
-        let t720 = 0.19318516525781368 * t719;
-        let t721 = t713 + t720;
-        let t722 = 0.19318516525781368 * t712;
-        let t723 = 0.05176380902050415 * t719;
-        let t724 = t722 + t723;
-        let t728 = 0.9781476007338057 * c_cross_leg1;
-        let t737 = t434 / t418 - t499 * t660 - t419 * t655 - t587 * t653;
-        let t745 = t361 / t347 - t416 * t737 - t479 * t660 + t348 * t655 - t580 * t653;
-        let t755 = t231 / t253 - t345 * t745 - t399 * t737 - t461 * t660 - t254 * t655
-            - t564 * t653;
-        let t758 = t32 * t655 - t19 * t653;
-        let t759 = t755 + t758;
-        let t761 = 0.20791169081775931 * c_cross_leg1;
-        let t764 = t41 * t653 - t32 * t660;
-        let t765 = t745 + t764;
-        let minus_s_cross_leg1 = t48 / t52;
-        let t771 = t19 * t660 - t41 * t655;
-        let t772 = t737 + t771;
-        let t774 = t728 * t759 - t761 * t765 - minus_s_cross_leg1 * t772;
-        let minus_rate_cross_leg1 = t774 / t52;
-        let t776 = c_cylinder_leg1 * minus_rate_cross_leg1;
-        let t777 = t776 * t776;
-        let t778 = 1.0 / t59;
-        let minus_s_cylinder_leg1 = t56 / t59;
-        let t780 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
-        let t783 = 0.9781476007338057 * t780 - 0.20791169081775931 * c_cylinder_leg1;
-        let t787 = 0.20791169081775931 * t780 + 0.9781476007338057 * c_cylinder_leg1;
-        let t790 = c_cross_leg1 * minus_s_cylinder_leg1;
-        let t792 = t783 * t759 - t787 * t765 + t790 * t772;
-        let rate_cylinder_leg1 = t778 * t792;
-        let t794 = rate_cylinder_leg1 * rate_cylinder_leg1;
-        let t795 = t777 + t794;
-        let t796 = t59 * t795;
-        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t681 - t678)
-            + grod_vx_leg1 * (t702 - t699) + grod_vz_leg1 * (t724 - t721) + t796;
-        let t798 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
-        let t800 = t680 - t679;
-        let t801 = t671 - t677;
-        let t804 = t701 - t700;
-        let t805 = t692 - t698;
-        let t809 = t723 - t722;
-        let t810 = t713 - t720;
-        let t814 = 0.9781476007338057 * c_cross_leg2;
-        let t817 = t71 * t655 - t80 * t653;
-        let t820 = t72 * t655 - t81 * t653;
-        let t822 = t755 - (t817 + t820);
-        let t824 = 0.20791169081775931 * c_cross_leg2;
-        let t827 = t74 * t653 - t71 * t660;
-        let t830 = t75 * t653 - t72 * t660;
-        let t832 = t745 - (t827 + t830);
-        let minus_s_cross_leg2 = t86 * t100;
-        let t838 = t80 * t660 - t74 * t655;
-        let t841 = t81 * t660 - t75 * t655;
-        let t843 = t737 - (t838 + t841);
-        let t845 = t814 * t822 + t824 * t832 - minus_s_cross_leg2 * t843;
-        let minus_rate_cross_leg2 = t100 * t845;
-        let t847 = c_cylinder_leg2 * minus_rate_cross_leg2;
-        let t848 = t847 * t847;
+        let t657 = t647 - t568 * t569 - t584 * t585 - t591 * t592 - t611 * t612
+            - t614 * t615;
+        ::overact::guard::platform(t657, 0.03606775827473607, "actuators")?;
+        ::overact::guard::platform(t657, 0.03606775827473607, "actuators")?;
+        let t658 = (t632 - t612 * t524 + t615 * t526) / t657;
+        let t660 = t526 / t545 + t615 * t658;
+        let t665 = t354 * t524 - t507 * t660 - t612 * t658;
+        let t666 = t660 * t665;
+        let t668 = t665 * t665;
+        let t669 = t658 * t658;
+        let t670 = t668 + t669;
+        let t671 = t9 * t670;
+        let t673 = t658 * t660;
+        let t675 = t5 * t666 - t671 + t22 * t673;
+        let t676 = 0.05176380902050415 * t675;
+        let t678 = t13 * t670;
+        let t681 = t35 * t666 - t678 + t26 * t673;
+        let t682 = 0.19318516525781368 * t681;
+        let t683 = t676 + t682;
+        let t684 = 0.19318516525781368 * t675;
+        let t685 = 0.05176380902050415 * t681;
+        let t686 = t684 + t685;
+        let t690 = t660 * t660;
+        let t691 = t690 + t669;
+        let t692 = t5 * t691;
+        let t694 = t658 * t665;
+        let t696 = t9 * t666 - t692 + t22 * t694;
+        let t697 = 0.05176380902050415 * t696;
+        let t699 = t35 * t691;
+        let t702 = t13 * t666 - t699 + t26 * t694;
+        let t703 = 0.19318516525781368 * t702;
+        let t704 = t697 + t703;
+        let t705 = 0.19318516525781368 * t696;
+        let t706 = 0.05176380902050415 * t702;
+        let t707 = t705 + t706;
+        let t713 = t5 * t665 + t9 * t660;
+        let t715 = t668 + t690;
+        let t716 = t22 * t715;
+        let t717 = t658 * t713 - t716;
+        let t718 = 0.05176380902050415 * t717;
+        let t721 = t35 * t665 + t13 * t660;
+        let t723 = t26 * t715;
+        let t724 = t658 * t721 - t723;
+        let t725 = 0.19318516525781368 * t724;
+        let t726 = t718 + t725;
+        let t727 = 0.19318516525781368 * t717;
+        let t728 = 0.05176380902050415 * t724;
+        let t729 = t727 + t728;
+        let t733 = 0.9781476007338057 * c_cross_leg1;
+        let t742 = t350 * t487 - t351 * t665 - t472 * t660 - t592 * t658;
+        let t750 = t291 * t454 - t347 * t742 - t292 * t665 + t441 * t660 - t585 * t658;
+        let t760 = t394 * t249 - t288 * t750 - t330 * t742 - t250 * t665 - t406 * t660
+            - t569 * t658;
+        let t763 = t32 * t660 - t19 * t658;
+        let t764 = t760 + t763;
+        let t766 = 0.20791169081775931 * c_cross_leg1;
+        let t769 = t41 * t658 - t32 * t665;
+        let t770 = t750 + t769;
+        let minus_s_cross_leg1 = t48 * t53;
+        let t776 = t19 * t665 - t41 * t660;
+        let t777 = t742 + t776;
+        let t779 = t733 * t764 - t766 * t770 - minus_s_cross_leg1 * t777;
+        let minus_rate_cross_leg1 = t53 * t779;
+        let t781 = c_cylinder_leg1 * minus_rate_cross_leg1;
+        let t782 = t781 * t781;
+        let t783 = 1.0 / t60;
+        let minus_s_cylinder_leg1 = t57 / t60;
+        let t785 = minus_s_cross_leg1 * minus_s_cylinder_leg1;
+        let t788 = 0.9781476007338057 * t785 - 0.20791169081775931 * c_cylinder_leg1;
+        let t792 = 0.20791169081775931 * t785 + 0.9781476007338057 * c_cylinder_leg1;
+        let t795 = c_cross_leg1 * minus_s_cylinder_leg1;
+        let t797 = t788 * t764 - t792 * t770 + t795 * t777;
+        let rate_cylinder_leg1 = t783 * t797;
+        let t799 = rate_cylinder_leg1 * rate_cylinder_leg1;
+        let t800 = t782 + t799;
+        let t801 = t60 * t800;
+        let minus_minus_rate_dot_rod_leg1 = minus_minus_grod_vy_leg1 * (t686 - t683)
+            + grod_vx_leg1 * (t707 - t704) + grod_vz_leg1 * (t729 - t726) + t801;
+        let t803 = actuator_accelerations[0] - minus_minus_rate_dot_rod_leg1;
+        let t805 = t685 - t684;
+        let t806 = t676 - t682;
+        let t809 = t706 - t705;
+        let t810 = t697 - t703;
+        let t814 = t728 - t727;
+        let t815 = t718 - t725;
+        let t819 = 0.9781476007338057 * c_cross_leg2;
+        let t822 = t71 * t660 - t68 * t658;
+        let t825 = t72 * t660 - t69 * t658;
+        let t827 = t760 - (t822 + t825);
+        let t829 = 0.20791169081775931 * c_cross_leg2;
+        let t832 = t75 * t658 - t71 * t665;
+        let t835 = t76 * t658 - t72 * t665;
+        let t837 = t750 - (t832 + t835);
+        let minus_s_cross_leg2 = t84 * t89;
+        let t843 = t68 * t665 - t75 * t660;
+        let t846 = t69 * t665 - t76 * t660;
+        let t848 = t742 - (t843 + t846);
+        let t850 = t819 * t827 + t829 * t837 - minus_s_cross_leg2 * t848;
+        let minus_rate_cross_leg2 = t89 * t850;
+        let t852 = c_cylinder_leg2 * minus_rate_cross_leg2;
+        let t853 = t852 * t852;
         let s_cylinder_leg2 = t93 / t96;
-        let t851 = minus_s_cross_leg2 * s_cylinder_leg2;
-        let t853 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t851;
-        let t857 = 0.20791169081775931 * t851 + 0.9781476007338057 * c_cylinder_leg2;
-        let t860 = c_cross_leg2 * s_cylinder_leg2;
-        let t862 = t853 * t822 - t857 * t832 - t860 * t843;
-        let rate_cylinder_leg2 = t259 * t862;
-        let t864 = rate_cylinder_leg2 * rate_cylinder_leg2;
-        let t865 = t848 + t864;
-        let t866 = t96 * t865;
-        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t800 + t801)
-            + grod_vx_leg2 * (t804 + t805) + grod_vz_leg2 * (t809 + t810) - t866;
-        let t868 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
-        let t876 = 0.9510565162951536 * c_cross_leg3;
-        let t879 = t31 * t660 - t40 * t653;
-        let t881 = t745 - (t764 + t879);
-        let t883 = 0.30901699437494734 * c_cross_leg3;
-        let t886 = t18 * t653 - t31 * t655;
-        let t888 = t755 - (t758 + t886);
-        let minus_s_cross_leg3 = t114 / t128;
-        let t894 = t40 * t655 - t18 * t660;
-        let t896 = t737 - (t771 + t894);
-        let t898 = t876 * t881 - t883 * t888 - minus_s_cross_leg3 * t896;
-        let minus_rate_cross_leg3 = t898 / t128;
-        let t900 = c_cylinder_leg3 * minus_rate_cross_leg3;
-        let t901 = t900 * t900;
+        let t856 = minus_s_cross_leg2 * s_cylinder_leg2;
+        let t858 = 0.20791169081775931 * c_cylinder_leg2 - 0.9781476007338057 * t856;
+        let t862 = 0.20791169081775931 * t856 + 0.9781476007338057 * c_cylinder_leg2;
+        let t865 = c_cross_leg2 * s_cylinder_leg2;
+        let t867 = t858 * t827 - t862 * t837 - t865 * t848;
+        let rate_cylinder_leg2 = t100 * t867;
+        let t869 = rate_cylinder_leg2 * rate_cylinder_leg2;
+        let t870 = t853 + t869;
+        let t871 = t96 * t870;
+        let minus_rate_dot_rod_leg2 = minus_minus_grod_vy_leg2 * (t805 + t806)
+            + grod_vx_leg2 * (t809 + t810) + grod_vz_leg2 * (t814 + t815) - t871;
+        let t873 = actuator_accelerations[1] + minus_rate_dot_rod_leg2;
+        let t881 = 0.9510565162951536 * c_cross_leg3;
+        let t884 = t31 * t665 - t40 * t658;
+        let t886 = t750 - (t769 + t884);
+        let t888 = 0.30901699437494734 * c_cross_leg3;
+        let t891 = t18 * t658 - t31 * t660;
+        let t893 = t760 - (t763 + t891);
+        let minus_s_cross_leg3 = t113 / t117;
+        let t899 = t40 * t660 - t18 * t665;
+        let t901 = t742 - (t776 + t899);
+        let t903 = t881 * t886 - t888 * t893 - minus_s_cross_leg3 * t901;
+        let minus_rate_cross_leg3 = t903 / t117;
+        let t905 = c_cylinder_leg3 * minus_rate_cross_leg3;
+        let t906 = t905 * t905;
         let s_cylinder_leg3 = t121 / t124;
-        let t903 = minus_s_cross_leg3 * s_cylinder_leg3;
-        let t906 = 0.30901699437494734 * t903 + 0.9510565162951536 * c_cylinder_leg3;
-        let t910 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t903;
-        let t913 = c_cross_leg3 * s_cylinder_leg3;
-        let t915 = t906 * t888 + t910 * t881 - t913 * t896;
-        let rate_cylinder_leg3 = t125 * t915;
-        let t917 = rate_cylinder_leg3 * rate_cylinder_leg3;
-        let t918 = t901 + t917;
-        let t919 = t124 * t918;
-        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t699
-            + grod_vy_leg3 * t678 + grod_vz_leg3 * t721 + t919;
-        let t921 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
-        let t929 = 0.7431448254773945 * c_cross_leg4;
-        let t930 = t745 + t827;
-        let t932 = 0.6691306063588579 * c_cross_leg4;
-        let t933 = t755 + t817;
-        let minus_s_cross_leg4 = t142 * t157;
-        let t937 = t737 + t838;
-        let t939 = t929 * t930 - t932 * t933 - minus_s_cross_leg4 * t937;
-        let minus_rate_cross_leg4 = t157 * t939;
-        let t941 = c_cylinder_leg4 * minus_rate_cross_leg4;
-        let t942 = t941 * t941;
-        let s_cylinder_leg4 = t149 / t152;
-        let t944 = minus_s_cross_leg4 * s_cylinder_leg4;
-        let t947 = 0.6691306063588579 * t944 + 0.7431448254773945 * c_cylinder_leg4;
-        let t951 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t944;
-        let t954 = c_cross_leg4 * s_cylinder_leg4;
-        let t956 = t947 * t933 + t951 * t930 - t954 * t937;
-        let rate_cylinder_leg4 = t153 * t956;
-        let t958 = rate_cylinder_leg4 * rate_cylinder_leg4;
-        let t959 = t942 + t958;
-        let t960 = t152 * t959;
-        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t804
-            + grod_vy_leg4 * t800 + grod_vz_leg4 * t809 + t960;
-        let t962 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
-        let s_cross_leg5 = t171 * t185;
-        let t971 = t737 + t894;
-        let t973 = 0.6691306063588579 * c_cross_leg5;
-        let t974 = t755 + t886;
-        let t976 = 0.7431448254773945 * c_cross_leg5;
-        let t977 = t745 + t879;
-        let t980 = s_cross_leg5 * t971 - (t973 * t974 + t976 * t977);
-        let minus_rate_cross_leg5 = t185 * t980;
-        let t982 = c_cylinder_leg5 * minus_rate_cross_leg5;
-        let t983 = t982 * t982;
-        let s_cylinder_leg5 = t178 / t181;
-        let t986 = s_cross_leg5 * s_cylinder_leg5;
-        let t988 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t986;
-        let t992 = 0.6691306063588579 * t986 + 0.7431448254773945 * c_cylinder_leg5;
-        let t995 = c_cross_leg5 * s_cylinder_leg5;
-        let t997 = t988 * t977 - t992 * t974 - t995 * t971;
-        let rate_cylinder_leg5 = t277 * t997;
-        let t999 = rate_cylinder_leg5 * rate_cylinder_leg5;
-        let t1000 = t983 + t999;
-        let t1001 = t181 * t1000;
-        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t681
-            + minus_minus_grod_vx_leg5 * t702 + grod_vz_leg5 * t724 - t1001;
-        let t1003 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
-        let s_cross_leg6 = t199 * t213;
-        let t1012 = t737 + t841;
-        let t1014 = 0.30901699437494734 * c_cross_leg6;
-        let t1015 = t755 + t820;
-        let t1017 = 0.9510565162951536 * c_cross_leg6;
-        let t1018 = t745 + t830;
-        let t1021 = s_cross_leg6 * t1012 - (t1014 * t1015 + t1017 * t1018);
-        let minus_rate_cross_leg6 = t213 * t1021;
-        let t1023 = c_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1024 = t1023 * t1023;
-        let s_cylinder_leg6 = t206 / t209;
-        let t1027 = s_cross_leg6 * s_cylinder_leg6;
-        let t1029 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1027;
-        let t1033 = 0.30901699437494734 * t1027 + 0.9510565162951536 * c_cylinder_leg6;
-        let t1036 = c_cross_leg6 * s_cylinder_leg6;
-        let t1038 = t1029 * t1018 - t1033 * t1015 - t1036 * t1012;
-        let rate_cylinder_leg6 = t285 * t1038;
-        let t1040 = rate_cylinder_leg6 * rate_cylinder_leg6;
-        let t1041 = t1024 + t1040;
-        let t1042 = t209 * t1041;
-        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t805
-            + grod_vy_leg6 * t801 + grod_vz_leg6 * t810 + t1042;
-        let t1044 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
-        let t1046 = grod_wx_leg1 * t798 + grod_wx_leg2 * t868 + grod_wx_leg3 * t921
-            + grod_wx_leg4 * t962 + grod_wx_leg5 * t1003 + grod_wx_leg6 * t1044;
-        let t1057 = grod_vx_leg1 * t798 + grod_vx_leg2 * t868
-            + minus_minus_grod_vx_leg3 * t921 + minus_minus_grod_vx_leg4 * t962
-            + minus_minus_grod_vx_leg5 * t1003 + minus_minus_grod_vx_leg6 * t1044;
-        let t1070 = grod_vy_leg3 * t921 + minus_minus_grod_vy_leg1 * t798
-            + minus_minus_grod_vy_leg2 * t868 + grod_vy_leg4 * t962
-            + grod_vy_leg5 * t1003 + grod_vy_leg6 * t1044;
-        let t1072 = t1070 - t345 * t1057;
-        let t1085 = grod_vz_leg1 * t798 + grod_vz_leg2 * t868 + grod_vz_leg3 * t921
-            + grod_vz_leg4 * t962 + grod_vz_leg5 * t1003 + grod_vz_leg6 * t1044;
-        let t1089 = t1085 - t399 * t1057 - t416 * t1072;
-        let t1091 = t1046 - t461 * t1057 - t479 * t1072 - t499 * t1089;
-        let t1103 = grod_wy_leg1 * t798 + grod_wy_leg2 * t868 - minus_grod_wy_leg3 * t921
-            - minus_grod_wy_leg4 * t962 + grod_wy_leg5 * t1003
-            - minus_grod_wy_leg6 * t1044;
-        let t1111 = t1103 - t254 * t1057 + t348 * t1072 - t419 * t1089 - t502 * t1091;
-        let t1123 = grod_wz_leg3 * t921
-            - (minus_grod_wz_leg1 * t798 + minus_grod_wz_leg2 * t868)
-            + grod_wz_leg4 * t962 - minus_grod_wz_leg5 * t1003 + grod_wz_leg6 * t1044;
-        let t1133 = t1123 - t564 * t1057 - t580 * t1072 - t587 * t1089 - t607 * t1091
-            + t610 * t1111;
-        let t1134 = t1133 / t652;
-        let t1136 = t1111 / t540 + t610 * t1134;
-        let t1140 = t1091 / t501 - t502 * t1136 - t607 * t1134;
-        let t1145 = t5 * t1140 + t9 * t1136 + t22 * t1134;
-        let t1148 = t708 + t22 * t653;
-        let t1149 = t20 + t21;
-        let t1151 = t24 - t25;
-        let t1154 = t12 - t1;
-        let t1156 = t1149 * t660 + t1151 * t655 + t1154 * t653;
-        let t1157 = t1148 * t1156;
-        let t1158 = t35 * t1157;
-        let t1161 = t716 + t26 * t653;
-        let t1162 = t1148 * t1161;
-        let t1163 = t1149 * t1162;
-        let t1166 = t13 * t1157;
-        let t1168 = t1151 * t1162;
-        let t1171 = t26 * t1157;
-        let t1173 = t1154 * t1162;
-        let t1179 = t35 * t1140 + t13 * t1136 + t26 * t1134;
-        let t1180 = t1179 - t1157;
-        let t1182 = t1161 * t1156;
-        let t1183 = t1145 + t1182;
-        let t1186 = t1148 * t1148;
-        let t1187 = t1161 * t1161;
-        let t1188 = t1186 - t1187;
-        let t1205 = t1149 * t1140 + t1151 * t1136 + t1154 * t1134;
-        let t1206 = t1205 + t1162;
-        let t1208 = t1156 * t1156;
-        let t1209 = t1208 - t1186;
-        let t1212 = t1145 - t1182;
-        let t1226 = t5 * t1182;
-        let t1230 = t9 * t1182;
-        let t1234 = t22 * t1182;
-        let t1237 = t1187 - t1208;
-        let t1239 = t1205 - t1162;
-        let t1242 = t1179 + t1157;
-        let t1264 = t661 - t1134;
-        let t1267 = t689 + t1136;
-        let t1269 = t9 * t1264 - t687 + t22 * t1267;
-        let t1270 = t661 + t1134;
-        let t1273 = t668 - t1140;
-        let t1275 = t5 * t1270 - t666 + t22 * t1273;
-        let t1276 = t689 - t1136;
-        let t1278 = t668 + t1140;
-        let t1281 = t5 * t1276 + t9 * t1278 - t711;
-        let t1288 = t1089 / t418 - t499 * t1140 - t419 * t1136 - t587 * t1134;
-        let t1289 = t1288 + 9.81;
-        let t1299 = t1072 / t347 - t416 * t1288 - t479 * t1140 + t348 * t1136
-            - t580 * t1134;
-        let t1312 = t1057 / t253 - t345 * t1299 - t399 * t1288 - t461 * t1140
-            - t254 * t1136 - t564 * t1134;
-        let t1322 = t13 * t1264 - t694 + t26 * t1267;
-        let t1326 = t35 * t1270 - t673 + t26 * t1273;
-        let t1330 = t35 * t1276 + t13 * t1278 - t718;
-        let minus_gcross_vx_leg1 = t728 / t52;
-        let t1365 = 0.05176380902050415 * t1269;
-        let t1366 = 0.19318516525781368 * t1322;
-        let t1367 = t1365 + t1366;
-        let t1368 = 0.19318516525781368 * t1269;
-        let t1369 = 0.05176380902050415 * t1322;
-        let t1370 = t1368 + t1369;
-        let t1372 = t1312 + t1370 - t1367;
-        let t1374 = 0.05176380902050415 * t1275;
-        let t1375 = 0.19318516525781368 * t1326;
-        let t1376 = t1374 + t1375;
-        let t1377 = 0.19318516525781368 * t1275;
-        let t1378 = 0.05176380902050415 * t1326;
-        let t1379 = t1377 + t1378;
-        let t1381 = t1299 + t1379 - t1376;
-        let t1384 = 0.05176380902050415 * t1281;
-        let t1385 = 0.19318516525781368 * t1330;
-        let t1386 = t1384 + t1385;
-        let t1387 = 0.19318516525781368 * t1281;
-        let t1388 = 0.05176380902050415 * t1330;
-        let t1389 = t1387 + t1388;
-        let t1391 = t1288 + t1389 - t1386;
-        let t1393 = t728 * t1372 - t761 * t1381 - minus_s_cross_leg1 * t1391;
-        let t1394 = 2.0 * actuator_velocities[0];
-        let t1396 = t1393 - t776 * t1394;
-        let t1397 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
-        let t1398 = t1397 * t792;
-        let minus_rate_dot_cross_leg1 = (t1396 - (t1398 + t1398)) / t52;
-        let t1402 = rate_cylinder_leg1 * t776;
-        let t1403 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1405 = t1402 + t1402 - t1403;
-        let t1406 = minus_s_cylinder_leg1 * t1405;
-        let t1407 = minus_rate_dot_cross_leg1 + t1406;
-        let gcylinder_vx_leg1 = t783 * t778;
-        let t1410 = t776 * t1397;
-        let t1411 = gcylinder_vx_leg1 * t1410;
-        let minus_gcylinder_vy_leg1 = t787 * t778;
-        let t1414 = minus_gcylinder_vy_leg1 * t1410;
-        let gcross_vy_leg1 = t761 / t52;
-        let gcross_vz_leg1 = minus_s_cross_leg1 / t52;
-        let gcylinder_vz_leg1 = t790 * t778;
-        let t1421 = gcylinder_vz_leg1 * t1410;
+        let t908 = minus_s_cross_leg3 * s_cylinder_leg3;
+        let t911 = 0.30901699437494734 * t908 + 0.9510565162951536 * c_cylinder_leg3;
+        let t915 = 0.30901699437494734 * c_cylinder_leg3 - 0.9510565162951536 * t908;
+        let t918 = c_cross_leg3 * s_cylinder_leg3;
+        let t920 = t911 * t893 + t915 * t886 - t918 * t901;
+        let rate_cylinder_leg3 = t128 * t920;
+        let t922 = rate_cylinder_leg3 * rate_cylinder_leg3;
+        let t923 = t906 + t922;
+        let t924 = t124 * t923;
+        let minus_minus_rate_dot_rod_leg3 = minus_minus_grod_vx_leg3 * t704
+            + grod_vy_leg3 * t683 + grod_vz_leg3 * t726 + t924;
+        let t926 = actuator_accelerations[2] - minus_minus_rate_dot_rod_leg3;
+        let t934 = 0.7431448254773945 * c_cross_leg4;
+        let t935 = t750 + t832;
+        let t937 = 0.6691306063588579 * c_cross_leg4;
+        let t938 = t760 + t822;
+        let minus_s_cross_leg4 = t141 * t146;
+        let t942 = t742 + t843;
+        let t944 = t934 * t935 - t937 * t938 - minus_s_cross_leg4 * t942;
+        let minus_rate_cross_leg4 = t146 * t944;
+        let t946 = c_cylinder_leg4 * minus_rate_cross_leg4;
+        let t947 = t946 * t946;
+        let s_cylinder_leg4 = t150 / t153;
+        let t949 = minus_s_cross_leg4 * s_cylinder_leg4;
+        let t952 = 0.6691306063588579 * t949 + 0.7431448254773945 * c_cylinder_leg4;
+        let t956 = 0.6691306063588579 * c_cylinder_leg4 - 0.7431448254773945 * t949;
+        let t959 = c_cross_leg4 * s_cylinder_leg4;
+        let t961 = t952 * t938 + t956 * t935 - t959 * t942;
+        let rate_cylinder_leg4 = t157 * t961;
+        let t963 = rate_cylinder_leg4 * rate_cylinder_leg4;
+        let t964 = t947 + t963;
+        let t965 = t153 * t964;
+        let minus_minus_rate_dot_rod_leg4 = minus_minus_grod_vx_leg4 * t809
+            + grod_vy_leg4 * t805 + grod_vz_leg4 * t814 + t965;
+        let t967 = actuator_accelerations[3] - minus_minus_rate_dot_rod_leg4;
+        let s_cross_leg5 = t169 * t184;
+        let t976 = t742 + t899;
+        let t978 = 0.6691306063588579 * c_cross_leg5;
+        let t979 = t760 + t891;
+        let t981 = 0.7431448254773945 * c_cross_leg5;
+        let t982 = t750 + t884;
+        let t985 = s_cross_leg5 * t976 - (t978 * t979 + t981 * t982);
+        let minus_rate_cross_leg5 = t184 * t985;
+        let t987 = c_cylinder_leg5 * minus_rate_cross_leg5;
+        let t988 = t987 * t987;
+        let s_cylinder_leg5 = t176 / t179;
+        let t991 = s_cross_leg5 * s_cylinder_leg5;
+        let t993 = 0.6691306063588579 * c_cylinder_leg5 - 0.7431448254773945 * t991;
+        let t997 = 0.6691306063588579 * t991 + 0.7431448254773945 * c_cylinder_leg5;
+        let t1000 = c_cross_leg5 * s_cylinder_leg5;
+        let t1002 = t993 * t982 - t997 * t979 - t1000 * t976;
+        let rate_cylinder_leg5 = t180 * t1002;
+        let t1004 = rate_cylinder_leg5 * rate_cylinder_leg5;
+        let t1005 = t988 + t1004;
+        let t1006 = t179 * t1005;
+        let minus_rate_dot_rod_leg5 = grod_vy_leg5 * t686
+            + minus_minus_grod_vx_leg5 * t707 + grod_vz_leg5 * t729 - t1006;
+        let t1008 = actuator_accelerations[4] + minus_rate_dot_rod_leg5;
+        let s_cross_leg6 = t199 * t204;
+        let t1017 = t742 + t846;
+        let t1019 = 0.30901699437494734 * c_cross_leg6;
+        let t1020 = t760 + t825;
+        let t1022 = 0.9510565162951536 * c_cross_leg6;
+        let t1023 = t750 + t835;
+        let t1026 = s_cross_leg6 * t1017 - (t1019 * t1020 + t1022 * t1023);
+        let minus_rate_cross_leg6 = t204 * t1026;
+        let t1028 = c_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1029 = t1028 * t1028;
+        let s_cylinder_leg6 = t208 / t211;
+        let t1032 = s_cross_leg6 * s_cylinder_leg6;
+        let t1034 = 0.30901699437494734 * c_cylinder_leg6 - 0.9510565162951536 * t1032;
+        let t1038 = 0.30901699437494734 * t1032 + 0.9510565162951536 * c_cylinder_leg6;
+        let t1041 = c_cross_leg6 * s_cylinder_leg6;
+        let rate_cylinder_leg6 = t234 * (t1034 * t1023 - t1038 * t1020 - t1041 * t1017);
+        let t1045 = rate_cylinder_leg6 * rate_cylinder_leg6;
+        let t1046 = t1029 + t1045;
+        let t1047 = t211 * t1046;
+        let minus_minus_rate_dot_rod_leg6 = minus_minus_grod_vx_leg6 * t810
+            + grod_vy_leg6 * t806 + grod_vz_leg6 * t815 + t1047;
+        let t1049 = actuator_accelerations[5] - minus_minus_rate_dot_rod_leg6;
+        let t1051 = grod_wx_leg1 * t803 + grod_wx_leg2 * t873 + grod_wx_leg3 * t926
+            + grod_wx_leg4 * t967 + grod_wx_leg5 * t1008 + grod_wx_leg6 * t1049;
+        let t1062 = grod_vx_leg1 * t803 + grod_vx_leg2 * t873
+            + minus_minus_grod_vx_leg3 * t926 + minus_minus_grod_vx_leg4 * t967
+            + minus_minus_grod_vx_leg5 * t1008 + minus_minus_grod_vx_leg6 * t1049;
+        let t1075 = grod_vy_leg3 * t926 + minus_minus_grod_vy_leg1 * t803
+            + minus_minus_grod_vy_leg2 * t873 + grod_vy_leg4 * t967
+            + grod_vy_leg5 * t1008 + grod_vy_leg6 * t1049;
+        let t1077 = t1075 - t288 * t1062;
+        let t1090 = grod_vz_leg1 * t803 + grod_vz_leg2 * t873 + grod_vz_leg3 * t926
+            + grod_vz_leg4 * t967 + grod_vz_leg5 * t1008 + grod_vz_leg6 * t1049;
+        let t1094 = t1090 - t330 * t1062 - t347 * t1077;
+        let t1096 = t1051 - t250 * t1062 - t292 * t1077 - t351 * t1094;
+        let t1108 = grod_wy_leg1 * t803 + grod_wy_leg2 * t873 - minus_grod_wy_leg3 * t926
+            - minus_grod_wy_leg4 * t967 + grod_wy_leg5 * t1008
+            - minus_grod_wy_leg6 * t1049;
+        let t1116 = t1108 - t406 * t1062 + t441 * t1077 - t472 * t1094 - t507 * t1096;
+        let t1128 = grod_wz_leg3 * t926
+            - (minus_grod_wz_leg1 * t803 + minus_grod_wz_leg2 * t873)
+            + grod_wz_leg4 * t967 - minus_grod_wz_leg5 * t1008 + grod_wz_leg6 * t1049;
+        let t1138 = t1128 - t569 * t1062 - t585 * t1077 - t592 * t1094 - t612 * t1096
+            + t615 * t1116;
+        let t1139 = t1138 / t657;
+        let t1141 = t1116 / t545 + t615 * t1139;
+        let t1145 = t354 * t1096 - t507 * t1141 - t612 * t1139;
+        let t1150 = t5 * t1145 + t9 * t1141 + t22 * t1139;
+        let t1153 = t713 + t22 * t658;
+        let t1154 = t20 + t21;
+        let t1156 = t24 - t25;
+        let t1159 = t12 - t1;
+        let t1161 = t1154 * t665 + t1156 * t660 + t1159 * t658;
+        let t1162 = t1153 * t1161;
+        let t1163 = t35 * t1162;
+        let t1166 = t721 + t26 * t658;
+        let t1167 = t1153 * t1166;
+        let t1168 = t1154 * t1167;
+        let t1171 = t13 * t1162;
+        let t1173 = t1156 * t1167;
+        let t1176 = t26 * t1162;
+        let t1178 = t1159 * t1167;
+        let t1184 = t35 * t1145 + t13 * t1141 + t26 * t1139;
+        let t1185 = t1184 - t1162;
+        let t1187 = t1166 * t1161;
+        let t1188 = t1150 + t1187;
+        let t1191 = t1153 * t1153;
+        let t1192 = t1166 * t1166;
+        let t1193 = t1191 - t1192;
+        let t1210 = t1154 * t1145 + t1156 * t1141 + t1159 * t1139;
+        let t1211 = t1210 + t1167;
+        let t1213 = t1161 * t1161;
+        let t1214 = t1213 - t1191;
+        let t1217 = t1150 - t1187;
+        let t1231 = t5 * t1187;
+        let t1235 = t9 * t1187;
+        let t1239 = t22 * t1187;
+        let t1242 = t1192 - t1213;
+        let t1244 = t1210 - t1167;
+        let t1247 = t1184 + t1162;
+        let t1269 = t666 - t1139;
+        let t1272 = t694 + t1141;
+        let t1274 = t9 * t1269 - t692 + t22 * t1272;
+        let t1275 = t666 + t1139;
+        let t1278 = t673 - t1145;
+        let t1280 = t5 * t1275 - t671 + t22 * t1278;
+        let t1281 = t694 - t1141;
+        let t1283 = t673 + t1145;
+        let t1286 = t5 * t1281 + t9 * t1283 - t716;
+        let t1293 = t350 * t1094 - t351 * t1145 - t472 * t1141 - t592 * t1139;
+        let t1294 = t1293 + 9.81;
+        let t1304 = t291 * t1077 - t347 * t1293 - t292 * t1145 + t441 * t1141
+            - t585 * t1139;
+        let t1317 = t249 * t1062 - t288 * t1304 - t330 * t1293 - t250 * t1145
+            - t406 * t1141 - t569 * t1139;
+        let t1327 = t13 * t1269 - t699 + t26 * t1272;
+        let t1331 = t35 * t1275 - t678 + t26 * t1278;
+        let t1335 = t35 * t1281 + t13 * t1283 - t723;
+        let minus_gcross_vx_leg1 = t53 * t733;
+        let t1370 = 0.05176380902050415 * t1274;
+        let t1371 = 0.19318516525781368 * t1327;
+        let t1372 = t1370 + t1371;
+        let t1373 = 0.19318516525781368 * t1274;
+        let t1374 = 0.05176380902050415 * t1327;
+        let t1375 = t1373 + t1374;
+        let t1377 = t1317 + t1375 - t1372;
+        let t1379 = 0.05176380902050415 * t1280;
+        let t1380 = 0.19318516525781368 * t1331;
+        let t1381 = t1379 + t1380;
+        let t1382 = 0.19318516525781368 * t1280;
+        let t1383 = 0.05176380902050415 * t1331;
+        let t1384 = t1382 + t1383;
+        let t1386 = t1304 + t1384 - t1381;
+        let t1389 = 0.05176380902050415 * t1286;
+        let t1390 = 0.19318516525781368 * t1335;
+        let t1391 = t1389 + t1390;
+        let t1392 = 0.19318516525781368 * t1286;
+        let t1393 = 0.05176380902050415 * t1335;
+        let t1394 = t1392 + t1393;
+        let t1396 = t1293 + t1394 - t1391;
+        let t1398 = t733 * t1377 - t766 * t1386 - minus_s_cross_leg1 * t1396;
+        let t1399 = minus_s_cylinder_leg1 * minus_rate_cross_leg1;
+        let t1400 = t1399 * t797;
+        let t1403 = 2.0 * actuator_velocities[0];
+        let minus_rate_dot_cross_leg1 = t53 * (t1398 - t1400 - t1400 - t781 * t1403);
+        let t1407 = rate_cylinder_leg1 * t781;
+        let t1408 = minus_s_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1410 = t1407 + t1407 - t1408;
+        let t1411 = minus_s_cylinder_leg1 * t1410;
+        let t1412 = minus_rate_dot_cross_leg1 + t1411;
+        let gcylinder_vx_leg1 = t788 * t783;
+        let t1415 = t781 * t1399;
+        let t1416 = gcylinder_vx_leg1 * t1415;
+        let minus_gcylinder_vy_leg1 = t792 * t783;
+        let t1419 = minus_gcylinder_vy_leg1 * t1415;
+        let gcross_vy_leg1 = t53 * t766;
+        let gcross_vz_leg1 = t53 * minus_s_cross_leg1;
+        let gcylinder_vz_leg1 = t795 * t783;
+        let t1426 = gcylinder_vz_leg1 * t1415;
         let gcross_wx_leg1 = t19 * gcross_vz_leg1 - t32 * gcross_vy_leg1;
         let gcylinder_wx_leg1 = t19 * gcylinder_vz_leg1 + t32 * minus_gcylinder_vy_leg1;
-        let t1430 = gcylinder_wx_leg1 * t1410;
+        let t1435 = gcylinder_wx_leg1 * t1415;
         let minus_gcross_wy_leg1 = t32 * minus_gcross_vx_leg1 + t41 * gcross_vz_leg1;
         let gcylinder_wy_leg1 = t32 * gcylinder_vx_leg1 - t41 * gcylinder_vz_leg1;
-        let t1439 = gcylinder_wy_leg1 * t1410;
+        let t1444 = gcylinder_wy_leg1 * t1415;
         let minus_gcylinder_wz_leg1 = t41 * minus_gcylinder_vy_leg1
             + t19 * gcylinder_vx_leg1;
-        let t1444 = minus_gcylinder_wz_leg1 * t1410;
+        let t1449 = minus_gcylinder_wz_leg1 * t1415;
         let gcross_wz_leg1 = t41 * gcross_vy_leg1 + t19 * minus_gcross_vx_leg1;
-        let gcylinder_vx_leg2 = t853 * t259;
-        let t1451 = s_cylinder_leg2 * minus_rate_cross_leg2;
-        let t1452 = t847 * t1451;
-        let t1453 = gcylinder_vx_leg2 * t1452;
-        let minus_gcross_vx_leg2 = t100 * t814;
-        let t1455 = t1369 - t1368;
-        let t1456 = t1365 - t1366;
-        let t1458 = t1312 - (t1455 + t1456);
-        let t1460 = t1378 - t1377;
-        let t1461 = t1374 - t1375;
-        let t1463 = t1299 - (t1460 + t1461);
-        let t1466 = t1388 - t1387;
-        let t1467 = t1384 - t1385;
-        let t1469 = t1288 - (t1466 + t1467);
-        let t1471 = t814 * t1458 + t824 * t1463 - minus_s_cross_leg2 * t1469;
-        let t1472 = actuator_velocities[1] + actuator_velocities[1];
-        let t1474 = t1471 - t847 * t1472;
-        let t1475 = t1451 * t862;
-        let minus_rate_dot_cross_leg2 = t100 * (t1474 + t1475 + t1475);
-        let t1479 = rate_cylinder_leg2 * t847;
-        let t1480 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1482 = t1479 + t1480 + t1479;
-        let t1483 = s_cylinder_leg2 * t1482;
-        let t1484 = t1483 - minus_rate_dot_cross_leg2;
-        let minus_gcross_vy_leg2 = t100 * t824;
-        let minus_gcylinder_vy_leg2 = t857 * t259;
-        let t1490 = minus_gcylinder_vy_leg2 * t1452;
-        let gcross_vz_leg2 = t100 * minus_s_cross_leg2;
-        let minus_gcylinder_vz_leg2 = t860 * t259;
-        let t1495 = minus_gcylinder_vz_leg2 * t1452;
-        let minus_gcross_wx_leg2 = t82 * gcross_vz_leg2 + t73 * minus_gcross_vy_leg2;
-        let gcylinder_wx_leg2 = t82 * minus_gcylinder_vz_leg2
+        let gcylinder_vx_leg2 = t858 * t100;
+        let t1456 = s_cylinder_leg2 * minus_rate_cross_leg2;
+        let t1457 = t852 * t1456;
+        let t1458 = gcylinder_vx_leg2 * t1457;
+        let minus_gcross_vx_leg2 = t89 * t819;
+        let t1460 = t1374 - t1373;
+        let t1461 = t1370 - t1371;
+        let t1463 = t1317 - (t1460 + t1461);
+        let t1465 = t1383 - t1382;
+        let t1466 = t1379 - t1380;
+        let t1468 = t1304 - (t1465 + t1466);
+        let t1471 = t1393 - t1392;
+        let t1472 = t1389 - t1390;
+        let t1474 = t1293 - (t1471 + t1472);
+        let t1476 = t819 * t1463 + t829 * t1468 - minus_s_cross_leg2 * t1474;
+        let t1477 = actuator_velocities[1] + actuator_velocities[1];
+        let t1479 = t1476 - t852 * t1477;
+        let t1480 = t1479 / t96;
+        let t1481 = c_cylinder_leg2 * t1480;
+        let minus_gcross_vy_leg2 = t89 * t829;
+        let minus_gcylinder_vy_leg2 = t862 * t100;
+        let t1487 = minus_gcylinder_vy_leg2 * t1457;
+        let gcross_vz_leg2 = t89 * minus_s_cross_leg2;
+        let minus_gcylinder_vz_leg2 = t865 * t100;
+        let t1492 = minus_gcylinder_vz_leg2 * t1457;
+        let minus_gcross_wx_leg2 = t70 * gcross_vz_leg2 + t73 * minus_gcross_vy_leg2;
+        let gcylinder_wx_leg2 = t70 * minus_gcylinder_vz_leg2
             - t73 * minus_gcylinder_vy_leg2;
-        let t1504 = gcylinder_wx_leg2 * t1452;
+        let t1501 = gcylinder_wx_leg2 * t1457;
         let minus_gcylinder_wy_leg2 = t73 * gcylinder_vx_leg2
-            + t76 * minus_gcylinder_vz_leg2;
-        let t1509 = minus_gcylinder_wy_leg2 * t1452;
+            + t77 * minus_gcylinder_vz_leg2;
+        let t1506 = minus_gcylinder_wy_leg2 * t1457;
         let minus_minus_gcross_wy_leg2 = t73 * minus_gcross_vx_leg2
-            + t76 * gcross_vz_leg2;
-        let gcross_wz_leg2 = t76 * minus_gcross_vy_leg2 - t82 * minus_gcross_vx_leg2;
-        let minus_minus_gcylinder_wz_leg2 = t76 * minus_gcylinder_vy_leg2
-            + t82 * gcylinder_vx_leg2;
-        let t1522 = minus_minus_gcylinder_wz_leg2 * t1452;
-        let gcross_vx_leg3 = t883 / t128;
-        let t1525 = t1299 + t1376;
-        let t1527 = t1312 + t1367;
-        let t1530 = t1288 + t1386;
-        let t1532 = t876 * t1525 - t883 * t1527 - minus_s_cross_leg3 * t1530;
-        let t1533 = actuator_velocities[2] + actuator_velocities[2];
-        let t1535 = t1532 - t900 * t1533;
-        let t1536 = s_cylinder_leg3 * minus_rate_cross_leg3;
-        let t1537 = t1536 * t915;
-        let minus_rate_dot_cross_leg3 = (t1535 + t1537 + t1537) / t128;
-        let t1541 = rate_cylinder_leg3 * t900;
-        let t1542 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t1544 = t1541 + t1542 + t1541;
-        let t1545 = s_cylinder_leg3 * t1544;
-        let t1546 = t1545 - minus_rate_dot_cross_leg3;
-        let gcylinder_vx_leg3 = t906 * t125;
-        let t1549 = t900 * t1536;
-        let t1550 = gcylinder_vx_leg3 * t1549;
-        let gcylinder_vy_leg3 = t910 * t125;
-        let t1553 = gcylinder_vy_leg3 * t1549;
-        let minus_gcross_vy_leg3 = t876 / t128;
-        let gcross_vz_leg3 = minus_s_cross_leg3 / t128;
-        let minus_gcylinder_vz_leg3 = t913 * t125;
-        let t1560 = minus_gcylinder_vz_leg3 * t1549;
+            + t77 * gcross_vz_leg2;
+        let gcross_wz_leg2 = t77 * minus_gcross_vy_leg2 - t70 * minus_gcross_vx_leg2;
+        let minus_minus_gcylinder_wz_leg2 = t77 * minus_gcylinder_vy_leg2
+            + t70 * gcylinder_vx_leg2;
+        let t1519 = minus_minus_gcylinder_wz_leg2 * t1457;
+        let gcross_vx_leg3 = t888 / t117;
+        let t1522 = t1304 + t1381;
+        let t1524 = t1317 + t1372;
+        let t1527 = t1293 + t1391;
+        let t1529 = t881 * t1522 - t888 * t1524 - minus_s_cross_leg3 * t1527;
+        let t1530 = s_cylinder_leg3 * minus_rate_cross_leg3;
+        let t1531 = t1530 * t920;
+        let t1534 = actuator_velocities[2] + actuator_velocities[2];
+        let minus_rate_dot_cross_leg3 = (t1529 + t1531 + t1531 - t905 * t1534) / t117;
+        let t1538 = rate_cylinder_leg3 * t905;
+        let t1539 = s_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t1541 = t1538 + t1539 + t1538;
+        let t1542 = s_cylinder_leg3 * t1541;
+        let t1543 = t1542 - minus_rate_dot_cross_leg3;
+        let gcylinder_vx_leg3 = t911 * t128;
+        let t1546 = t905 * t1530;
+        let t1547 = gcylinder_vx_leg3 * t1546;
+        let gcylinder_vy_leg3 = t915 * t128;
+        let t1550 = gcylinder_vy_leg3 * t1546;
+        let minus_gcross_vy_leg3 = t881 / t117;
+        let gcross_vz_leg3 = minus_s_cross_leg3 / t117;
+        let minus_gcylinder_vz_leg3 = t918 * t128;
+        let t1557 = minus_gcylinder_vz_leg3 * t1546;
         let gcross_wx_leg3 = t15 * gcross_vz_leg3 + t28 * minus_gcross_vy_leg3;
         let minus_gcylinder_wx_leg3 = t15 * minus_gcylinder_vz_leg3
             + t28 * gcylinder_vy_leg3;
-        let t1569 = minus_gcylinder_wx_leg3 * t1549;
+        let t1566 = minus_gcylinder_wx_leg3 * t1546;
         let gcross_wy_leg3 = t28 * gcross_vx_leg3 - t37 * gcross_vz_leg3;
         let gcylinder_wy_leg3 = t28 * gcylinder_vx_leg3 + t37 * minus_gcylinder_vz_leg3;
-        let t1578 = gcylinder_wy_leg3 * t1549;
+        let t1575 = gcylinder_wy_leg3 * t1546;
         let gcylinder_wz_leg3 = t37 * gcylinder_vy_leg3 - t15 * gcylinder_vx_leg3;
-        let t1583 = gcylinder_wz_leg3 * t1549;
+        let t1580 = gcylinder_wz_leg3 * t1546;
         let minus_gcross_wz_leg3 = t37 * minus_gcross_vy_leg3 + t15 * gcross_vx_leg3;
-        let gcross_vx_leg4 = t157 * t932;
-        let t1590 = t1299 + t1460;
-        let t1592 = t1312 + t1455;
-        let t1595 = t1288 + t1466;
-        let t1597 = t929 * t1590 - t932 * t1592 - minus_s_cross_leg4 * t1595;
-        let t1598 = actuator_velocities[3] + actuator_velocities[3];
-        let t1600 = t1597 - t941 * t1598;
-        let t1601 = t153 * t1600;
-        let t1602 = c_cylinder_leg4 * t1601;
-        let gcylinder_vx_leg4 = t947 * t153;
-        let t1605 = s_cylinder_leg4 * minus_rate_cross_leg4;
-        let t1606 = t941 * t1605;
-        let t1607 = gcylinder_vx_leg4 * t1606;
-        let gcylinder_vy_leg4 = t951 * t153;
-        let t1610 = gcylinder_vy_leg4 * t1606;
-        let minus_gcross_vy_leg4 = t157 * t929;
-        let gcross_vz_leg4 = t157 * minus_s_cross_leg4;
-        let minus_gcylinder_vz_leg4 = t954 * t153;
-        let t1617 = minus_gcylinder_vz_leg4 * t1606;
-        let gcross_wx_leg4 = t80 * gcross_vz_leg4 + t71 * minus_gcross_vy_leg4;
-        let minus_gcylinder_wx_leg4 = t80 * minus_gcylinder_vz_leg4
+        let gcross_vx_leg4 = t146 * t937;
+        let t1587 = t1304 + t1465;
+        let t1589 = t1317 + t1460;
+        let t1592 = t1293 + t1471;
+        let t1594 = t934 * t1587 - t937 * t1589 - minus_s_cross_leg4 * t1592;
+        let t1595 = 2.0 * actuator_velocities[3];
+        let t1597 = t1594 - t946 * t1595;
+        let t1598 = s_cylinder_leg4 * minus_rate_cross_leg4;
+        let minus_rate_dot_cross_leg4 = t146 * (t1597 + 2.0 * (t1598 * t961));
+        let t1603 = rate_cylinder_leg4 * t946;
+        let t1604 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t1606 = t1603 + t1604 + t1603;
+        let t1607 = s_cylinder_leg4 * t1606;
+        let t1608 = t1607 - minus_rate_dot_cross_leg4;
+        let gcylinder_vx_leg4 = t952 * t157;
+        let t1611 = t946 * t1598;
+        let t1612 = gcylinder_vx_leg4 * t1611;
+        let gcylinder_vy_leg4 = t956 * t157;
+        let t1615 = gcylinder_vy_leg4 * t1611;
+        let minus_gcross_vy_leg4 = t146 * t934;
+        let gcross_vz_leg4 = t146 * minus_s_cross_leg4;
+        let minus_gcylinder_vz_leg4 = t959 * t157;
+        let t1622 = minus_gcylinder_vz_leg4 * t1611;
+        let gcross_wx_leg4 = t68 * gcross_vz_leg4 + t71 * minus_gcross_vy_leg4;
+        let minus_gcylinder_wx_leg4 = t68 * minus_gcylinder_vz_leg4
             + t71 * gcylinder_vy_leg4;
-        let t1626 = minus_gcylinder_wx_leg4 * t1606;
-        let gcross_wy_leg4 = t71 * gcross_vx_leg4 - t74 * gcross_vz_leg4;
-        let gcylinder_wy_leg4 = t71 * gcylinder_vx_leg4 + t74 * minus_gcylinder_vz_leg4;
-        let t1635 = gcylinder_wy_leg4 * t1606;
-        let gcylinder_wz_leg4 = t74 * gcylinder_vy_leg4 - t80 * gcylinder_vx_leg4;
-        let t1640 = gcylinder_wz_leg4 * t1606;
-        let minus_gcross_wz_leg4 = t74 * minus_gcross_vy_leg4 + t80 * gcross_vx_leg4;
-        let gcross_vx_leg5 = t185 * t973;
-        let t1647 = t1288 - t1389;
-        let t1649 = t1312 - t1370;
-        let t1651 = t1299 - t1379;
-        let t1654 = s_cross_leg5 * t1647 - (t973 * t1649 + t976 * t1651);
-        let t1655 = 2.0 * actuator_velocities[4];
-        let t1657 = t1654 - t982 * t1655;
-        let t1658 = s_cylinder_leg5 * minus_rate_cross_leg5;
-        let minus_rate_dot_cross_leg5 = t185 * (t1657 + 2.0 * (t1658 * t997));
-        let t1663 = rate_cylinder_leg5 * t982;
-        let t1664 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t1666 = t1663 + t1664 + t1663;
-        let t1667 = s_cylinder_leg5 * t1666;
-        let t1668 = t1667 - minus_rate_dot_cross_leg5;
-        let minus_gcylinder_vx_leg5 = t992 * t277;
-        let t1671 = t982 * t1658;
-        let t1672 = minus_gcylinder_vx_leg5 * t1671;
-        let gcross_vy_leg5 = t185 * t976;
-        let gcylinder_vy_leg5 = t988 * t277;
-        let t1677 = gcylinder_vy_leg5 * t1671;
-        let minus_gcross_vz_leg5 = t185 * s_cross_leg5;
-        let minus_gcylinder_vz_leg5 = t995 * t277;
-        let t1682 = minus_gcylinder_vz_leg5 * t1671;
+        let t1631 = minus_gcylinder_wx_leg4 * t1611;
+        let gcross_wy_leg4 = t71 * gcross_vx_leg4 - t75 * gcross_vz_leg4;
+        let gcylinder_wy_leg4 = t71 * gcylinder_vx_leg4 + t75 * minus_gcylinder_vz_leg4;
+        let t1640 = gcylinder_wy_leg4 * t1611;
+        let gcylinder_wz_leg4 = t75 * gcylinder_vy_leg4 - t68 * gcylinder_vx_leg4;
+        let t1645 = gcylinder_wz_leg4 * t1611;
+        let minus_gcross_wz_leg4 = t75 * minus_gcross_vy_leg4 + t68 * gcross_vx_leg4;
+        let gcross_vx_leg5 = t184 * t978;
+        let t1652 = t1293 - t1394;
+        let t1654 = t1317 - t1375;
+        let t1656 = t1304 - t1384;
+        let t1659 = s_cross_leg5 * t1652 - (t978 * t1654 + t981 * t1656);
+        let t1660 = actuator_velocities[4] + actuator_velocities[4];
+        let t1662 = t1659 - t987 * t1660;
+        let t1663 = s_cylinder_leg5 * minus_rate_cross_leg5;
+        let minus_rate_dot_cross_leg5 = t184 * (t1662 + 2.0 * (t1663 * t1002));
+        let t1668 = rate_cylinder_leg5 * t987;
+        let t1669 = s_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t1671 = t1668 + t1669 + t1668;
+        let t1672 = s_cylinder_leg5 * t1671;
+        let t1673 = t1672 - minus_rate_dot_cross_leg5;
+        let minus_gcylinder_vx_leg5 = t997 * t180;
+        let t1676 = t987 * t1663;
+        let t1677 = minus_gcylinder_vx_leg5 * t1676;
+        let gcross_vy_leg5 = t184 * t981;
+        let gcylinder_vy_leg5 = t993 * t180;
+        let t1682 = gcylinder_vy_leg5 * t1676;
+        let minus_gcross_vz_leg5 = t184 * s_cross_leg5;
+        let minus_gcylinder_vz_leg5 = t1000 * t180;
+        let t1687 = minus_gcylinder_vz_leg5 * t1676;
         let gcross_wx_leg5 = t18 * minus_gcross_vz_leg5 + t31 * gcross_vy_leg5;
         let gcylinder_wx_leg5 = t18 * minus_gcylinder_vz_leg5 + t31 * gcylinder_vy_leg5;
-        let t1691 = gcylinder_wx_leg5 * t1671;
+        let t1696 = gcylinder_wx_leg5 * t1676;
         let gcylinder_wy_leg5 = t31 * minus_gcylinder_vx_leg5
             - t40 * minus_gcylinder_vz_leg5;
-        let t1696 = gcylinder_wy_leg5 * t1671;
+        let t1701 = gcylinder_wy_leg5 * t1676;
         let minus_gcross_wy_leg5 = t31 * gcross_vx_leg5 + t40 * minus_gcross_vz_leg5;
         let gcross_wz_leg5 = t18 * gcross_vx_leg5 - t40 * gcross_vy_leg5;
         let minus_gcylinder_wz_leg5 = t40 * gcylinder_vy_leg5
             + t18 * minus_gcylinder_vx_leg5;
-        let t1709 = minus_gcylinder_wz_leg5 * t1671;
-        let gcross_vx_leg6 = t213 * t1014;
-        let t1712 = t1288 + t1467;
-        let t1714 = t1312 + t1456;
-        let t1716 = t1299 + t1461;
-        let t1719 = s_cross_leg6 * t1712 - (t1014 * t1714 + t1017 * t1716);
-        let t1720 = s_cylinder_leg6 * minus_rate_cross_leg6;
-        let t1721 = t1720 * t1038;
-        let t1724 = 2.0 * actuator_velocities[5];
-        let minus_rate_dot_cross_leg6 = t213 * (t1719 + t1721 + t1721 - t1023 * t1724);
-        let t1728 = rate_cylinder_leg6 * t1023;
-        let t1729 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t1731 = t1728 + t1729 + t1728;
-        let t1732 = s_cylinder_leg6 * t1731;
-        let t1733 = t1732 - minus_rate_dot_cross_leg6;
-        let minus_gcylinder_vx_leg6 = t1033 * t285;
-        let t1736 = t1023 * t1720;
-        let t1737 = minus_gcylinder_vx_leg6 * t1736;
-        let gcross_vy_leg6 = t213 * t1017;
-        let gcylinder_vy_leg6 = t1029 * t285;
-        let t1742 = gcylinder_vy_leg6 * t1736;
-        let minus_gcross_vz_leg6 = t213 * s_cross_leg6;
-        let minus_gcylinder_vz_leg6 = t1036 * t285;
-        let t1747 = minus_gcylinder_vz_leg6 * t1736;
-        let minus_gcross_wx_leg6 = t81 * minus_gcross_vz_leg6 + t72 * gcross_vy_leg6;
-        let minus_gcylinder_wx_leg6 = t81 * minus_gcylinder_vz_leg6
+        let t1714 = minus_gcylinder_wz_leg5 * t1676;
+        let gcross_vx_leg6 = t204 * t1019;
+        let t1717 = s_cylinder_leg6 * minus_rate_cross_leg6;
+        let t1718 = rate_cylinder_leg6 * t1717;
+        let t1719 = t1293 + t1472;
+        let t1721 = t1317 + t1461;
+        let t1723 = t1304 + t1466;
+        let t1726 = s_cross_leg6 * t1719 - (t1019 * t1721 + t1022 * t1723);
+        let t1727 = t211 * t1718;
+        let t1730 = 2.0 * actuator_velocities[5];
+        let minus_rate_dot_cross_leg6 = t204 * (t1726 + t1727 + t1727 - t1028 * t1730);
+        let t1734 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1736 = t1718 + t1718 - t1734;
+        let t1737 = c_cylinder_leg6 * t1736;
+        let minus_gcylinder_vx_leg6 = t1038 * t234;
+        let t1740 = t1028 * t1717;
+        let t1741 = minus_gcylinder_vx_leg6 * t1740;
+        let gcross_vy_leg6 = t204 * t1022;
+        let gcylinder_vy_leg6 = t1034 * t234;
+        let t1746 = gcylinder_vy_leg6 * t1740;
+        let minus_gcross_vz_leg6 = t204 * s_cross_leg6;
+        let minus_gcylinder_vz_leg6 = t1041 * t234;
+        let t1751 = minus_gcylinder_vz_leg6 * t1740;
+        let minus_gcross_wx_leg6 = t69 * minus_gcross_vz_leg6 + t72 * gcross_vy_leg6;
+        let minus_gcylinder_wx_leg6 = t69 * minus_gcylinder_vz_leg6
             + t72 * gcylinder_vy_leg6;
-        let t1756 = minus_gcylinder_wx_leg6 * t1736;
-        let gcross_wy_leg6 = t72 * gcross_vx_leg6 + t75 * minus_gcross_vz_leg6;
-        let gcylinder_wy_leg6 = t75 * minus_gcylinder_vz_leg6
+        let t1760 = minus_gcylinder_wx_leg6 * t1740;
+        let gcross_wy_leg6 = t72 * gcross_vx_leg6 + t76 * minus_gcross_vz_leg6;
+        let gcylinder_wy_leg6 = t76 * minus_gcylinder_vz_leg6
             - t72 * minus_gcylinder_vx_leg6;
-        let t1765 = gcylinder_wy_leg6 * t1736;
-        let gcross_wz_leg6 = t75 * gcross_vy_leg6 - t81 * gcross_vx_leg6;
-        let gcylinder_wz_leg6 = t75 * gcylinder_vy_leg6 + t81 * minus_gcylinder_vx_leg6;
-        let t1774 = gcylinder_wz_leg6 * t1736;
-        let t1776 = t1397 * t1397;
-        let t1777 = t777 - t1776;
-        let t1782 = c_cylinder_leg1 * t1405 - t1396 * (minus_s_cylinder_leg1 * t778);
-        let t1800 = t1451 * t1451;
-        let t1801 = t848 - t1800;
-        let t1804 = s_cylinder_leg2 * t259;
-        let t1806 = c_cylinder_leg2 * t1482 + t1474 * t1804;
-        let t1825 = s_cylinder_leg3 * t125;
-        let t1827 = c_cylinder_leg3 * t1544 + t1535 * t1825;
-        let t1829 = t1536 * t1536;
-        let t1830 = t901 - t1829;
-        let t1848 = rate_cylinder_leg4 * t941;
-        let t1849 = t1605 * t956;
-        let minus_rate_dot_cross_leg4 = t157 * (t1600 + t1849 + t1849);
-        let t1853 = s_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t1855 = t1848 + t1853 + t1848;
-        let t1858 = c_cylinder_leg4 * t1855 + s_cylinder_leg4 * t1601;
-        let t1860 = t1605 * t1605;
-        let t1861 = t942 - t1860;
-        let t1882 = c_cylinder_leg5 * t1666 + s_cylinder_leg5 * (t277 * t1657);
-        let t1884 = t1658 * t1658;
-        let t1885 = t983 - t1884;
-        let t1906 = c_cylinder_leg6 * t1731 - t1733 * (t206 * t213);
-        let t1908 = t1720 * t1720;
-        let t1909 = t1024 - t1908;
-        let t1931 = t783 * t1372 - t787 * t1381 + t790 * t1391;
-        let t1933 = rate_cylinder_leg1 * t1394 - t1931;
-        let t1934 = t778 * t1933;
-        let rate_dot_cylinder_leg1 = t1410 - t1934;
-        let t1936 = t1410 + rate_dot_cylinder_leg1;
-        let t1940 = c_cylinder_leg1 * t1936 + minus_s_cylinder_leg1 * (t794 - t777);
-        let t1942 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
-        let t1964 = t853 * t1458 - t857 * t1463 - t860 * t1469;
-        let t1966 = t1964 - rate_cylinder_leg2 * t1472;
-        let rate_dot_cylinder_leg2 = t1966 / t96 - t1452;
-        let t1969 = rate_dot_cylinder_leg2 - t1452;
-        let t1973 = c_cylinder_leg2 * t1969 - s_cylinder_leg2 * (t864 - t848);
-        let t1975 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
-        let t1997 = t906 * t1527 + t910 * t1525 - t913 * t1530;
-        let t1999 = t1997 - rate_cylinder_leg3 * t1533;
-        let rate_dot_cylinder_leg3 = t125 * t1999 - t1549;
-        let t2002 = rate_dot_cylinder_leg3 - t1549;
-        let t2006 = c_cylinder_leg3 * t2002 - s_cylinder_leg3 * (t917 - t901);
-        let t2008 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
-        let t2030 = t947 * t1592 + t951 * t1590 - t954 * t1595;
-        let t2032 = t2030 - rate_cylinder_leg4 * t1598;
-        let t2033 = t153 * t2032;
-        let rate_dot_cylinder_leg4 = t2033 - t1606;
-        let t2035 = rate_dot_cylinder_leg4 - t1606;
-        let t2039 = c_cylinder_leg4 * t2035 - s_cylinder_leg4 * (t958 - t942);
-        let t2041 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
-        let t2063 = t988 * t1651 - t992 * t1649 - t995 * t1647;
-        let t2065 = t2063 - rate_cylinder_leg5 * t1655;
-        let t2066 = t2065 / t181;
-        let rate_dot_cylinder_leg5 = t2066 - t1671;
-        let t2068 = rate_dot_cylinder_leg5 - t1671;
-        let t2072 = c_cylinder_leg5 * t2068 - s_cylinder_leg5 * (t999 - t983);
-        let t2074 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
-        let t2096 = t1029 * t1716 - t1033 * t1714 - t1036 * t1712;
-        let t2098 = t2096 - rate_cylinder_leg6 * t1724;
-        let t2099 = t285 * t2098;
-        let rate_dot_cylinder_leg6 = t2099 - t1736;
-        let t2101 = rate_dot_cylinder_leg6 - t1736;
-        let t2105 = c_cylinder_leg6 * t2101 - s_cylinder_leg6 * (t1040 - t1024);
-        let t2107 = c_cylinder_leg6 * minus_rate_dot_cross_leg6;
-        let t2161 = s_cylinder_leg4 * t1855;
-        let t2201 = c_cylinder_leg1 * (t1776 - t794) - minus_s_cylinder_leg1 * t1934;
-        let t2220 = gcylinder_vx_leg2 * t1480;
-        let t2224 = c_cylinder_leg2 * (t1800 - t864) - t1966 * t1804;
-        let t2228 = minus_gcylinder_vy_leg2 * t1480;
-        let t2245 = c_cylinder_leg3 * (t1829 - t917) - t1999 * t1825;
-        let t2267 = c_cylinder_leg4 * (t1860 - t958) - s_cylinder_leg4 * t2033;
-        let t2289 = c_cylinder_leg5 * (t1884 - t999) - s_cylinder_leg5 * t2066;
-        let t2311 = c_cylinder_leg6 * (t1908 - t1040) - s_cylinder_leg6 * t2099;
-        let t2366 = 9.81 * t780;
-        let t2368 = 9.81 * grod_vz_leg1;
-        let t2386 = 9.81 * t851;
-        let t2388 = 9.81 * grod_vz_leg2;
-        let t2406 = 9.81 * t903;
-        let t2408 = 9.81 * grod_vz_leg3;
-        let t2426 = 9.81 * t944;
-        let t2428 = 9.81 * grod_vz_leg4;
-        let t2446 = 9.81 * t986;
-        let t2448 = 9.81 * grod_vz_leg5;
-        let t2466 = 9.81 * t1027;
-        let t2468 = 9.81 * grod_vz_leg6;
-        let t2486 = t778 * t2368;
-        let t2489 = 9.81 * minus_s_cross_leg1;
-        let t2490 = c_cylinder_leg1 * t2489;
-        let t2492 = 9.81 * t790;
-        let t2502 = t2388 / t96;
-        let t2505 = 9.81 * minus_s_cross_leg2;
-        let t2506 = c_cylinder_leg2 * t2505;
-        let t2508 = 9.81 * t860;
-        let t2518 = t2408 / t124;
-        let t2521 = 9.81 * minus_s_cross_leg3;
-        let t2522 = c_cylinder_leg3 * t2521;
-        let t2524 = 9.81 * t913;
-        let t2534 = t2428 / t152;
-        let t2537 = 9.81 * minus_s_cross_leg4;
-        let t2538 = c_cylinder_leg4 * t2537;
-        let t2540 = 9.81 * t954;
-        let t2550 = t2448 / t181;
-        let t2553 = 9.81 * s_cross_leg5;
-        let t2554 = c_cylinder_leg5 * t2553;
-        let t2556 = 9.81 * t995;
-        let t2566 = t285 * t2468;
-        let t2569 = 9.81 * s_cross_leg6;
-        let t2570 = c_cylinder_leg6 * t2569;
-        let t2572 = 9.81 * t1036;
-        let t2582 = 9.81 * c_cross_leg1;
-        let t2589 = 9.81 * c_cross_leg2;
-        let t2596 = 9.81 * c_cross_leg3;
-        let t2603 = 9.81 * c_cross_leg4;
-        let t2610 = 9.81 * c_cross_leg5;
-        let t2617 = 9.81 * c_cross_leg6;
-        let t2625 = t1393 - t2489;
-        let t2627 = t52 * t1405 - minus_s_cylinder_leg1 * t2625;
-        let t2632 = actuator_accelerations[0] - (t796 - t2368);
-        let t2633 = t59 * (t1776 + t794) + t2632;
-        let t2637 = minus_gcross_vx_leg1 * t2627 + gcylinder_vx_leg1 * t2633
-            + grod_vx_leg1 * t1936;
-        let t2642 = gcross_vy_leg1 * t2627 + minus_gcylinder_vy_leg1 * t2633
-            - minus_minus_grod_vy_leg1 * t1936;
-        let t2647 = gcross_vz_leg1 * t2627 - gcylinder_vz_leg1 * t2633
-            - grod_vz_leg1 * t1936;
-        let t2658 = t1471 - t2505;
-        let t2660 = t99 * t1482 + s_cylinder_leg2 * t2658;
-        let t2665 = actuator_accelerations[1] - (t866 - t2388);
-        let t2666 = t96 * (t1800 + t864) + t2665;
-        let t2670 = minus_gcross_vx_leg2 * t2660 + gcylinder_vx_leg2 * t2666
-            + grod_vx_leg2 * t1969;
-        let t2675 = minus_gcylinder_vy_leg2 * t2666 - minus_gcross_vy_leg2 * t2660
-            - minus_minus_grod_vy_leg2 * t1969;
-        let t2680 = gcross_vz_leg2 * t2660 + minus_gcylinder_vz_leg2 * t2666
-            - grod_vz_leg2 * t1969;
-        let t2691 = t1532 - t2521;
-        let t2693 = t128 * t1544 + s_cylinder_leg3 * t2691;
-        let t2698 = actuator_accelerations[2] - (t919 - t2408);
-        let t2699 = t124 * (t1829 + t917) + t2698;
-        let t2703 = gcross_vx_leg3 * t2693 - gcylinder_vx_leg3 * t2699
-            - minus_minus_grod_vx_leg3 * t2002;
-        let t2708 = minus_gcross_vy_leg3 * t2693 + gcylinder_vy_leg3 * t2699
-            + grod_vy_leg3 * t2002;
-        let t2713 = gcross_vz_leg3 * t2693 + minus_gcylinder_vz_leg3 * t2699
-            - grod_vz_leg3 * t2002;
-        let t2724 = t1597 - t2537;
-        let t2726 = t156 * t1855 + s_cylinder_leg4 * t2724;
-        let t2731 = actuator_accelerations[3] - (t960 - t2428);
-        let t2732 = t152 * (t1860 + t958) + t2731;
-        let t2736 = gcross_vx_leg4 * t2726 - gcylinder_vx_leg4 * t2732
-            - minus_minus_grod_vx_leg4 * t2035;
-        let t2741 = minus_gcross_vy_leg4 * t2726 + gcylinder_vy_leg4 * t2732
-            + grod_vy_leg4 * t2035;
-        let t2746 = gcross_vz_leg4 * t2726 + minus_gcylinder_vz_leg4 * t2732
-            - grod_vz_leg4 * t2035;
-        let t2757 = t1654 + t2553;
-        let t2759 = t184 * t1666 + s_cylinder_leg5 * t2757;
-        let t2764 = actuator_accelerations[4] - (t1001 - t2448);
-        let t2765 = t181 * (t1884 + t999) + t2764;
-        let t2769 = gcross_vx_leg5 * t2759 + minus_gcylinder_vx_leg5 * t2765
-            - minus_minus_grod_vx_leg5 * t2068;
-        let t2774 = gcross_vy_leg5 * t2759 - gcylinder_vy_leg5 * t2765
-            - grod_vy_leg5 * t2068;
-        let t2779 = minus_gcylinder_vz_leg5 * t2765 - minus_gcross_vz_leg5 * t2759
-            - grod_vz_leg5 * t2068;
-        let t2790 = t1719 + t2569;
-        let t2792 = t212 * t1731 + s_cylinder_leg6 * t2790;
-        let t2797 = actuator_accelerations[5] - (t1042 - t2468);
-        let t2798 = t209 * (t1908 + t1040) + t2797;
-        let t2802 = gcross_vx_leg6 * t2792 + minus_gcylinder_vx_leg6 * t2798
-            - minus_minus_grod_vx_leg6 * t2101;
-        let t2807 = gcross_vy_leg6 * t2792 - gcylinder_vy_leg6 * t2798
-            - grod_vy_leg6 * t2101;
-        let t2812 = minus_gcylinder_vz_leg6 * t2798 - minus_gcross_vz_leg6 * t2792
-            - grod_vz_leg6 * t2101;
-        let t2824 = t1931 + t2492;
-        let t2827 = t774 * minus_rate_cross_leg1 + c_cylinder_leg1 * t2632
-            + minus_s_cylinder_leg1 * t2824;
-        let t2832 = minus_gcross_vx_leg1 * t2827 + t783 * t1403 + grod_vx_leg1 * t1942;
-        let t2837 = gcross_vy_leg1 * t2827 + t787 * t1403
-            - minus_minus_grod_vy_leg1 * t1942;
-        let t2840 = gcross_vz_leg1 * t2827 - c_cross_leg1 * minus_rate_dot_cross_leg1;
-        let t2853 = t1964 - t2508;
-        let t2856 = t845 * minus_rate_cross_leg2 + c_cylinder_leg2 * t2665
-            - s_cylinder_leg2 * t2853;
-        let t2860 = t96 * t2220 - minus_gcross_vx_leg2 * t2856 - grod_vx_leg2 * t1975;
-        let t2865 = minus_minus_grod_vy_leg2 * t1975 + minus_gcross_vy_leg2 * t2856
-            + t96 * t2228;
-        let t2868 = gcross_vz_leg2 * t2856 - c_cross_leg2 * minus_rate_dot_cross_leg2;
-        let t2880 = t1997 - t2524;
-        let t2883 = t898 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2698
-            - s_cylinder_leg3 * t2880;
-        let t2888 = gcross_vx_leg3 * t2883 + t906 * t1542
-            - minus_minus_grod_vx_leg3 * t2008;
-        let t2893 = t910 * t1542 - minus_gcross_vy_leg3 * t2883 - grod_vy_leg3 * t2008;
-        let t2896 = gcross_vz_leg3 * t2883 - c_cross_leg3 * minus_rate_dot_cross_leg3;
-        let t2908 = t2030 - t2540;
-        let t2911 = t939 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2731
-            - s_cylinder_leg4 * t2908;
-        let t2916 = gcross_vx_leg4 * t2911 + t947 * t1853
-            - minus_minus_grod_vx_leg4 * t2041;
-        let t2921 = t951 * t1853 - minus_gcross_vy_leg4 * t2911 - grod_vy_leg4 * t2041;
-        let t2924 = gcross_vz_leg4 * t2911 - c_cross_leg4 * minus_rate_dot_cross_leg4;
-        let t2936 = t2063 - t2556;
-        let t2939 = t980 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2764
-            - s_cylinder_leg5 * t2936;
-        let t2944 = gcross_vx_leg5 * t2939 - t992 * t1664
-            - minus_minus_grod_vx_leg5 * t2074;
-        let t2949 = gcross_vy_leg5 * t2939 + t988 * t1664 - grod_vy_leg5 * t2074;
-        let t2952 = minus_gcross_vz_leg5 * t2939
+        let t1769 = gcylinder_wy_leg6 * t1740;
+        let gcross_wz_leg6 = t76 * gcross_vy_leg6 - t69 * gcross_vx_leg6;
+        let gcylinder_wz_leg6 = t76 * gcylinder_vy_leg6 + t69 * minus_gcylinder_vx_leg6;
+        let t1778 = gcylinder_wz_leg6 * t1740;
+        let t1780 = t1399 * t1399;
+        let t1781 = t782 - t1780;
+        let t1784 = t60 * t1412;
+        let t1787 = c_cylinder_leg1 * t1410 - minus_s_cylinder_leg1 * (t53 * t1784);
+        let t1805 = t1456 * t1456;
+        let t1806 = t853 - t1805;
+        let t1808 = rate_cylinder_leg2 * t852;
+        let t1809 = t1456 * t867;
+        let minus_rate_dot_cross_leg2 = t89 * (t1479 + t1809 + t1809);
+        let t1813 = s_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t1815 = t1808 + t1813 + t1808;
+        let t1818 = c_cylinder_leg2 * t1815 + s_cylinder_leg2 * t1480;
+        let t1837 = t124 * t1543;
+        let t1840 = c_cylinder_leg3 * t1541 - s_cylinder_leg3 * (t1837 / t117);
+        let t1842 = t1530 * t1530;
+        let t1843 = t906 - t1842;
+        let t1864 = c_cylinder_leg4 * t1606 + t1597 * (s_cylinder_leg4 * t157);
+        let t1866 = t1598 * t1598;
+        let t1867 = t947 - t1866;
+        let t1888 = c_cylinder_leg5 * t1671 + s_cylinder_leg5 * (t1662 / t179);
+        let t1890 = t1663 * t1663;
+        let t1891 = t988 - t1890;
+        let t1909 = rate_cylinder_leg6 * t1028;
+        let t1910 = s_cylinder_leg6 * minus_rate_dot_cross_leg6;
+        let t1912 = t1909 + t1910 + t1909;
+        let t1915 = c_cylinder_leg6 * t1912 - s_cylinder_leg6 * t1736;
+        let t1917 = t1717 * t1717;
+        let t1918 = t1029 - t1917;
+        let t1940 = t788 * t1377 - t792 * t1386 + t795 * t1396;
+        let t1942 = rate_cylinder_leg1 * t1403 - t1940;
+        let t1943 = t1942 / t60;
+        let rate_dot_cylinder_leg1 = t1415 - t1943;
+        let t1945 = t1415 + rate_dot_cylinder_leg1;
+        let t1949 = c_cylinder_leg1 * t1945 + minus_s_cylinder_leg1 * (t799 - t782);
+        let t1951 = c_cylinder_leg1 * minus_rate_dot_cross_leg1;
+        let t1973 = t858 * t1463 - t862 * t1468 - t865 * t1474;
+        let rate_dot_cylinder_leg2 = t100
+            * (t1973 - t850 * t1456 - rate_cylinder_leg2 * t1477);
+        let t1979 = rate_dot_cylinder_leg2 - t1457;
+        let t1983 = c_cylinder_leg2 * t1979 - s_cylinder_leg2 * (t869 - t853);
+        let t1985 = c_cylinder_leg2 * minus_rate_dot_cross_leg2;
+        let t2007 = t911 * t1524 + t915 * t1522 - t918 * t1527;
+        let t2009 = t2007 - rate_cylinder_leg3 * t1534;
+        let t2010 = t128 * t2009;
+        let rate_dot_cylinder_leg3 = t2010 - t1546;
+        let t2012 = rate_dot_cylinder_leg3 - t1546;
+        let t2016 = c_cylinder_leg3 * t2012 - s_cylinder_leg3 * (t922 - t906);
+        let t2018 = c_cylinder_leg3 * minus_rate_dot_cross_leg3;
+        let t2040 = t952 * t1589 + t956 * t1587 - t959 * t1592;
+        let t2042 = t2040 - rate_cylinder_leg4 * t1595;
+        let t2043 = t157 * t2042;
+        let rate_dot_cylinder_leg4 = t2043 - t1611;
+        let t2045 = rate_dot_cylinder_leg4 - t1611;
+        let t2049 = c_cylinder_leg4 * t2045 - s_cylinder_leg4 * (t963 - t947);
+        let t2051 = c_cylinder_leg4 * minus_rate_dot_cross_leg4;
+        let t2073 = t993 * t1656 - t997 * t1654 - t1000 * t1652;
+        let t2075 = t2073 - rate_cylinder_leg5 * t1660;
+        let t2076 = t180 * t2075;
+        let rate_dot_cylinder_leg5 = t2076 - t1676;
+        let t2078 = rate_dot_cylinder_leg5 - t1676;
+        let t2082 = c_cylinder_leg5 * t2078 - s_cylinder_leg5 * (t1004 - t988);
+        let t2084 = c_cylinder_leg5 * minus_rate_dot_cross_leg5;
+        let t2106 = t1034 * t1723 - t1038 * t1721 - t1041 * t1719;
+        let t2108 = t2106 - rate_cylinder_leg6 * t1730;
+        let t2109 = t2108 / t211;
+        let rate_dot_cylinder_leg6 = t2109 - t1740;
+        let t2111 = rate_dot_cylinder_leg6 - t1740;
+        let t2115 = c_cylinder_leg6 * t2111 - s_cylinder_leg6 * (t1045 - t1029);
+        let t2146 = minus_rate_dot_cross_leg2 - t1481;
+        let t2195 = s_cylinder_leg6 * t1912;
+        let t2211 = c_cylinder_leg1 * (t1780 - t799) - minus_s_cylinder_leg1 * t1943;
+        let t2233 = t1457 + rate_dot_cylinder_leg2;
+        let t2235 = c_cylinder_leg2 * (t1805 - t869) - s_cylinder_leg2 * t2233;
+        let t2256 = c_cylinder_leg3 * (t1842 - t922) - s_cylinder_leg3 * t2010;
+        let t2278 = c_cylinder_leg4 * (t1866 - t963) - s_cylinder_leg4 * t2043;
+        let t2300 = c_cylinder_leg5 * (t1890 - t1004) - s_cylinder_leg5 * t2076;
+        let t2305 = gcylinder_vy_leg5 * t1669;
+        let t2322 = c_cylinder_leg6 * (t1917 - t1045) - s_cylinder_leg6 * t2109;
+        let t2327 = gcylinder_vy_leg6 * t1910;
+        let t2377 = 9.81 * t785;
+        let t2379 = 9.81 * grod_vz_leg1;
+        let t2397 = 9.81 * t856;
+        let t2399 = 9.81 * grod_vz_leg2;
+        let t2417 = 9.81 * t908;
+        let t2419 = 9.81 * grod_vz_leg3;
+        let t2437 = 9.81 * t949;
+        let t2439 = 9.81 * grod_vz_leg4;
+        let t2457 = 9.81 * t991;
+        let t2459 = 9.81 * grod_vz_leg5;
+        let t2477 = 9.81 * t1032;
+        let t2479 = 9.81 * grod_vz_leg6;
+        let t2497 = t2379 / t60;
+        let t2500 = 9.81 * minus_s_cross_leg1;
+        let t2501 = c_cylinder_leg1 * t2500;
+        let t2503 = 9.81 * t795;
+        let t2513 = t100 * t2399;
+        let t2516 = 9.81 * minus_s_cross_leg2;
+        let t2517 = c_cylinder_leg2 * t2516;
+        let t2519 = 9.81 * t865;
+        let t2529 = t2419 / t124;
+        let t2532 = 9.81 * minus_s_cross_leg3;
+        let t2533 = c_cylinder_leg3 * t2532;
+        let t2535 = 9.81 * t918;
+        let t2545 = t2439 / t153;
+        let t2548 = 9.81 * minus_s_cross_leg4;
+        let t2549 = c_cylinder_leg4 * t2548;
+        let t2551 = 9.81 * t959;
+        let t2561 = t180 * t2459;
+        let t2564 = 9.81 * s_cross_leg5;
+        let t2565 = c_cylinder_leg5 * t2564;
+        let t2567 = 9.81 * t1000;
+        let t2577 = t234 * t2479;
+        let t2580 = 9.81 * s_cross_leg6;
+        let t2581 = c_cylinder_leg6 * t2580;
+        let t2583 = 9.81 * t1041;
+        let t2593 = 9.81 * c_cross_leg1;
+        let t2600 = 9.81 * c_cross_leg2;
+        let t2607 = 9.81 * c_cross_leg3;
+        let t2614 = 9.81 * c_cross_leg4;
+        let t2621 = 9.81 * c_cross_leg5;
+        let t2628 = 9.81 * c_cross_leg6;
+        let t2636 = t1398 - t2500;
+        let t2638 = t52 * t1410 - minus_s_cylinder_leg1 * t2636;
+        let t2643 = actuator_accelerations[0] - (t801 - t2379);
+        let t2644 = t60 * (t1780 + t799) + t2643;
+        let t2648 = minus_gcross_vx_leg1 * t2638 + gcylinder_vx_leg1 * t2644
+            + grod_vx_leg1 * t1945;
+        let t2653 = gcross_vy_leg1 * t2638 + minus_gcylinder_vy_leg1 * t2644
+            - minus_minus_grod_vy_leg1 * t1945;
+        let t2658 = gcross_vz_leg1 * t2638 - gcylinder_vz_leg1 * t2644
+            - grod_vz_leg1 * t1945;
+        let t2669 = t1476 - t2516;
+        let t2671 = t88 * t1815 + s_cylinder_leg2 * t2669;
+        let t2676 = actuator_accelerations[1] - (t871 - t2399);
+        let t2677 = t96 * (t1805 + t869) + t2676;
+        let t2681 = minus_gcross_vx_leg2 * t2671 + gcylinder_vx_leg2 * t2677
+            + grod_vx_leg2 * t1979;
+        let t2686 = minus_gcylinder_vy_leg2 * t2677 - minus_gcross_vy_leg2 * t2671
+            - minus_minus_grod_vy_leg2 * t1979;
+        let t2691 = gcross_vz_leg2 * t2671 + minus_gcylinder_vz_leg2 * t2677
+            - grod_vz_leg2 * t1979;
+        let t2702 = t1529 - t2532;
+        let t2704 = t117 * t1541 + s_cylinder_leg3 * t2702;
+        let t2709 = actuator_accelerations[2] - (t924 - t2419);
+        let t2710 = t124 * (t1842 + t922) + t2709;
+        let t2714 = gcross_vx_leg3 * t2704 - gcylinder_vx_leg3 * t2710
+            - minus_minus_grod_vx_leg3 * t2012;
+        let t2719 = minus_gcross_vy_leg3 * t2704 + gcylinder_vy_leg3 * t2710
+            + grod_vy_leg3 * t2012;
+        let t2724 = gcross_vz_leg3 * t2704 + minus_gcylinder_vz_leg3 * t2710
+            - grod_vz_leg3 * t2012;
+        let t2735 = t1594 - t2548;
+        let t2737 = t145 * t1606 + s_cylinder_leg4 * t2735;
+        let t2742 = actuator_accelerations[3] - (t965 - t2439);
+        let t2743 = t153 * (t1866 + t963) + t2742;
+        let t2747 = gcross_vx_leg4 * t2737 - gcylinder_vx_leg4 * t2743
+            - minus_minus_grod_vx_leg4 * t2045;
+        let t2752 = minus_gcross_vy_leg4 * t2737 + gcylinder_vy_leg4 * t2743
+            + grod_vy_leg4 * t2045;
+        let t2757 = gcross_vz_leg4 * t2737 + minus_gcylinder_vz_leg4 * t2743
+            - grod_vz_leg4 * t2045;
+        let t2768 = t1659 + t2564;
+        let t2770 = t183 * t1671 + s_cylinder_leg5 * t2768;
+        let t2775 = actuator_accelerations[4] - (t1006 - t2459);
+        let t2776 = t179 * (t1890 + t1004) + t2775;
+        let t2780 = gcross_vx_leg5 * t2770 + minus_gcylinder_vx_leg5 * t2776
+            - minus_minus_grod_vx_leg5 * t2078;
+        let t2785 = gcross_vy_leg5 * t2770 - gcylinder_vy_leg5 * t2776
+            - grod_vy_leg5 * t2078;
+        let t2790 = minus_gcylinder_vz_leg5 * t2776 - minus_gcross_vz_leg5 * t2770
+            - grod_vz_leg5 * t2078;
+        let t2801 = t1726 + t2580;
+        let t2803 = t203 * t1912 + s_cylinder_leg6 * t2801;
+        let t2808 = actuator_accelerations[5] - (t1047 - t2479);
+        let t2809 = t211 * (t1917 + t1045) + t2808;
+        let t2813 = gcross_vx_leg6 * t2803 + minus_gcylinder_vx_leg6 * t2809
+            - minus_minus_grod_vx_leg6 * t2111;
+        let t2818 = gcross_vy_leg6 * t2803 - gcylinder_vy_leg6 * t2809
+            - grod_vy_leg6 * t2111;
+        let t2823 = minus_gcylinder_vz_leg6 * t2809 - minus_gcross_vz_leg6 * t2803
+            - grod_vz_leg6 * t2111;
+        let t2835 = t1940 + t2503;
+        let t2838 = t779 * minus_rate_cross_leg1 + c_cylinder_leg1 * t2643
+            + minus_s_cylinder_leg1 * t2835;
+        let t2843 = minus_gcross_vx_leg1 * t2838 + t788 * t1408 + grod_vx_leg1 * t1951;
+        let t2848 = gcross_vy_leg1 * t2838 + t792 * t1408
+            - minus_minus_grod_vy_leg1 * t1951;
+        let t2851 = gcross_vz_leg1 * t2838 - c_cross_leg1 * minus_rate_dot_cross_leg1;
+        let t2864 = t1973 - t2519;
+        let t2867 = t850 * minus_rate_cross_leg2 + c_cylinder_leg2 * t2676
+            - s_cylinder_leg2 * t2864;
+        let t2871 = t858 * t1813 - minus_gcross_vx_leg2 * t2867 - grod_vx_leg2 * t1985;
+        let t2876 = minus_minus_grod_vy_leg2 * t1985 + minus_gcross_vy_leg2 * t2867
+            + t862 * t1813;
+        let t2879 = gcross_vz_leg2 * t2867 - c_cross_leg2 * minus_rate_dot_cross_leg2;
+        let t2891 = t2007 - t2535;
+        let t2894 = t903 * minus_rate_cross_leg3 + c_cylinder_leg3 * t2709
+            - s_cylinder_leg3 * t2891;
+        let t2899 = gcross_vx_leg3 * t2894 + t911 * t1539
+            - minus_minus_grod_vx_leg3 * t2018;
+        let t2904 = t915 * t1539 - minus_gcross_vy_leg3 * t2894 - grod_vy_leg3 * t2018;
+        let t2907 = gcross_vz_leg3 * t2894 - c_cross_leg3 * minus_rate_dot_cross_leg3;
+        let t2919 = t2040 - t2551;
+        let t2922 = t944 * minus_rate_cross_leg4 + c_cylinder_leg4 * t2742
+            - s_cylinder_leg4 * t2919;
+        let t2927 = gcross_vx_leg4 * t2922 + t952 * t1604
+            - minus_minus_grod_vx_leg4 * t2051;
+        let t2932 = t956 * t1604 - minus_gcross_vy_leg4 * t2922 - grod_vy_leg4 * t2051;
+        let t2935 = gcross_vz_leg4 * t2922 - c_cross_leg4 * minus_rate_dot_cross_leg4;
+        let t2947 = t2073 - t2567;
+        let t2950 = t985 * minus_rate_cross_leg5 + c_cylinder_leg5 * t2775
+            - s_cylinder_leg5 * t2947;
+        let t2955 = gcross_vx_leg5 * t2950 - t997 * t1669
+            - minus_minus_grod_vx_leg5 * t2084;
+        let t2960 = gcross_vy_leg5 * t2950 + t179 * t2305 - grod_vy_leg5 * t2084;
+        let t2963 = minus_gcross_vz_leg5 * t2950
             + c_cross_leg5 * minus_rate_dot_cross_leg5;
-        let t2964 = t2096 - t2572;
-        let t2967 = t1021 * minus_rate_cross_leg6 + c_cylinder_leg6 * t2797
-            - s_cylinder_leg6 * t2964;
-        let t2972 = gcross_vx_leg6 * t2967 - t1033 * t1729
-            - minus_minus_grod_vx_leg6 * t2107;
-        let t2977 = gcross_vy_leg6 * t2967 + t1029 * t1729 - grod_vy_leg6 * t2107;
-        let t2980 = minus_gcross_vz_leg6 * t2967
+        let t2975 = t2106 - t2583;
+        let t2978 = t1026 * minus_rate_cross_leg6 + c_cylinder_leg6 * t2808
+            - s_cylinder_leg6 * t2975;
+        let t2983 = gcross_vx_leg6 * t2978 - t1038 * t1910
+            - minus_minus_grod_vx_leg6 * t1734;
+        let t2988 = gcross_vy_leg6 * t2978 + t211 * t2327 - grod_vy_leg6 * t1734;
+        let t2991 = minus_gcross_vz_leg6 * t2978
             + c_cross_leg6 * minus_rate_dot_cross_leg6;
-        let t2991 = c_cylinder_leg1 * (t2625 + t1396);
-        let t2993 = t2824 - t1933;
-        let t2997 = minus_gcross_vx_leg1 * t2991 + gcylinder_vx_leg1 * t2993
-            - grod_vx_leg1 * t795;
-        let t3002 = minus_minus_grod_vy_leg1 * t795 + gcross_vy_leg1 * t2991
-            + minus_gcylinder_vy_leg1 * t2993;
-        let t3007 = gcylinder_vz_leg1 * t2993 - gcross_vz_leg1 * t2991
-            - grod_vz_leg1 * t795;
-        let t3017 = t1966 + t2853;
-        let t3020 = c_cylinder_leg2 * (t2658 + t1474);
-        let t3024 = gcylinder_vx_leg2 * t3017 + minus_gcross_vx_leg2 * t3020
-            - grod_vx_leg2 * t865;
-        let t3029 = minus_minus_grod_vy_leg2 * t865 + minus_gcylinder_vy_leg2 * t3017
-            - minus_gcross_vy_leg2 * t3020;
-        let t3034 = gcross_vz_leg2 * t3020 + minus_gcylinder_vz_leg2 * t3017
-            + grod_vz_leg2 * t865;
-        let t3045 = c_cylinder_leg3 * (t2691 + t1535);
-        let t3047 = t1999 + t2880;
-        let t3051 = gcylinder_vx_leg3 * t3047 - gcross_vx_leg3 * t3045
-            - minus_minus_grod_vx_leg3 * t918;
-        let t3056 = gcylinder_vy_leg3 * t3047 + minus_gcross_vy_leg3 * t3045
-            - grod_vy_leg3 * t918;
-        let t3061 = gcross_vz_leg3 * t3045 + minus_gcylinder_vz_leg3 * t3047
-            + grod_vz_leg3 * t918;
-        let t3072 = c_cylinder_leg4 * (t2724 + t1600);
-        let t3074 = t2032 + t2908;
-        let t3078 = gcylinder_vx_leg4 * t3074 - gcross_vx_leg4 * t3072
-            - minus_minus_grod_vx_leg4 * t959;
-        let t3083 = gcylinder_vy_leg4 * t3074 + minus_gcross_vy_leg4 * t3072
-            - grod_vy_leg4 * t959;
-        let t3088 = gcross_vz_leg4 * t3072 + minus_gcylinder_vz_leg4 * t3074
-            + grod_vz_leg4 * t959;
-        let t3099 = c_cylinder_leg5 * (t2757 + t1657);
-        let t3101 = t2065 + t2936;
-        let t3105 = gcross_vx_leg5 * t3099 + minus_gcylinder_vx_leg5 * t3101
-            + minus_minus_grod_vx_leg5 * t1000;
-        let t3110 = gcylinder_vy_leg5 * t3101 - gcross_vy_leg5 * t3099
-            - grod_vy_leg5 * t1000;
-        let t3115 = minus_gcylinder_vz_leg5 * t3101 - minus_gcross_vz_leg5 * t3099
-            + grod_vz_leg5 * t1000;
-        let t3127 = t209 * t1733 - c_cylinder_leg6 * t2790;
-        let t3129 = t2098 + t2964;
-        let t3133 = gcross_vx_leg6 * t3127 - minus_gcylinder_vx_leg6 * t3129
-            - minus_minus_grod_vx_leg6 * t1041;
-        let t3138 = gcross_vy_leg6 * t3127 + gcylinder_vy_leg6 * t3129
-            - grod_vy_leg6 * t1041;
-        let t3143 = minus_gcross_vz_leg6 * t3127 + minus_gcylinder_vz_leg6 * t3129
-            + grod_vz_leg6 * t1041;
+        let t3002 = t1784 + c_cylinder_leg1 * t2636;
+        let t3004 = t2835 - t1942;
+        let t3008 = minus_gcross_vx_leg1 * t3002 + gcylinder_vx_leg1 * t3004
+            - grod_vx_leg1 * t800;
+        let t3013 = minus_minus_grod_vy_leg1 * t800 + gcross_vy_leg1 * t3002
+            + minus_gcylinder_vy_leg1 * t3004;
+        let t3018 = gcylinder_vz_leg1 * t3004 - gcross_vz_leg1 * t3002
+            - grod_vz_leg1 * t800;
+        let t3029 = t96 * t2233 + t2864;
+        let t3032 = c_cylinder_leg2 * (t2669 + t1479);
+        let t3036 = gcylinder_vx_leg2 * t3029 + minus_gcross_vx_leg2 * t3032
+            - grod_vx_leg2 * t870;
+        let t3041 = minus_minus_grod_vy_leg2 * t870 + minus_gcylinder_vy_leg2 * t3029
+            - minus_gcross_vy_leg2 * t3032;
+        let t3046 = gcross_vz_leg2 * t3032 + minus_gcylinder_vz_leg2 * t3029
+            + grod_vz_leg2 * t870;
+        let t3057 = t1837 - c_cylinder_leg3 * t2702;
+        let t3059 = t2009 + t2891;
+        let t3063 = gcross_vx_leg3 * t3057 + gcylinder_vx_leg3 * t3059
+            - minus_minus_grod_vx_leg3 * t923;
+        let t3068 = gcylinder_vy_leg3 * t3059 - minus_gcross_vy_leg3 * t3057
+            - grod_vy_leg3 * t923;
+        let t3073 = gcross_vz_leg3 * t3057 - minus_gcylinder_vz_leg3 * t3059
+            - grod_vz_leg3 * t923;
+        let t3084 = c_cylinder_leg4 * (t2735 + t1597);
+        let t3086 = t2042 + t2919;
+        let t3090 = gcylinder_vx_leg4 * t3086 - gcross_vx_leg4 * t3084
+            - minus_minus_grod_vx_leg4 * t964;
+        let t3095 = gcylinder_vy_leg4 * t3086 + minus_gcross_vy_leg4 * t3084
+            - grod_vy_leg4 * t964;
+        let t3100 = gcross_vz_leg4 * t3084 + minus_gcylinder_vz_leg4 * t3086
+            + grod_vz_leg4 * t964;
+        let t3111 = c_cylinder_leg5 * (t2768 + t1662);
+        let t3113 = t2075 + t2947;
+        let t3117 = gcross_vx_leg5 * t3111 + minus_gcylinder_vx_leg5 * t3113
+            + minus_minus_grod_vx_leg5 * t1005;
+        let t3122 = gcylinder_vy_leg5 * t3113 - gcross_vy_leg5 * t3111
+            - grod_vy_leg5 * t1005;
+        let t3127 = minus_gcylinder_vz_leg5 * t3113 - minus_gcross_vz_leg5 * t3111
+            + grod_vz_leg5 * t1005;
+        let t3139 = t203 * t1736 - c_cylinder_leg6 * t2801;
+        let t3141 = t2108 + t2975;
+        let t3145 = gcross_vx_leg6 * t3139 - minus_gcylinder_vx_leg6 * t3141
+            - minus_minus_grod_vx_leg6 * t1046;
+        let t3150 = gcross_vy_leg6 * t3139 + gcylinder_vy_leg6 * t3141
+            - grod_vy_leg6 * t1046;
+        let t3155 = minus_gcross_vz_leg6 * t3139 + minus_gcylinder_vz_leg6 * t3141
+            + grod_vz_leg6 * t1046;
         Ok([
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1269, t1322,
-                t1151 * t1264 - t1149 * t686 + t1154 * t1267, t1312,
-                minus_gcross_vx_leg1 * t1407 - t1411, t1453 - minus_gcross_vx_leg2 * t1484,
-                gcross_vx_leg3 * t1546 + t1550, t1607 - gcross_vx_leg4 * t1602,
-                gcross_vx_leg5 * t1668 - t1672, gcross_vx_leg6 * t1733 - t1737,
-                gcylinder_vx_leg1 * t1777 - minus_gcross_vx_leg1 * t1782,
-                gcylinder_vx_leg2 * t1801 - minus_gcross_vx_leg2 * t1806,
-                gcross_vx_leg3 * t1827 + gcylinder_vx_leg3 * t1830,
-                gcross_vx_leg4 * t1858 + gcylinder_vx_leg4 * t1861,
-                gcross_vx_leg5 * t1882 - minus_gcylinder_vx_leg5 * t1885,
-                gcross_vx_leg6 * t1906 - minus_gcylinder_vx_leg6 * t1909,
-                -(minus_gcross_vx_leg1 * t1940 + gcylinder_vx_leg1 * t1942),
-                -(minus_gcross_vx_leg2 * t1973 + gcylinder_vx_leg2 * t1975),
-                gcross_vx_leg3 * t2006 - gcylinder_vx_leg3 * t2008,
-                gcross_vx_leg4 * t2039 - gcylinder_vx_leg4 * t2041,
-                gcross_vx_leg5 * t2072 + minus_gcylinder_vx_leg5 * t2074,
-                gcross_vx_leg6 * t2105 + minus_gcylinder_vx_leg6 * t2107,
-                t1411 - minus_gcross_vx_leg1 * t1406, minus_gcross_vx_leg2 * t1483 - t1453,
-                -(gcross_vx_leg3 * t1545 + t1550), -(gcross_vx_leg4 * t2161 + t1607),
-                t1672 - gcross_vx_leg5 * t1667, t1737 - gcross_vx_leg6 * t1732,
-                -(minus_gcross_vx_leg1 * t2201 + gcylinder_vx_leg1 * t1403),
-                t2220 - minus_gcross_vx_leg2 * t2224,
-                gcross_vx_leg3 * t2245 + gcylinder_vx_leg3 * t1542,
-                gcross_vx_leg4 * t2267 + gcylinder_vx_leg4 * t1853,
-                gcross_vx_leg5 * t2289 - minus_gcylinder_vx_leg5 * t1664,
-                gcross_vx_leg6 * t2311 - minus_gcylinder_vx_leg6 * t1729,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1274, t1327,
+                t1156 * t1269 - t1154 * t691 + t1159 * t1272, t1317,
+                minus_gcross_vx_leg1 * t1412 - t1416, t1458 + minus_gcross_vx_leg2 * t1481,
+                gcross_vx_leg3 * t1543 + t1547, gcross_vx_leg4 * t1608 + t1612,
+                gcross_vx_leg5 * t1673 - t1677, gcross_vx_leg6 * t1737 - t1741,
+                gcylinder_vx_leg1 * t1781 - minus_gcross_vx_leg1 * t1787,
+                gcylinder_vx_leg2 * t1806 - minus_gcross_vx_leg2 * t1818,
+                gcross_vx_leg3 * t1840 + gcylinder_vx_leg3 * t1843,
+                gcross_vx_leg4 * t1864 + gcylinder_vx_leg4 * t1867,
+                gcross_vx_leg5 * t1888 - minus_gcylinder_vx_leg5 * t1891,
+                gcross_vx_leg6 * t1915 - minus_gcylinder_vx_leg6 * t1918,
+                -(minus_gcross_vx_leg1 * t1949 + gcylinder_vx_leg1 * t1951),
+                -(minus_gcross_vx_leg2 * t1983 + gcylinder_vx_leg2 * t1985),
+                gcross_vx_leg3 * t2016 - gcylinder_vx_leg3 * t2018,
+                gcross_vx_leg4 * t2049 - gcylinder_vx_leg4 * t2051,
+                gcross_vx_leg5 * t2082 + minus_gcylinder_vx_leg5 * t2084,
+                gcross_vx_leg6 * t2115 + minus_gcylinder_vx_leg6 * t1734,
+                t1416 - minus_gcross_vx_leg1 * t1411, minus_gcross_vx_leg2 * t2146 - t1458,
+                -(gcross_vx_leg3 * t1542 + t1547), -(gcross_vx_leg4 * t1607 + t1612),
+                t1677 - gcross_vx_leg5 * t1672, t1741 - gcross_vx_leg6 * t2195,
+                -(minus_gcross_vx_leg1 * t2211 + gcylinder_vx_leg1 * t1408),
+                gcylinder_vx_leg2 * t1813 - minus_gcross_vx_leg2 * t2235,
+                gcross_vx_leg3 * t2256 + gcylinder_vx_leg3 * t1539,
+                gcross_vx_leg4 * t2278 + gcylinder_vx_leg4 * t1604,
+                gcross_vx_leg5 * t2300 - minus_gcylinder_vx_leg5 * t1669,
+                gcross_vx_leg6 * t2322 - minus_gcylinder_vx_leg6 * t1910,
                 gcylinder_vx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_vx_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_vx_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vx_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_vx_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vx_leg6 * rate_dot_cylinder_leg6),
-                -(minus_gcross_vx_leg1 * t2366 + gcylinder_vx_leg1 * t2368),
-                minus_gcross_vx_leg2 * t2386 - gcylinder_vx_leg2 * t2388,
-                -(gcross_vx_leg3 * t2406 + gcylinder_vx_leg3 * t2408),
-                -(gcross_vx_leg4 * t2426 + gcylinder_vx_leg4 * t2428),
-                gcross_vx_leg5 * t2446 + minus_gcylinder_vx_leg5 * t2448,
-                gcross_vx_leg6 * t2466 + minus_gcylinder_vx_leg6 * t2468, grod_vx_leg1 * t2486,
-                grod_vx_leg2 * t2502, minus_minus_grod_vx_leg3 * t2518,
-                minus_minus_grod_vx_leg4 * t2534, minus_minus_grod_vx_leg5 * t2550,
-                minus_minus_grod_vx_leg6 * t2566, -(minus_gcross_vx_leg1 * t2582),
-                -(minus_gcross_vx_leg2 * t2589), gcross_vx_leg3 * t2596, gcross_vx_leg4 * t2603,
-                gcross_vx_leg5 * t2610, gcross_vx_leg6 * t2617, -t2637, -t2670, t2703, t2736, t2769,
-                t2802, -t2832, t2860, t2888, t2916, t2944, t2972, t2997, t3024, t3051, t3078,
-                -t3105, t3133, grod_vx_leg1 * actuator_accelerations[0],
+                -(minus_gcross_vx_leg1 * t2377 + gcylinder_vx_leg1 * t2379),
+                minus_gcross_vx_leg2 * t2397 - gcylinder_vx_leg2 * t2399,
+                -(gcross_vx_leg3 * t2417 + gcylinder_vx_leg3 * t2419),
+                -(gcross_vx_leg4 * t2437 + gcylinder_vx_leg4 * t2439),
+                gcross_vx_leg5 * t2457 + minus_gcylinder_vx_leg5 * t2459,
+                gcross_vx_leg6 * t2477 + minus_gcylinder_vx_leg6 * t2479, grod_vx_leg1 * t2497,
+                grod_vx_leg2 * t2513, minus_minus_grod_vx_leg3 * t2529,
+                minus_minus_grod_vx_leg4 * t2545, minus_minus_grod_vx_leg5 * t2561,
+                minus_minus_grod_vx_leg6 * t2577, -(minus_gcross_vx_leg1 * t2593),
+                -(minus_gcross_vx_leg2 * t2600), gcross_vx_leg3 * t2607, gcross_vx_leg4 * t2614,
+                gcross_vx_leg5 * t2621, gcross_vx_leg6 * t2628, -t2648, -t2681, t2714, t2747, t2780,
+                t2813, -t2843, t2871, t2899, t2927, t2955, t2983, t3008, t3036, t3063, t3090,
+                -t3117, t3145, grod_vx_leg1 * actuator_accelerations[0],
                 grod_vx_leg2 * actuator_accelerations[1],
                 minus_minus_grod_vx_leg3 * actuator_accelerations[2],
                 minus_minus_grod_vx_leg4 * actuator_accelerations[3],
                 minus_minus_grod_vx_leg5 * actuator_accelerations[4],
-                minus_minus_grod_vx_leg6 * actuator_accelerations[5], t221, t222, t224, t226, t228,
-                t230, ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]),
+                minus_minus_grod_vx_leg6 * actuator_accelerations[5], t384, t385, t387, t389, t391,
+                t393, ::overact::math::signed(grod_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(
                     minus_minus_grod_vx_leg3,
@@ -17095,55 +17100,54 @@ impl Hexapod {
                 minus_minus_grod_vx_leg6,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1275, t1326,
-                t1149 * t1270 - t1151 * t665 + t1154 * t1273, t1299, t1414 - gcross_vy_leg1 * t1407,
-                -(minus_gcross_vy_leg2 * t1484 + t1490), t1553 - minus_gcross_vy_leg3 * t1546,
-                t1610 + minus_gcross_vy_leg4 * t1602, gcross_vy_leg5 * t1668 + t1677,
-                gcross_vy_leg6 * t1733 + t1742,
-                gcross_vy_leg1 * t1782 - minus_gcylinder_vy_leg1 * t1777,
-                -(minus_gcross_vy_leg2 * t1806 + minus_gcylinder_vy_leg2 * t1801),
-                gcylinder_vy_leg3 * t1830 - minus_gcross_vy_leg3 * t1827,
-                gcylinder_vy_leg4 * t1861 - minus_gcross_vy_leg4 * t1858,
-                gcross_vy_leg5 * t1882 + gcylinder_vy_leg5 * t1885,
-                gcross_vy_leg6 * t1906 + gcylinder_vy_leg6 * t1909,
-                gcross_vy_leg1 * t1940 + minus_gcylinder_vy_leg1 * t1942,
-                minus_gcylinder_vy_leg2 * t1975 - minus_gcross_vy_leg2 * t1973,
-                -(minus_gcross_vy_leg3 * t2006 + gcylinder_vy_leg3 * t2008),
-                -(minus_gcross_vy_leg4 * t2039 + gcylinder_vy_leg4 * t2041),
-                gcross_vy_leg5 * t2072 - gcylinder_vy_leg5 * t2074,
-                gcross_vy_leg6 * t2105 - gcylinder_vy_leg6 * t2107, gcross_vy_leg1 * t1406 - t1414,
-                minus_gcross_vy_leg2 * t1483 + t1490, minus_gcross_vy_leg3 * t1545 - t1553,
-                minus_gcross_vy_leg4 * t2161 - t1610, -(gcross_vy_leg5 * t1667 + t1677),
-                -(gcross_vy_leg6 * t1732 + t1742),
-                gcross_vy_leg1 * t2201 + minus_gcylinder_vy_leg1 * t1403,
-                -(minus_gcross_vy_leg2 * t2224 + t2228),
-                gcylinder_vy_leg3 * t1542 - minus_gcross_vy_leg3 * t2245,
-                gcylinder_vy_leg4 * t1853 - minus_gcross_vy_leg4 * t2267,
-                gcross_vy_leg5 * t2289 + gcylinder_vy_leg5 * t1664,
-                gcross_vy_leg6 * t2311 + gcylinder_vy_leg6 * t1729,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1280, t1331,
+                t1154 * t1275 - t1156 * t670 + t1159 * t1278, t1304, t1419 - gcross_vy_leg1 * t1412,
+                -(t1487 - minus_gcross_vy_leg2 * t1481), t1550 - minus_gcross_vy_leg3 * t1543,
+                t1615 - minus_gcross_vy_leg4 * t1608, gcross_vy_leg5 * t1673 + t1682,
+                gcross_vy_leg6 * t1737 + t1746,
+                gcross_vy_leg1 * t1787 - minus_gcylinder_vy_leg1 * t1781,
+                -(minus_gcross_vy_leg2 * t1818 + minus_gcylinder_vy_leg2 * t1806),
+                gcylinder_vy_leg3 * t1843 - minus_gcross_vy_leg3 * t1840,
+                gcylinder_vy_leg4 * t1867 - minus_gcross_vy_leg4 * t1864,
+                gcross_vy_leg5 * t1888 + gcylinder_vy_leg5 * t1891,
+                gcross_vy_leg6 * t1915 + gcylinder_vy_leg6 * t1918,
+                gcross_vy_leg1 * t1949 + minus_gcylinder_vy_leg1 * t1951,
+                minus_gcylinder_vy_leg2 * t1985 - minus_gcross_vy_leg2 * t1983,
+                -(minus_gcross_vy_leg3 * t2016 + gcylinder_vy_leg3 * t2018),
+                -(minus_gcross_vy_leg4 * t2049 + gcylinder_vy_leg4 * t2051),
+                gcross_vy_leg5 * t2082 - gcylinder_vy_leg5 * t2084,
+                gcross_vy_leg6 * t2115 - gcylinder_vy_leg6 * t1734, gcross_vy_leg1 * t1411 - t1419,
+                minus_gcross_vy_leg2 * t2146 + t1487, minus_gcross_vy_leg3 * t1542 - t1550,
+                minus_gcross_vy_leg4 * t1607 - t1615, -(gcross_vy_leg5 * t1672 + t1682),
+                -(gcross_vy_leg6 * t2195 + t1746),
+                gcross_vy_leg1 * t2211 + minus_gcylinder_vy_leg1 * t1408,
+                -(minus_gcross_vy_leg2 * t2235 + minus_gcylinder_vy_leg2 * t1813),
+                gcylinder_vy_leg3 * t1539 - minus_gcross_vy_leg3 * t2256,
+                gcylinder_vy_leg4 * t1604 - minus_gcross_vy_leg4 * t2278,
+                gcross_vy_leg5 * t2300 + t2305, gcross_vy_leg6 * t2322 + t2327,
                 -(minus_gcylinder_vy_leg1 * rate_dot_cylinder_leg1),
                 -(minus_gcylinder_vy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_vy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_vy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_vy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_vy_leg6 * rate_dot_cylinder_leg6,
-                gcross_vy_leg1 * t2366 + minus_gcylinder_vy_leg1 * t2368,
-                minus_gcross_vy_leg2 * t2386 + minus_gcylinder_vy_leg2 * t2388,
-                minus_gcross_vy_leg3 * t2406 - gcylinder_vy_leg3 * t2408,
-                minus_gcross_vy_leg4 * t2426 - gcylinder_vy_leg4 * t2428,
-                gcross_vy_leg5 * t2446 - gcylinder_vy_leg5 * t2448,
-                gcross_vy_leg6 * t2466 - gcylinder_vy_leg6 * t2468,
-                minus_minus_grod_vy_leg1 * t2486, minus_minus_grod_vy_leg2 * t2502,
-                grod_vy_leg3 * t2518, grod_vy_leg4 * t2534, grod_vy_leg5 * t2550,
-                grod_vy_leg6 * t2566, gcross_vy_leg1 * t2582, -(minus_gcross_vy_leg2 * t2589),
-                -(minus_gcross_vy_leg3 * t2596), -(minus_gcross_vy_leg4 * t2603),
-                gcross_vy_leg5 * t2610, gcross_vy_leg6 * t2617, t2642, t2675, -t2708, -t2741, t2774,
-                t2807, t2837, -t2865, t2893, t2921, t2949, t2977, -t3002, -t3029, t3056, t3083,
-                t3110, t3138, minus_minus_grod_vy_leg1 * actuator_accelerations[0],
+                gcross_vy_leg1 * t2377 + minus_gcylinder_vy_leg1 * t2379,
+                minus_gcross_vy_leg2 * t2397 + minus_gcylinder_vy_leg2 * t2399,
+                minus_gcross_vy_leg3 * t2417 - gcylinder_vy_leg3 * t2419,
+                minus_gcross_vy_leg4 * t2437 - gcylinder_vy_leg4 * t2439,
+                gcross_vy_leg5 * t2457 - gcylinder_vy_leg5 * t2459,
+                gcross_vy_leg6 * t2477 - gcylinder_vy_leg6 * t2479,
+                minus_minus_grod_vy_leg1 * t2497, minus_minus_grod_vy_leg2 * t2513,
+                grod_vy_leg3 * t2529, grod_vy_leg4 * t2545, grod_vy_leg5 * t2561,
+                grod_vy_leg6 * t2577, gcross_vy_leg1 * t2593, -(minus_gcross_vy_leg2 * t2600),
+                -(minus_gcross_vy_leg3 * t2607), -(minus_gcross_vy_leg4 * t2614),
+                gcross_vy_leg5 * t2621, gcross_vy_leg6 * t2628, t2653, t2686, -t2719, -t2752, t2785,
+                t2818, t2848, -t2876, t2904, t2932, t2960, t2988, -t3013, -t3041, t3068, t3095,
+                t3122, t3150, minus_minus_grod_vy_leg1 * actuator_accelerations[0],
                 minus_minus_grod_vy_leg2 * actuator_accelerations[1],
                 grod_vy_leg3 * actuator_accelerations[2], grod_vy_leg4 * actuator_accelerations[3],
                 grod_vy_leg5 * actuator_accelerations[4], grod_vy_leg6 * actuator_accelerations[5],
-                t350, t351, t349, t354, t356, t358,
+                t443, t444, t442, t447, t449, t451,
                 ::overact::math::signed(
                     minus_minus_grod_vy_leg1,
                     actuator_velocities[0],
@@ -17164,58 +17168,58 @@ impl Hexapod {
                 grod_vy_leg6,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1281, t1330,
-                t1149 * t1276 + t1151 * t1278 - t1154 * t710, t1289,
-                -(gcross_vz_leg1 * t1407 + t1421), gcross_vz_leg2 * t1484 - t1495,
-                gcross_vz_leg3 * t1546 - t1560, -(gcross_vz_leg4 * t1602 + t1617),
-                -(minus_gcross_vz_leg5 * t1668 + t1682), -(minus_gcross_vz_leg6 * t1733 + t1747),
-                gcross_vz_leg1 * t1782 + gcylinder_vz_leg1 * t1777,
-                gcross_vz_leg2 * t1806 - minus_gcylinder_vz_leg2 * t1801,
-                gcross_vz_leg3 * t1827 - minus_gcylinder_vz_leg3 * t1830,
-                gcross_vz_leg4 * t1858 - minus_gcylinder_vz_leg4 * t1861,
-                -(minus_gcross_vz_leg5 * t1882 + minus_gcylinder_vz_leg5 * t1885),
-                -(minus_gcross_vz_leg6 * t1906 + minus_gcylinder_vz_leg6 * t1909),
-                gcross_vz_leg1 * t1940 - gcylinder_vz_leg1 * t1942,
-                gcross_vz_leg2 * t1973 + minus_gcylinder_vz_leg2 * t1975,
-                gcross_vz_leg3 * t2006 + minus_gcylinder_vz_leg3 * t2008,
-                gcross_vz_leg4 * t2039 + minus_gcylinder_vz_leg4 * t2041,
-                minus_gcylinder_vz_leg5 * t2074 - minus_gcross_vz_leg5 * t2072,
-                minus_gcylinder_vz_leg6 * t2107 - minus_gcross_vz_leg6 * t2105,
-                gcross_vz_leg1 * t1406 + t1421, t1495 - gcross_vz_leg2 * t1483,
-                t1560 - gcross_vz_leg3 * t1545, t1617 - gcross_vz_leg4 * t2161,
-                minus_gcross_vz_leg5 * t1667 + t1682, minus_gcross_vz_leg6 * t1732 + t1747,
-                gcross_vz_leg1 * t2201 - gcylinder_vz_leg1 * t1403,
-                gcross_vz_leg2 * t2224 - minus_gcylinder_vz_leg2 * t1480,
-                gcross_vz_leg3 * t2245 - minus_gcylinder_vz_leg3 * t1542,
-                gcross_vz_leg4 * t2267 - minus_gcylinder_vz_leg4 * t1853,
-                -(minus_gcross_vz_leg5 * t2289 + minus_gcylinder_vz_leg5 * t1664),
-                -(minus_gcross_vz_leg6 * t2311 + minus_gcylinder_vz_leg6 * t1729),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1286, t1335,
+                t1154 * t1281 + t1156 * t1283 - t1159 * t715, t1294,
+                -(gcross_vz_leg1 * t1412 + t1426), -(gcross_vz_leg2 * t1481 + t1492),
+                gcross_vz_leg3 * t1543 - t1557, gcross_vz_leg4 * t1608 - t1622,
+                -(minus_gcross_vz_leg5 * t1673 + t1687), -(minus_gcross_vz_leg6 * t1737 + t1751),
+                gcross_vz_leg1 * t1787 + gcylinder_vz_leg1 * t1781,
+                gcross_vz_leg2 * t1818 - minus_gcylinder_vz_leg2 * t1806,
+                gcross_vz_leg3 * t1840 - minus_gcylinder_vz_leg3 * t1843,
+                gcross_vz_leg4 * t1864 - minus_gcylinder_vz_leg4 * t1867,
+                -(minus_gcross_vz_leg5 * t1888 + minus_gcylinder_vz_leg5 * t1891),
+                -(minus_gcross_vz_leg6 * t1915 + minus_gcylinder_vz_leg6 * t1918),
+                gcross_vz_leg1 * t1949 - gcylinder_vz_leg1 * t1951,
+                gcross_vz_leg2 * t1983 + minus_gcylinder_vz_leg2 * t1985,
+                gcross_vz_leg3 * t2016 + minus_gcylinder_vz_leg3 * t2018,
+                gcross_vz_leg4 * t2049 + minus_gcylinder_vz_leg4 * t2051,
+                minus_gcylinder_vz_leg5 * t2084 - minus_gcross_vz_leg5 * t2082,
+                minus_gcylinder_vz_leg6 * t1734 - minus_gcross_vz_leg6 * t2115,
+                gcross_vz_leg1 * t1411 + t1426, t1492 - gcross_vz_leg2 * t2146,
+                t1557 - gcross_vz_leg3 * t1542, t1622 - gcross_vz_leg4 * t1607,
+                minus_gcross_vz_leg5 * t1672 + t1687, minus_gcross_vz_leg6 * t2195 + t1751,
+                gcross_vz_leg1 * t2211 - gcylinder_vz_leg1 * t1408,
+                gcross_vz_leg2 * t2235 - minus_gcylinder_vz_leg2 * t1813,
+                gcross_vz_leg3 * t2256 - minus_gcylinder_vz_leg3 * t1539,
+                gcross_vz_leg4 * t2278 - minus_gcylinder_vz_leg4 * t1604,
+                -(minus_gcross_vz_leg5 * t2300 + minus_gcylinder_vz_leg5 * t1669),
+                -(minus_gcross_vz_leg6 * t2322 + minus_gcylinder_vz_leg6 * t1910),
                 gcylinder_vz_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_vz_leg2 * rate_dot_cylinder_leg2),
                 -(minus_gcylinder_vz_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_vz_leg4 * rate_dot_cylinder_leg4),
                 -(minus_gcylinder_vz_leg5 * rate_dot_cylinder_leg5),
                 -(minus_gcylinder_vz_leg6 * rate_dot_cylinder_leg6),
-                gcross_vz_leg1 * t2366 - gcylinder_vz_leg1 * t2368,
-                minus_gcylinder_vz_leg2 * t2388 - gcross_vz_leg2 * t2386,
-                minus_gcylinder_vz_leg3 * t2408 - gcross_vz_leg3 * t2406,
-                minus_gcylinder_vz_leg4 * t2428 - gcross_vz_leg4 * t2426,
-                minus_gcylinder_vz_leg5 * t2448 - minus_gcross_vz_leg5 * t2446,
-                minus_gcylinder_vz_leg6 * t2468 - minus_gcross_vz_leg6 * t2466,
-                -(gcross_vz_leg1 * t2490 + gcylinder_vz_leg1 * t2492),
-                -(gcross_vz_leg2 * t2506 + minus_gcylinder_vz_leg2 * t2508),
-                -(gcross_vz_leg3 * t2522 + minus_gcylinder_vz_leg3 * t2524),
-                -(gcross_vz_leg4 * t2538 + minus_gcylinder_vz_leg4 * t2540),
-                -(minus_gcross_vz_leg5 * t2554 + minus_gcylinder_vz_leg5 * t2556),
-                -(minus_gcross_vz_leg6 * t2570 + minus_gcylinder_vz_leg6 * t2572),
-                gcross_vz_leg1 * t2582, gcross_vz_leg2 * t2589, gcross_vz_leg3 * t2596,
-                gcross_vz_leg4 * t2603, -(minus_gcross_vz_leg5 * t2610),
-                -(minus_gcross_vz_leg6 * t2617), t2647, t2680, t2713, t2746, t2779, t2812, t2840,
-                t2868, t2896, t2924, -t2952, -t2980, t3007, -t3034, -t3061, -t3088, -t3115, -t3143,
+                gcross_vz_leg1 * t2377 - gcylinder_vz_leg1 * t2379,
+                minus_gcylinder_vz_leg2 * t2399 - gcross_vz_leg2 * t2397,
+                minus_gcylinder_vz_leg3 * t2419 - gcross_vz_leg3 * t2417,
+                minus_gcylinder_vz_leg4 * t2439 - gcross_vz_leg4 * t2437,
+                minus_gcylinder_vz_leg5 * t2459 - minus_gcross_vz_leg5 * t2457,
+                minus_gcylinder_vz_leg6 * t2479 - minus_gcross_vz_leg6 * t2477,
+                -(gcross_vz_leg1 * t2501 + gcylinder_vz_leg1 * t2503),
+                -(gcross_vz_leg2 * t2517 + minus_gcylinder_vz_leg2 * t2519),
+                -(gcross_vz_leg3 * t2533 + minus_gcylinder_vz_leg3 * t2535),
+                -(gcross_vz_leg4 * t2549 + minus_gcylinder_vz_leg4 * t2551),
+                -(minus_gcross_vz_leg5 * t2565 + minus_gcylinder_vz_leg5 * t2567),
+                -(minus_gcross_vz_leg6 * t2581 + minus_gcylinder_vz_leg6 * t2583),
+                gcross_vz_leg1 * t2593, gcross_vz_leg2 * t2600, gcross_vz_leg3 * t2607,
+                gcross_vz_leg4 * t2614, -(minus_gcross_vz_leg5 * t2621),
+                -(minus_gcross_vz_leg6 * t2628), t2658, t2691, t2724, t2757, t2790, t2823, t2851,
+                t2879, t2907, t2935, -t2963, -t2991, t3018, -t3046, t3073, -t3100, -t3127, -t3155,
                 grod_vz_leg1 * actuator_accelerations[0], grod_vz_leg2 * actuator_accelerations[1],
                 grod_vz_leg3 * actuator_accelerations[2], grod_vz_leg4 * actuator_accelerations[3],
                 grod_vz_leg5 * actuator_accelerations[4], grod_vz_leg6 * actuator_accelerations[5],
-                t420, t421, t423, t425, t427, t429,
+                t473, t474, t476, t478, t480, t482,
                 ::overact::math::signed(grod_vz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_vz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_vz_leg3, actuator_velocities[2]),
@@ -17225,64 +17229,64 @@ impl Hexapod {
                 grod_vz_leg2, grod_vz_leg3, grod_vz_leg4, grod_vz_leg5, grod_vz_leg6,
             ],
             [
-                t5 * t1145 + t1158 - t1163, t5 * t1180 + t35 * t1183 + t1149 * t1188,
-                t5 * t1206 + t35 * t1209 + t1149 * t1212, t35 * t1179 - t1226 + t1163,
-                t5 * t1237 + t35 * t1239 + t1149 * t1242, t1226 - t1158 + t1149 * t1205,
-                t9 * t1289 - t22 * t1299, t13 * t1289 - t26 * t1299, t1151 * t1289 - t1154 * t1299,
-                0.0, -(gcross_wx_leg1 * t1407 + t1430), t1504 - minus_gcross_wx_leg2 * t1484,
-                gcross_wx_leg3 * t1546 - t1569, -(gcross_wx_leg4 * t1602 + t1626),
-                gcross_wx_leg5 * t1668 + t1691, -(minus_gcross_wx_leg6 * t1733 + t1756),
-                gcross_wx_leg1 * t1782 + gcylinder_wx_leg1 * t1777,
-                gcylinder_wx_leg2 * t1801 - minus_gcross_wx_leg2 * t1806,
-                gcross_wx_leg3 * t1827 - minus_gcylinder_wx_leg3 * t1830,
-                gcross_wx_leg4 * t1858 - minus_gcylinder_wx_leg4 * t1861,
-                gcross_wx_leg5 * t1882 + gcylinder_wx_leg5 * t1885,
-                -(minus_gcross_wx_leg6 * t1906 + minus_gcylinder_wx_leg6 * t1909),
-                gcross_wx_leg1 * t1940 - gcylinder_wx_leg1 * t1942,
-                -(minus_gcross_wx_leg2 * t1973 + gcylinder_wx_leg2 * t1975),
-                gcross_wx_leg3 * t2006 + minus_gcylinder_wx_leg3 * t2008,
-                gcross_wx_leg4 * t2039 + minus_gcylinder_wx_leg4 * t2041,
-                gcross_wx_leg5 * t2072 - gcylinder_wx_leg5 * t2074,
-                minus_gcylinder_wx_leg6 * t2107 - minus_gcross_wx_leg6 * t2105,
-                gcross_wx_leg1 * t1406 + t1430, -(t1504 - minus_gcross_wx_leg2 * t1483),
-                t1569 - gcross_wx_leg3 * t1545, t1626 - gcross_wx_leg4 * t2161,
-                -(gcross_wx_leg5 * t1667 + t1691), minus_gcross_wx_leg6 * t1732 + t1756,
-                gcross_wx_leg1 * t2201 - gcylinder_wx_leg1 * t1403,
-                gcylinder_wx_leg2 * t1480 - minus_gcross_wx_leg2 * t2224,
-                gcross_wx_leg3 * t2245 - minus_gcylinder_wx_leg3 * t1542,
-                gcross_wx_leg4 * t2267 - minus_gcylinder_wx_leg4 * t1853,
-                gcross_wx_leg5 * t2289 + gcylinder_wx_leg5 * t1664,
-                -(minus_gcross_wx_leg6 * t2311 + minus_gcylinder_wx_leg6 * t1729),
+                t5 * t1150 + t1163 - t1168, t5 * t1185 + t35 * t1188 + t1154 * t1193,
+                t5 * t1211 + t35 * t1214 + t1154 * t1217, t35 * t1184 - t1231 + t1168,
+                t5 * t1242 + t35 * t1244 + t1154 * t1247, t1231 - t1163 + t1154 * t1210,
+                t9 * t1294 - t22 * t1304, t13 * t1294 - t26 * t1304, t1156 * t1294 - t1159 * t1304,
+                0.0, -(gcross_wx_leg1 * t1412 + t1435), minus_gcross_wx_leg2 * t1481 + t1501,
+                gcross_wx_leg3 * t1543 - t1566, gcross_wx_leg4 * t1608 - t1631,
+                gcross_wx_leg5 * t1673 + t1696, -(minus_gcross_wx_leg6 * t1737 + t1760),
+                gcross_wx_leg1 * t1787 + gcylinder_wx_leg1 * t1781,
+                gcylinder_wx_leg2 * t1806 - minus_gcross_wx_leg2 * t1818,
+                gcross_wx_leg3 * t1840 - minus_gcylinder_wx_leg3 * t1843,
+                gcross_wx_leg4 * t1864 - minus_gcylinder_wx_leg4 * t1867,
+                gcross_wx_leg5 * t1888 + gcylinder_wx_leg5 * t1891,
+                -(minus_gcross_wx_leg6 * t1915 + minus_gcylinder_wx_leg6 * t1918),
+                gcross_wx_leg1 * t1949 - gcylinder_wx_leg1 * t1951,
+                -(minus_gcross_wx_leg2 * t1983 + gcylinder_wx_leg2 * t1985),
+                gcross_wx_leg3 * t2016 + minus_gcylinder_wx_leg3 * t2018,
+                gcross_wx_leg4 * t2049 + minus_gcylinder_wx_leg4 * t2051,
+                gcross_wx_leg5 * t2082 - gcylinder_wx_leg5 * t2084,
+                minus_gcylinder_wx_leg6 * t1734 - minus_gcross_wx_leg6 * t2115,
+                gcross_wx_leg1 * t1411 + t1435, -(t1501 - minus_gcross_wx_leg2 * t2146),
+                t1566 - gcross_wx_leg3 * t1542, t1631 - gcross_wx_leg4 * t1607,
+                -(gcross_wx_leg5 * t1672 + t1696), minus_gcross_wx_leg6 * t2195 + t1760,
+                gcross_wx_leg1 * t2211 - gcylinder_wx_leg1 * t1408,
+                gcylinder_wx_leg2 * t1813 - minus_gcross_wx_leg2 * t2235,
+                gcross_wx_leg3 * t2256 - minus_gcylinder_wx_leg3 * t1539,
+                gcross_wx_leg4 * t2278 - minus_gcylinder_wx_leg4 * t1604,
+                gcross_wx_leg5 * t2300 + gcylinder_wx_leg5 * t1669,
+                -(minus_gcross_wx_leg6 * t2322 + minus_gcylinder_wx_leg6 * t1910),
                 gcylinder_wx_leg1 * rate_dot_cylinder_leg1,
                 gcylinder_wx_leg2 * rate_dot_cylinder_leg2,
                 -(minus_gcylinder_wx_leg3 * rate_dot_cylinder_leg3),
                 -(minus_gcylinder_wx_leg4 * rate_dot_cylinder_leg4),
                 gcylinder_wx_leg5 * rate_dot_cylinder_leg5,
                 -(minus_gcylinder_wx_leg6 * rate_dot_cylinder_leg6),
-                gcross_wx_leg1 * t2366 - gcylinder_wx_leg1 * t2368,
-                -(gcylinder_wx_leg2 * t2388 - minus_gcross_wx_leg2 * t2386),
-                minus_gcylinder_wx_leg3 * t2408 - gcross_wx_leg3 * t2406,
-                minus_gcylinder_wx_leg4 * t2428 - gcross_wx_leg4 * t2426,
-                gcross_wx_leg5 * t2446 - gcylinder_wx_leg5 * t2448,
-                minus_gcylinder_wx_leg6 * t2468 - minus_gcross_wx_leg6 * t2466,
-                -(gcross_wx_leg1 * t2490 + gcylinder_wx_leg1 * t2492),
-                gcylinder_wx_leg2 * t2508 + minus_gcross_wx_leg2 * t2506,
-                -(gcross_wx_leg3 * t2522 + minus_gcylinder_wx_leg3 * t2524),
-                -(gcross_wx_leg4 * t2538 + minus_gcylinder_wx_leg4 * t2540),
-                gcross_wx_leg5 * t2554 + gcylinder_wx_leg5 * t2556,
-                -(minus_gcross_wx_leg6 * t2570 + minus_gcylinder_wx_leg6 * t2572),
-                gcross_wx_leg1 * t2582, -(minus_gcross_wx_leg2 * t2589), gcross_wx_leg3 * t2596,
-                gcross_wx_leg4 * t2603, gcross_wx_leg5 * t2610, -(minus_gcross_wx_leg6 * t2617),
-                t19 * t2647 - t32 * t2642, t73 * t2675 - t82 * t2680, t15 * t2713 + t28 * t2708,
-                t80 * t2746 + t71 * t2741, t31 * t2774 - t18 * t2779, t81 * t2812 - t72 * t2807,
-                t19 * t2840 - t32 * t2837, -(t82 * t2868 + t73 * t2865), t15 * t2896 - t28 * t2893,
-                t80 * t2924 - t71 * t2921, t18 * t2952 + t31 * t2949, -(t81 * t2980 + t72 * t2977),
-                t19 * t3007 + t32 * t3002, t82 * t3034 - t73 * t3029, -(t15 * t3061 + t28 * t3056),
-                -(t80 * t3088 + t71 * t3083), t18 * t3115 + t31 * t3110,
-                -(t81 * t3143 + t72 * t3138), grod_wx_leg1 * actuator_accelerations[0],
+                gcross_wx_leg1 * t2377 - gcylinder_wx_leg1 * t2379,
+                -(gcylinder_wx_leg2 * t2399 - minus_gcross_wx_leg2 * t2397),
+                minus_gcylinder_wx_leg3 * t2419 - gcross_wx_leg3 * t2417,
+                minus_gcylinder_wx_leg4 * t2439 - gcross_wx_leg4 * t2437,
+                gcross_wx_leg5 * t2457 - gcylinder_wx_leg5 * t2459,
+                minus_gcylinder_wx_leg6 * t2479 - minus_gcross_wx_leg6 * t2477,
+                -(gcross_wx_leg1 * t2501 + gcylinder_wx_leg1 * t2503),
+                gcylinder_wx_leg2 * t2519 + minus_gcross_wx_leg2 * t2517,
+                -(gcross_wx_leg3 * t2533 + minus_gcylinder_wx_leg3 * t2535),
+                -(gcross_wx_leg4 * t2549 + minus_gcylinder_wx_leg4 * t2551),
+                gcross_wx_leg5 * t2565 + gcylinder_wx_leg5 * t2567,
+                -(minus_gcross_wx_leg6 * t2581 + minus_gcylinder_wx_leg6 * t2583),
+                gcross_wx_leg1 * t2593, -(minus_gcross_wx_leg2 * t2600), gcross_wx_leg3 * t2607,
+                gcross_wx_leg4 * t2614, gcross_wx_leg5 * t2621, -(minus_gcross_wx_leg6 * t2628),
+                t19 * t2658 - t32 * t2653, t73 * t2686 - t70 * t2691, t15 * t2724 + t28 * t2719,
+                t68 * t2757 + t71 * t2752, t31 * t2785 - t18 * t2790, t69 * t2823 - t72 * t2818,
+                t19 * t2851 - t32 * t2848, -(t70 * t2879 + t73 * t2876), t15 * t2907 - t28 * t2904,
+                t68 * t2935 - t71 * t2932, t18 * t2963 + t31 * t2960, -(t69 * t2991 + t72 * t2988),
+                t19 * t3018 + t32 * t3013, t70 * t3046 - t73 * t3041, t15 * t3073 - t28 * t3068,
+                -(t68 * t3100 + t71 * t3095), t18 * t3127 + t31 * t3122,
+                -(t69 * t3155 + t72 * t3150), grod_wx_leg1 * actuator_accelerations[0],
                 grod_wx_leg2 * actuator_accelerations[1], grod_wx_leg3 * actuator_accelerations[2],
                 grod_wx_leg4 * actuator_accelerations[3], grod_wx_leg5 * actuator_accelerations[4],
-                grod_wx_leg6 * actuator_accelerations[5], t503, t504, t506, t508, t510, t512,
+                grod_wx_leg6 * actuator_accelerations[5], t508, t509, t511, t513, t515, t517,
                 ::overact::math::signed(grod_wx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_wx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_wx_leg3, actuator_velocities[2]),
@@ -17292,67 +17296,67 @@ impl Hexapod {
                 grod_wx_leg2, grod_wx_leg3, grod_wx_leg4, grod_wx_leg5, grod_wx_leg6,
             ],
             [
-                t9 * t1145 + t1166 - t1168, t9 * t1180 + t13 * t1183 + t1151 * t1188,
-                t9 * t1206 + t13 * t1209 + t1151 * t1212, t13 * t1179 - t1230 + t1168,
-                t9 * t1237 + t13 * t1239 + t1151 * t1242, t1230 - t1166 + t1151 * t1205,
-                t22 * t1312 - t5 * t1289, t26 * t1312 - t35 * t1289, t1154 * t1312 - t1149 * t1289,
-                0.0, minus_gcross_wy_leg1 * t1407 - t1439,
-                minus_minus_gcross_wy_leg2 * t1484 - t1509, gcross_wy_leg3 * t1546 + t1578,
-                t1635 - gcross_wy_leg4 * t1602, t1696 - minus_gcross_wy_leg5 * t1668,
-                gcross_wy_leg6 * t1733 + t1765,
-                gcylinder_wy_leg1 * t1777 - minus_gcross_wy_leg1 * t1782,
-                minus_minus_gcross_wy_leg2 * t1806 - minus_gcylinder_wy_leg2 * t1801,
-                gcross_wy_leg3 * t1827 + gcylinder_wy_leg3 * t1830,
-                gcross_wy_leg4 * t1858 + gcylinder_wy_leg4 * t1861,
-                gcylinder_wy_leg5 * t1885 - minus_gcross_wy_leg5 * t1882,
-                gcross_wy_leg6 * t1906 + gcylinder_wy_leg6 * t1909,
-                -(minus_gcross_wy_leg1 * t1940 + gcylinder_wy_leg1 * t1942),
-                minus_minus_gcross_wy_leg2 * t1973 + minus_gcylinder_wy_leg2 * t1975,
-                gcross_wy_leg3 * t2006 - gcylinder_wy_leg3 * t2008,
-                gcross_wy_leg4 * t2039 - gcylinder_wy_leg4 * t2041,
-                -(minus_gcross_wy_leg5 * t2072 + gcylinder_wy_leg5 * t2074),
-                gcross_wy_leg6 * t2105 - gcylinder_wy_leg6 * t2107,
-                t1439 - minus_gcross_wy_leg1 * t1406, t1509 - minus_minus_gcross_wy_leg2 * t1483,
-                -(gcross_wy_leg3 * t1545 + t1578), -(gcross_wy_leg4 * t2161 + t1635),
-                minus_gcross_wy_leg5 * t1667 - t1696, -(gcross_wy_leg6 * t1732 + t1765),
-                -(minus_gcross_wy_leg1 * t2201 + gcylinder_wy_leg1 * t1403),
-                minus_minus_gcross_wy_leg2 * t2224 - minus_gcylinder_wy_leg2 * t1480,
-                gcross_wy_leg3 * t2245 + gcylinder_wy_leg3 * t1542,
-                gcross_wy_leg4 * t2267 + gcylinder_wy_leg4 * t1853,
-                gcylinder_wy_leg5 * t1664 - minus_gcross_wy_leg5 * t2289,
-                gcross_wy_leg6 * t2311 + gcylinder_wy_leg6 * t1729,
+                t9 * t1150 + t1171 - t1173, t9 * t1185 + t13 * t1188 + t1156 * t1193,
+                t9 * t1211 + t13 * t1214 + t1156 * t1217, t13 * t1184 - t1235 + t1173,
+                t9 * t1242 + t13 * t1244 + t1156 * t1247, t1235 - t1171 + t1156 * t1210,
+                t22 * t1317 - t5 * t1294, t26 * t1317 - t35 * t1294, t1159 * t1317 - t1154 * t1294,
+                0.0, minus_gcross_wy_leg1 * t1412 - t1444,
+                -(t1506 + minus_minus_gcross_wy_leg2 * t1481), gcross_wy_leg3 * t1543 + t1575,
+                gcross_wy_leg4 * t1608 + t1640, t1701 - minus_gcross_wy_leg5 * t1673,
+                gcross_wy_leg6 * t1737 + t1769,
+                gcylinder_wy_leg1 * t1781 - minus_gcross_wy_leg1 * t1787,
+                minus_minus_gcross_wy_leg2 * t1818 - minus_gcylinder_wy_leg2 * t1806,
+                gcross_wy_leg3 * t1840 + gcylinder_wy_leg3 * t1843,
+                gcross_wy_leg4 * t1864 + gcylinder_wy_leg4 * t1867,
+                gcylinder_wy_leg5 * t1891 - minus_gcross_wy_leg5 * t1888,
+                gcross_wy_leg6 * t1915 + gcylinder_wy_leg6 * t1918,
+                -(minus_gcross_wy_leg1 * t1949 + gcylinder_wy_leg1 * t1951),
+                minus_minus_gcross_wy_leg2 * t1983 + minus_gcylinder_wy_leg2 * t1985,
+                gcross_wy_leg3 * t2016 - gcylinder_wy_leg3 * t2018,
+                gcross_wy_leg4 * t2049 - gcylinder_wy_leg4 * t2051,
+                -(minus_gcross_wy_leg5 * t2082 + gcylinder_wy_leg5 * t2084),
+                gcross_wy_leg6 * t2115 - gcylinder_wy_leg6 * t1734,
+                t1444 - minus_gcross_wy_leg1 * t1411, t1506 - minus_minus_gcross_wy_leg2 * t2146,
+                -(gcross_wy_leg3 * t1542 + t1575), -(gcross_wy_leg4 * t1607 + t1640),
+                minus_gcross_wy_leg5 * t1672 - t1701, -(gcross_wy_leg6 * t2195 + t1769),
+                -(minus_gcross_wy_leg1 * t2211 + gcylinder_wy_leg1 * t1408),
+                minus_minus_gcross_wy_leg2 * t2235 - minus_gcylinder_wy_leg2 * t1813,
+                gcross_wy_leg3 * t2256 + gcylinder_wy_leg3 * t1539,
+                gcross_wy_leg4 * t2278 + gcylinder_wy_leg4 * t1604,
+                gcylinder_wy_leg5 * t1669 - minus_gcross_wy_leg5 * t2300,
+                gcross_wy_leg6 * t2322 + gcylinder_wy_leg6 * t1910,
                 gcylinder_wy_leg1 * rate_dot_cylinder_leg1,
                 -(minus_gcylinder_wy_leg2 * rate_dot_cylinder_leg2),
                 gcylinder_wy_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wy_leg4 * rate_dot_cylinder_leg4,
                 gcylinder_wy_leg5 * rate_dot_cylinder_leg5,
                 gcylinder_wy_leg6 * rate_dot_cylinder_leg6,
-                -(minus_gcross_wy_leg1 * t2366 + gcylinder_wy_leg1 * t2368),
-                minus_gcylinder_wy_leg2 * t2388 - minus_minus_gcross_wy_leg2 * t2386,
-                -(gcross_wy_leg3 * t2406 + gcylinder_wy_leg3 * t2408),
-                -(gcross_wy_leg4 * t2426 + gcylinder_wy_leg4 * t2428),
-                -(minus_gcross_wy_leg5 * t2446 + gcylinder_wy_leg5 * t2448),
-                gcross_wy_leg6 * t2466 - gcylinder_wy_leg6 * t2468,
-                minus_gcross_wy_leg1 * t2490 - gcylinder_wy_leg1 * t2492,
-                -(minus_minus_gcross_wy_leg2 * t2506 + minus_gcylinder_wy_leg2 * t2508),
-                gcylinder_wy_leg3 * t2524 - gcross_wy_leg3 * t2522,
-                gcylinder_wy_leg4 * t2540 - gcross_wy_leg4 * t2538,
-                gcylinder_wy_leg5 * t2556 - minus_gcross_wy_leg5 * t2554,
-                gcross_wy_leg6 * t2570 + gcylinder_wy_leg6 * t2572, -(minus_gcross_wy_leg1 * t2582),
-                minus_minus_gcross_wy_leg2 * t2589, gcross_wy_leg3 * t2596, gcross_wy_leg4 * t2603,
-                -(minus_gcross_wy_leg5 * t2610), gcross_wy_leg6 * t2617,
-                -(t32 * t2637 + t41 * t2647), t73 * t2670 + t76 * t2680, t28 * t2703 - t37 * t2713,
-                t71 * t2736 - t74 * t2746, t40 * t2779 - t31 * t2769, t72 * t2802 - t75 * t2812,
-                -(t32 * t2832 + t41 * t2840), t76 * t2868 - t73 * t2860, t28 * t2888 - t37 * t2896,
-                t71 * t2916 - t74 * t2924, -(t31 * t2944 + t40 * t2952), t72 * t2972 + t75 * t2980,
-                t32 * t2997 - t41 * t3007, -(t73 * t3024 + t76 * t3034), t28 * t3051 + t37 * t3061,
-                t71 * t3078 + t74 * t3088, -(t40 * t3115 - t31 * t3105), t72 * t3133 + t75 * t3143,
+                -(minus_gcross_wy_leg1 * t2377 + gcylinder_wy_leg1 * t2379),
+                minus_gcylinder_wy_leg2 * t2399 - minus_minus_gcross_wy_leg2 * t2397,
+                -(gcross_wy_leg3 * t2417 + gcylinder_wy_leg3 * t2419),
+                -(gcross_wy_leg4 * t2437 + gcylinder_wy_leg4 * t2439),
+                -(minus_gcross_wy_leg5 * t2457 + gcylinder_wy_leg5 * t2459),
+                gcross_wy_leg6 * t2477 - gcylinder_wy_leg6 * t2479,
+                minus_gcross_wy_leg1 * t2501 - gcylinder_wy_leg1 * t2503,
+                -(minus_minus_gcross_wy_leg2 * t2517 + minus_gcylinder_wy_leg2 * t2519),
+                gcylinder_wy_leg3 * t2535 - gcross_wy_leg3 * t2533,
+                gcylinder_wy_leg4 * t2551 - gcross_wy_leg4 * t2549,
+                gcylinder_wy_leg5 * t2567 - minus_gcross_wy_leg5 * t2565,
+                gcross_wy_leg6 * t2581 + gcylinder_wy_leg6 * t2583, -(minus_gcross_wy_leg1 * t2593),
+                minus_minus_gcross_wy_leg2 * t2600, gcross_wy_leg3 * t2607, gcross_wy_leg4 * t2614,
+                -(minus_gcross_wy_leg5 * t2621), gcross_wy_leg6 * t2628,
+                -(t32 * t2648 + t41 * t2658), t73 * t2681 + t77 * t2691, t28 * t2714 - t37 * t2724,
+                t71 * t2747 - t75 * t2757, t40 * t2790 - t31 * t2780, t72 * t2813 - t76 * t2823,
+                -(t32 * t2843 + t41 * t2851), t77 * t2879 - t73 * t2871, t28 * t2899 - t37 * t2907,
+                t71 * t2927 - t75 * t2935, -(t31 * t2955 + t40 * t2963), t72 * t2983 + t76 * t2991,
+                t32 * t3008 - t41 * t3018, -(t73 * t3036 + t77 * t3046), t28 * t3063 - t37 * t3073,
+                t71 * t3090 + t75 * t3100, -(t40 * t3127 - t31 * t3117), t72 * t3145 + t76 * t3155,
                 grod_wy_leg1 * actuator_accelerations[0], grod_wy_leg2 * actuator_accelerations[1],
                 -(minus_grod_wy_leg3 * actuator_accelerations[2]),
                 -(minus_grod_wy_leg4 * actuator_accelerations[3]),
                 grod_wy_leg5 * actuator_accelerations[4],
-                -(minus_grod_wy_leg6 * actuator_accelerations[5]), t70, t106, -t134, -t163, t191,
-                -t219, ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]),
+                -(minus_grod_wy_leg6 * actuator_accelerations[5]), t358, t362, -t367, -t372, t377,
+                -t382, ::overact::math::signed(grod_wy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(grod_wy_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_grod_wy_leg3, actuator_velocities[2]),
                 -::overact::math::signed(minus_grod_wy_leg4, actuator_velocities[3]),
@@ -17362,62 +17366,62 @@ impl Hexapod {
                 -minus_grod_wy_leg6,
             ],
             [
-                t22 * t1145 + t1171 - t1173, t22 * t1180 + t26 * t1183 + t1154 * t1188,
-                t22 * t1206 + t26 * t1209 + t1154 * t1212, t26 * t1179 - t1234 + t1173,
-                t22 * t1237 + t26 * t1239 + t1154 * t1242, t1234 - t1171 + t1154 * t1205,
-                t5 * t1299 - t9 * t1312, t35 * t1299 - t13 * t1312, t1149 * t1299 - t1151 * t1312,
-                0.0, t1444 - gcross_wz_leg1 * t1407, gcross_wz_leg2 * t1484 + t1522,
-                t1583 - minus_gcross_wz_leg3 * t1546, t1640 + minus_gcross_wz_leg4 * t1602,
-                gcross_wz_leg5 * t1668 - t1709, gcross_wz_leg6 * t1733 + t1774,
-                gcross_wz_leg1 * t1782 - minus_gcylinder_wz_leg1 * t1777,
-                gcross_wz_leg2 * t1806 + minus_minus_gcylinder_wz_leg2 * t1801,
-                gcylinder_wz_leg3 * t1830 - minus_gcross_wz_leg3 * t1827,
-                gcylinder_wz_leg4 * t1861 - minus_gcross_wz_leg4 * t1858,
-                gcross_wz_leg5 * t1882 - minus_gcylinder_wz_leg5 * t1885,
-                gcross_wz_leg6 * t1906 + gcylinder_wz_leg6 * t1909,
-                gcross_wz_leg1 * t1940 + minus_gcylinder_wz_leg1 * t1942,
-                gcross_wz_leg2 * t1973 - minus_minus_gcylinder_wz_leg2 * t1975,
-                -(minus_gcross_wz_leg3 * t2006 + gcylinder_wz_leg3 * t2008),
-                -(minus_gcross_wz_leg4 * t2039 + gcylinder_wz_leg4 * t2041),
-                gcross_wz_leg5 * t2072 + minus_gcylinder_wz_leg5 * t2074,
-                gcross_wz_leg6 * t2105 - gcylinder_wz_leg6 * t2107, gcross_wz_leg1 * t1406 - t1444,
-                -(t1522 + gcross_wz_leg2 * t1483), minus_gcross_wz_leg3 * t1545 - t1583,
-                minus_gcross_wz_leg4 * t2161 - t1640, t1709 - gcross_wz_leg5 * t1667,
-                -(gcross_wz_leg6 * t1732 + t1774),
-                gcross_wz_leg1 * t2201 + minus_gcylinder_wz_leg1 * t1403,
-                gcross_wz_leg2 * t2224 + minus_minus_gcylinder_wz_leg2 * t1480,
-                gcylinder_wz_leg3 * t1542 - minus_gcross_wz_leg3 * t2245,
-                gcylinder_wz_leg4 * t1853 - minus_gcross_wz_leg4 * t2267,
-                gcross_wz_leg5 * t2289 - minus_gcylinder_wz_leg5 * t1664,
-                gcross_wz_leg6 * t2311 + gcylinder_wz_leg6 * t1729,
+                t22 * t1150 + t1176 - t1178, t22 * t1185 + t26 * t1188 + t1159 * t1193,
+                t22 * t1211 + t26 * t1214 + t1159 * t1217, t26 * t1184 - t1239 + t1178,
+                t22 * t1242 + t26 * t1244 + t1159 * t1247, t1239 - t1176 + t1159 * t1210,
+                t5 * t1304 - t9 * t1317, t35 * t1304 - t13 * t1317, t1154 * t1304 - t1156 * t1317,
+                0.0, t1449 - gcross_wz_leg1 * t1412, t1519 - gcross_wz_leg2 * t1481,
+                t1580 - minus_gcross_wz_leg3 * t1543, t1645 - minus_gcross_wz_leg4 * t1608,
+                gcross_wz_leg5 * t1673 - t1714, gcross_wz_leg6 * t1737 + t1778,
+                gcross_wz_leg1 * t1787 - minus_gcylinder_wz_leg1 * t1781,
+                gcross_wz_leg2 * t1818 + minus_minus_gcylinder_wz_leg2 * t1806,
+                gcylinder_wz_leg3 * t1843 - minus_gcross_wz_leg3 * t1840,
+                gcylinder_wz_leg4 * t1867 - minus_gcross_wz_leg4 * t1864,
+                gcross_wz_leg5 * t1888 - minus_gcylinder_wz_leg5 * t1891,
+                gcross_wz_leg6 * t1915 + gcylinder_wz_leg6 * t1918,
+                gcross_wz_leg1 * t1949 + minus_gcylinder_wz_leg1 * t1951,
+                gcross_wz_leg2 * t1983 - minus_minus_gcylinder_wz_leg2 * t1985,
+                -(minus_gcross_wz_leg3 * t2016 + gcylinder_wz_leg3 * t2018),
+                -(minus_gcross_wz_leg4 * t2049 + gcylinder_wz_leg4 * t2051),
+                gcross_wz_leg5 * t2082 + minus_gcylinder_wz_leg5 * t2084,
+                gcross_wz_leg6 * t2115 - gcylinder_wz_leg6 * t1734, gcross_wz_leg1 * t1411 - t1449,
+                -(t1519 + gcross_wz_leg2 * t2146), minus_gcross_wz_leg3 * t1542 - t1580,
+                minus_gcross_wz_leg4 * t1607 - t1645, t1714 - gcross_wz_leg5 * t1672,
+                -(gcross_wz_leg6 * t2195 + t1778),
+                gcross_wz_leg1 * t2211 + minus_gcylinder_wz_leg1 * t1408,
+                gcross_wz_leg2 * t2235 + minus_minus_gcylinder_wz_leg2 * t1813,
+                gcylinder_wz_leg3 * t1539 - minus_gcross_wz_leg3 * t2256,
+                gcylinder_wz_leg4 * t1604 - minus_gcross_wz_leg4 * t2278,
+                gcross_wz_leg5 * t2300 - minus_gcylinder_wz_leg5 * t1669,
+                gcross_wz_leg6 * t2322 + gcylinder_wz_leg6 * t1910,
                 -(minus_gcylinder_wz_leg1 * rate_dot_cylinder_leg1),
                 minus_minus_gcylinder_wz_leg2 * rate_dot_cylinder_leg2,
                 gcylinder_wz_leg3 * rate_dot_cylinder_leg3,
                 gcylinder_wz_leg4 * rate_dot_cylinder_leg4,
                 -(minus_gcylinder_wz_leg5 * rate_dot_cylinder_leg5),
                 gcylinder_wz_leg6 * rate_dot_cylinder_leg6,
-                gcross_wz_leg1 * t2366 + minus_gcylinder_wz_leg1 * t2368,
-                -(minus_minus_gcylinder_wz_leg2 * t2388 + gcross_wz_leg2 * t2386),
-                minus_gcross_wz_leg3 * t2406 - gcylinder_wz_leg3 * t2408,
-                minus_gcross_wz_leg4 * t2426 - gcylinder_wz_leg4 * t2428,
-                gcross_wz_leg5 * t2446 + minus_gcylinder_wz_leg5 * t2448,
-                gcross_wz_leg6 * t2466 - gcylinder_wz_leg6 * t2468, -(minus_grod_wz_leg1 * t2486),
-                -(minus_grod_wz_leg2 * t2502), grod_wz_leg3 * t2518, grod_wz_leg4 * t2534,
-                -(minus_grod_wz_leg5 * t2550), grod_wz_leg6 * t2566, gcross_wz_leg1 * t2582,
-                gcross_wz_leg2 * t2589, -(minus_gcross_wz_leg3 * t2596),
-                -(minus_gcross_wz_leg4 * t2603), gcross_wz_leg5 * t2610, gcross_wz_leg6 * t2617,
-                t41 * t2642 + t19 * t2637, -(t76 * t2675 + t82 * t2670),
-                -(t37 * t2708 + t15 * t2703), -(t74 * t2741 + t80 * t2736),
-                t18 * t2769 - t40 * t2774, t75 * t2807 - t81 * t2802, t41 * t2837 + t19 * t2832,
-                t76 * t2865 + t82 * t2860, t37 * t2893 - t15 * t2888, t74 * t2921 - t80 * t2916,
-                t18 * t2944 - t40 * t2949, t75 * t2977 - t81 * t2972, -(t41 * t3002 + t19 * t2997),
-                t76 * t3029 + t82 * t3024, t37 * t3056 - t15 * t3051, t74 * t3083 - t80 * t3078,
-                -(t18 * t3105 + t40 * t3110), t75 * t3138 - t81 * t3133,
+                gcross_wz_leg1 * t2377 + minus_gcylinder_wz_leg1 * t2379,
+                -(minus_minus_gcylinder_wz_leg2 * t2399 + gcross_wz_leg2 * t2397),
+                minus_gcross_wz_leg3 * t2417 - gcylinder_wz_leg3 * t2419,
+                minus_gcross_wz_leg4 * t2437 - gcylinder_wz_leg4 * t2439,
+                gcross_wz_leg5 * t2457 + minus_gcylinder_wz_leg5 * t2459,
+                gcross_wz_leg6 * t2477 - gcylinder_wz_leg6 * t2479, -(minus_grod_wz_leg1 * t2497),
+                -(minus_grod_wz_leg2 * t2513), grod_wz_leg3 * t2529, grod_wz_leg4 * t2545,
+                -(minus_grod_wz_leg5 * t2561), grod_wz_leg6 * t2577, gcross_wz_leg1 * t2593,
+                gcross_wz_leg2 * t2600, -(minus_gcross_wz_leg3 * t2607),
+                -(minus_gcross_wz_leg4 * t2614), gcross_wz_leg5 * t2621, gcross_wz_leg6 * t2628,
+                t41 * t2653 + t19 * t2648, -(t77 * t2686 + t70 * t2681),
+                -(t37 * t2719 + t15 * t2714), -(t75 * t2752 + t68 * t2747),
+                t18 * t2780 - t40 * t2785, t76 * t2818 - t69 * t2813, t41 * t2848 + t19 * t2843,
+                t77 * t2876 + t70 * t2871, t37 * t2904 - t15 * t2899, t75 * t2932 - t68 * t2927,
+                t18 * t2955 - t40 * t2960, t76 * t2988 - t69 * t2983, -(t41 * t3013 + t19 * t3008),
+                t77 * t3041 + t70 * t3036, t37 * t3068 - t15 * t3063, t75 * t3095 - t68 * t3090,
+                -(t18 * t3117 + t40 * t3122), t76 * t3150 - t69 * t3145,
                 -(minus_grod_wz_leg1 * actuator_accelerations[0]),
                 -(minus_grod_wz_leg2 * actuator_accelerations[1]),
                 grod_wz_leg3 * actuator_accelerations[2], grod_wz_leg4 * actuator_accelerations[3],
                 -(minus_grod_wz_leg5 * actuator_accelerations[4]),
-                grod_wz_leg6 * actuator_accelerations[5], -t612, -t613, t611, t616, -t618, t620,
+                grod_wz_leg6 * actuator_accelerations[5], -t617, -t618, t616, t621, -t623, t625,
                 -::overact::math::signed(minus_grod_wz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_grod_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(grod_wz_leg3, actuator_velocities[2]),

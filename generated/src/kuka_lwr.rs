@@ -401,37 +401,35 @@ impl KukaLwr {
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
         ]);
-        let t3 = s2_arm * joint_velocities[0];
+        let t3 = c2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = c2_arm * joint_accelerations[0];
-        let t6 = t5 - t4;
-        let t7 = t4 - t6;
-        let t8 = c2_arm * t7;
-        let t9 = joint_accelerations[0] + t8;
-        let t10 = c2_arm * joint_velocities[0];
-        let t11 = t3 * t10;
-        let t12 = joint_velocities[1] * t10;
-        let t13 = s2_arm * joint_accelerations[0];
-        let t14 = t13 + t12;
-        let t15 = t12 + t14;
+        let t5 = s2_arm * joint_accelerations[0];
+        let t6 = t5 + t4;
+        let t7 = t4 + t6;
+        let t8 = s2_arm * t7;
+        let t9 = s2_arm * joint_velocities[0];
+        let t10 = t9 * t3;
+        let t12 = joint_velocities[1] * t9;
+        let t13 = c2_arm * joint_accelerations[0];
+        let t14 = t13 - t12;
+        let t18 = t9 * t9;
         let t19 = t3 * t3;
-        let t20 = t10 * t10;
-        let t24 = joint_velocities[1] * joint_velocities[1];
-        let t30 = t11 - joint_accelerations[1];
+        let t23 = joint_velocities[1] * joint_velocities[1];
+        let t30 = t10 - joint_accelerations[1];
         let t33 = 9.81 * c2_arm;
         let t34 = 9.81 * s2_arm;
         let t38 = s2_arm * c3_arm;
-        let t44 = s3_arm * t3 + c3_arm * joint_velocities[1];
-        let t46 = c3_arm * t14 - s3_arm * joint_accelerations[1]
+        let t44 = s3_arm * t9 + c3_arm * joint_velocities[1];
+        let t46 = c3_arm * t6 - s3_arm * joint_accelerations[1]
             - joint_velocities[2] * t44;
         let t48 = s2_arm * s3_arm;
-        let t51 = c3_arm * t3 - s3_arm * joint_velocities[1];
-        let t52 = t10 + joint_velocities[2];
+        let t51 = c3_arm * t9 - s3_arm * joint_velocities[1];
+        let t52 = t3 + joint_velocities[2];
         let t53 = t51 * t52;
         let t54 = t48 * t53;
         let t56 = t51 * t44;
         let t58 = t38 * t46 - t54 + c2_arm * t56;
-        let t59 = t3 * t52;
+        let t59 = t9 * t52;
         let t60 = t44 * t52;
         let t61 = t46 - t60;
         let t62 = s3_arm * t61;
@@ -440,9 +438,9 @@ impl KukaLwr {
         let t65 = t44 * t44;
         let t66 = t64 - t65;
         let t68 = t63 - t30;
-        let t76 = s3_arm * t14 + c3_arm * joint_accelerations[1]
+        let t76 = s3_arm * t6 + c3_arm * joint_accelerations[1]
             + joint_velocities[2] * t51;
-        let t81 = t6 + joint_accelerations[2];
+        let t81 = t14 + joint_accelerations[2];
         let t82 = t81 - t56;
         let t84 = t52 * t52;
         let t85 = t84 - t64;
@@ -458,12 +456,12 @@ impl KukaLwr {
         let t113 = t33 + t85 * 0.4;
         let t116 = 0.4 * t30;
         let t117 = t34 + t116;
-        let t119 = 0.4 * t15;
+        let t119 = 0.4 * t7;
         let t121 = s3_arm * t117 + c3_arm * t119;
         let t122 = 0.4 * t102;
         let t127 = 0.4 * t104 - s3_arm * (t113 + t66 * 0.4);
         let t130 = c3_arm * t117 - s3_arm * t119;
-        let t133 = 0.16 * t9;
+        let t133 = 0.16 * t8;
         let t134 = 0.4 * t117;
         let t140 = t38 * c4_arm - c2_arm * s4_arm;
         let t146 = s4_arm * t51 + c4_arm * t52;
@@ -491,342 +489,343 @@ impl KukaLwr {
         let t186 = t146 * t146;
         let t187 = t156 * t156;
         let t188 = t186 + t187;
-        let t193 = c5_arm * t155 + s5_arm * t156;
+        let t193 = c5_arm * t156 - s5_arm * t155;
         let t194 = t193 * t193;
-        let t197 = c5_arm * t156 - s5_arm * t155;
-        let t198 = t197 * t197;
-        let t199 = t194 + t198;
-        let t200 = t199 - t188;
-        let t203 = t97 + t176;
-        let t208 = t182 * t171;
-        let t209 = 0.4 * c4_arm;
-        let t210 = t173 * t209;
-        let t213 = joint_accelerations[3] - t76;
-        let t214 = t213 - t160;
-        let t216 = t186 - t187;
-        let t217 = t200 + t216;
-        let t220 = t172 + t148;
-        let t228 = s4_arm * t214;
-        let t235 = t160 + t213;
-        let t238 = t157 - t181;
-        let t247 = c4_arm * t235;
-        let t252 = t158 - t140 * t172 - t48 * t213;
-        let t256 = t165 * t172 - t164 - c3_arm * t213;
-        let t260 = t33 - 0.4 * (t19 + t24);
-        let t262 = s4_arm * t130 + c4_arm * t260;
-        let t266 = t262 + 0.4 * t228 + t209 * t188;
-        let t268 = t209 * t182;
-        let t270 = t121 + t208;
-        let t280 = t121 + t210;
-        let t289 = c4_arm * t130 - s4_arm * t260;
-        let t290 = t171 * t199 - 0.4 * t247 - t289;
-        let t292 = t140 * t280 + t152 * t174 + t48 * t290;
-        let t297 = t165 * t280 + t163 * t174 - c3_arm * t290;
-        let t302 = t140 * c5_arm - t48 * s5_arm;
-        let t307 = c5_arm * t148 + s5_arm * t213 + joint_velocities[4] * t197;
-        let t311 = t140 * s5_arm + t48 * c5_arm;
-        let t312 = t146 + joint_velocities[4];
-        let t313 = t193 * t312;
-        let t314 = t311 * t313;
-        let t316 = t193 * t197;
-        let t318 = t302 * t307 - t314 - t152 * t316;
-        let t321 = s5_arm * t165 - c3_arm * c5_arm;
-        let t322 = t321 * t313;
-        let t325 = c5_arm * t165 + c3_arm * s5_arm;
-        let t329 = t322 - t307 * t325 + t163 * t316;
-        let t330 = s4_arm * s5_arm;
-        let t331 = t330 * t313;
-        let t332 = t171 * c5_arm;
-        let t333 = t332 * 2.5;
-        let t337 = t331 - t307 * t333 - c4_arm * t316;
-        let t338 = t155 * t312;
-        let t339 = t197 * t312;
-        let t340 = t339 + t307;
-        let t341 = s5_arm * t340;
-        let t342 = t338 + t341;
-        let t343 = t194 - t198;
-        let t349 = c5_arm * t213 - s5_arm * t148 - joint_velocities[4] * t193;
-        let t350 = t313 - t349;
-        let t360 = t350 * t332;
-        let t361 = t171 * t341;
-        let t369 = t181 + joint_accelerations[4];
-        let t370 = t316 + t369;
-        let t376 = c6_arm * t312 - s6_arm * t193;
-        let t377 = t376 * t376;
-        let t378 = joint_velocities[5] - t197;
-        let t379 = t378 * t378;
-        let t380 = t377 + t379;
-        let t385 = c6_arm * t193 + s6_arm * t312;
-        let t388 = c7_arm * t385 - s7_arm * t378;
-        let t389 = t388 * t388;
-        let t392 = s7_arm * t385 + c7_arm * t378;
-        let t393 = t392 * t392;
-        let t394 = t389 + t393;
-        let t395 = t394 - t380;
-        let t396 = t377 - t379;
-        let t397 = t395 + t396;
-        let t398 = t397 + t380;
-        let t399 = t199 - t398;
-        let t400 = t343 + t399;
-        let t403 = t339 - t307;
-        let t412 = t333 * t370;
-        let t416 = s5_arm * t370;
-        let t419 = t162 + t252;
-        let t421 = t169 + t256;
-        let t426 = t316 - t369;
-        let t429 = t313 + t349;
-        let t439 = t330 * t426;
-        let t443 = c5_arm * t426;
-        let t448 = t302 * t339 + t314 + t152 * t369;
-        let t452 = t325 * t339 + t322 + t163 * t369;
-        let t456 = c4_arm * t369 - (t333 * t339 + t331);
-        let t457 = 0.4 * t330;
-        let t459 = t209 + 0.39;
-        let t461 = t457 * t350 - t459 * t370;
-        let t464 = 0.39 * t199 - t262;
-        let t465 = t398 - t343;
-        let t468 = t464 + t360 - t459 * t465;
-        let t474 = 0.39 * t235;
-        let t475 = t289 + t474;
-        let t477 = 0.39 * t173;
-        let t478 = t121 + t477;
-        let t480 = s5_arm * t475 + c5_arm * t478;
-        let t481 = t457 * t465 - 0.4 * t412 - t480;
-        let t495 = 0.39 * c5_arm;
-        let t502 = t361 + t459 * t398 - t464;
-        let t506 = t459 * t426 + t332 * t340;
-        let t514 = c5_arm * t475 - s5_arm * t478;
-        let t515 = t332 * t398 - 0.4 * t439 - t514;
-        let t517 = t302 * t502 - t311 * t506 + t152 * t515;
-        let t522 = t321 * t506 - t325 * t502 - t163 * t515;
-        let t527 = t330 * t506 - t333 * t502 + c4_arm * t515;
-        let t529 = 0.39 * s5_arm;
-        let t533 = 0.39 * t443 + t529 * t398 - s5_arm * t464;
-        let t545 = 0.16 * (t9 + t419 * 0.950625 + 2.4375 * t292);
-        let t551 = 0.16 * (0.950625 * t421 - 2.5 * t117 - 2.4375 * t297);
-        let t553 = 0.39 * s4_arm * t478;
-        let t554 = 0.39 * t475;
-        let t558 = t302 * c6_arm + t152 * s6_arm;
-        let t563 = c6_arm * t307 + s6_arm * t369 + joint_velocities[5] * t376;
-        let t567 = t152 * c6_arm - t302 * s6_arm;
-        let t568 = t385 * t378;
-        let t569 = t567 * t568;
-        let t571 = t385 * t376;
-        let t573 = t558 * t563 + t569 - t311 * t571;
-        let t576 = s6_arm * t325 - c6_arm * t163;
-        let t577 = t576 * t568;
-        let t580 = c6_arm * t325 + s6_arm * t163;
-        let t584 = t577 - t563 * t580 + t321 * t571;
-        let t586 = c6_arm * t333;
-        let t587 = c4_arm * s6_arm - t586;
-        let t589 = s6_arm * t333;
-        let t591 = t589 + c4_arm * c6_arm;
-        let t592 = t591 * t568;
-        let t595 = t563 * t587 + t592 + t330 * t571;
-        let t596 = s5_arm * c6_arm;
-        let t598 = s5_arm * s6_arm;
-        let t599 = t598 * t568;
-        let t602 = t563 * t596 - t599 + c5_arm * t571;
-        let t603 = t193 * t378;
-        let t604 = t376 * t378;
-        let t605 = t604 + t563;
-        let t606 = s6_arm * t605;
-        let t607 = t603 + t606;
-        let t613 = c6_arm * t369 - s6_arm * t307 - joint_velocities[5] * t385;
-        let t614 = t568 - t613;
-        let t629 = t426 + t607;
-        let t637 = joint_accelerations[5] - t349;
-        let t638 = t571 + t637;
-        let t642 = t604 - t563;
-        let t671 = t571 - t637;
-        let t674 = t568 + t613;
-        let t698 = t558 * t604 - t569 + t311 * t637;
-        let t702 = t580 * t604 + t577 + t321 * t637;
-        let t706 = t587 * t604 - t592 - t330 * t637;
-        let t710 = t596 * t604 + t599 - c5_arm * t637;
-        let t713 = 0.4 * t589 + c6_arm * t459;
-        let t716 = t713 * t614 + t457 * t638;
-        let t721 = s6_arm * t459 - 0.4 * t586;
-        let t724 = t457 * t380 - t721 * t614 - t480;
-        let t732 = s6_arm * t514 + c6_arm * t464;
-        let t733 = t721 * t638 + t713 * t380 - t732;
-        let t747 = c6_arm * t495;
-        let t749 = s6_arm * t495;
-        let t761 = t480 + t713 * t605 - t457 * t394;
-        let t765 = t457 * t671 + t721 * t605;
-        let t770 = c6_arm * t514 - s6_arm * t464;
-        let t774 = t770 + t721 * t394 + t713 * t671;
-        let t776 = t558 * t761 - t567 * t765 - t311 * t774;
-        let t781 = t321 * t774 - (t580 * t761 + t576 * t765);
-        let t786 = t587 * t761 - t591 * t765 + t330 * t774;
-        let t795 = t747 * t671 + t749 * t394 + t529 * t605 + t480 * t596 + c5_arm * t770;
-        let t796 = s6_arm * t480;
-        let t800 = t558 * c7_arm - t311 * s7_arm;
-        let t805 = c7_arm * t563 - s7_arm * t637 - joint_velocities[6] * t392;
-        let t809 = t558 * s7_arm + t311 * c7_arm;
-        let t810 = t376 + joint_velocities[6];
-        let t811 = t388 * t810;
-        let t812 = t809 * t811;
-        let t814 = t388 * t392;
-        let t816 = t800 * t805 - t812 + t567 * t814;
-        let t819 = s7_arm * t321 - c7_arm * t580;
-        let t823 = s7_arm * t580 + c7_arm * t321;
-        let t824 = t823 * t811;
-        let t827 = t805 * t819 + t824 + t576 * t814;
-        let t829 = s7_arm * t330;
-        let t830 = c7_arm * t587 + t829;
-        let t832 = c7_arm * t330;
-        let t834 = t832 - s7_arm * t587;
-        let t835 = t834 * t811;
-        let t838 = t805 * t830 + t835 + t591 * t814;
-        let t841 = c7_arm * t596 + c5_arm * s7_arm;
-        let t845 = c5_arm * c7_arm - s7_arm * t596;
-        let t846 = t845 * t811;
-        let t849 = t805 * t841 + t846 - t598 * t814;
-        let t850 = s6_arm * c7_arm;
-        let t852 = s6_arm * s7_arm;
-        let t853 = t852 * t811;
-        let t856 = t805 * t850 - t853 + c6_arm * t814;
-        let t857 = t385 * t810;
-        let t858 = t392 * t810;
-        let t859 = t805 - t858;
-        let t861 = t857 + s7_arm * t859;
-        let t862 = t389 - t393;
-        let t868 = s7_arm * t563 + c7_arm * t637 + joint_velocities[6] * t388;
-        let t869 = t811 + t868;
-        let t890 = t861 - t671;
-        let t897 = t613 + joint_accelerations[6];
-        let t898 = t897 - t814;
-        let t900 = t810 * t810;
-        let t901 = t900 - t389;
-        let t904 = t858 + t805;
-        let t939 = t393 - t900;
-        let t941 = t814 + t897;
-        let t944 = t811 - t868;
-        let t992 = 0.4 * t832 - s7_arm * t721;
-        let t995 = t992 * t869 - t713 * t898;
-        let t997 = t393 + t900;
-        let t1001 = c7_arm * t721 + 0.4 * t829;
-        let t1004 = t732 - (t713 * t997 + t1001 * t869);
-        let t1012 = s7_arm * t770 + c7_arm * t480;
-        let t1013 = t1001 * t898 + t992 * t997 - t1012;
-        let t1031 = c7_arm * t747 - s7_arm * t529;
-        let t1035 = s7_arm * t747 + c7_arm * t529;
-        let t1046 = t389 + t900;
-        let t1049 = t992 * t859 + t713 * t1046 - t732;
-        let t1053 = t713 * t941 + t1001 * t859;
-        let t1061 = c7_arm * t770 - s7_arm * t480;
-        let t1062 = t992 * t941 - t1001 * t1046 - t1061;
+        let t195 = t146 + joint_velocities[4];
+        let t196 = t195 * t195;
+        let t197 = t194 + t196;
+        let t203 = c5_arm * t155 + s5_arm * t156;
+        let t205 = c6_arm * t195 - s6_arm * t203;
+        let t206 = t205 * t205;
+        let t207 = joint_velocities[5] - t193;
+        let t208 = t207 * t207;
+        let t209 = t206 - t208;
+        let t214 = c6_arm * t203 + s6_arm * t195;
+        let t217 = s7_arm * t214 + c7_arm * t207;
+        let t218 = t217 * t217;
+        let t219 = t205 + joint_velocities[6];
+        let t220 = t219 * t219;
+        let t221 = t218 - t220;
+        let t224 = c7_arm * t214 - s7_arm * t207;
+        let t225 = t224 * t224;
+        let t226 = t225 + t220;
+        let t227 = t221 + t226;
+        let t228 = t209 + t227;
+        let t229 = t228 - t197;
+        let t230 = t194 - t196;
+        let t231 = t229 + t230;
+        let t232 = t231 + t197;
+        let t233 = t232 - t188;
+        let t236 = t97 + t176;
+        let t241 = t182 * t171;
+        let t242 = 0.4 * c4_arm;
+        let t243 = t173 * t242;
+        let t246 = joint_accelerations[3] - t76;
+        let t247 = t246 - t160;
+        let t249 = t186 - t187;
+        let t250 = t233 + t249;
+        let t253 = t172 + t148;
+        let t261 = s4_arm * t247;
+        let t268 = t160 + t246;
+        let t271 = t157 - t181;
+        let t280 = c4_arm * t268;
+        let t285 = t158 - t140 * t172 - t48 * t246;
+        let t289 = t165 * t172 - t164 - c3_arm * t246;
+        let t293 = t33 - 0.4 * (t18 + t23);
+        let t295 = s4_arm * t130 + c4_arm * t293;
+        let t299 = t295 + 0.4 * t261 + t242 * t188;
+        let t301 = t242 * t182;
+        let t303 = t121 + t241;
+        let t313 = t121 + t243;
+        let t322 = c4_arm * t130 - s4_arm * t293;
+        let t323 = t171 * t232 - 0.4 * t280 - t322;
+        let t325 = t140 * t313 + t152 * t174 + t48 * t323;
+        let t330 = t165 * t313 + t163 * t174 - c3_arm * t323;
+        let t335 = t140 * c5_arm - t48 * s5_arm;
+        let t340 = c5_arm * t148 + s5_arm * t246 + joint_velocities[4] * t193;
+        let t344 = t140 * s5_arm + t48 * c5_arm;
+        let t345 = t203 * t195;
+        let t346 = t344 * t345;
+        let t348 = t203 * t193;
+        let t350 = t335 * t340 - t346 - t152 * t348;
+        let t353 = s5_arm * t165 - c3_arm * c5_arm;
+        let t354 = t353 * t345;
+        let t357 = c5_arm * t165 + c3_arm * s5_arm;
+        let t361 = t354 - t340 * t357 + t163 * t348;
+        let t362 = s4_arm * s5_arm;
+        let t363 = t362 * t345;
+        let t364 = t171 * c5_arm;
+        let t365 = t364 * 2.5;
+        let t369 = t363 - t340 * t365 - c4_arm * t348;
+        let t370 = t155 * t195;
+        let t371 = t193 * t195;
+        let t372 = t371 + t340;
+        let t373 = s5_arm * t372;
+        let t374 = t370 + t373;
+        let t380 = c5_arm * t246 - s5_arm * t148 - joint_velocities[4] * t203;
+        let t381 = t345 - t380;
+        let t391 = t381 * t364;
+        let t392 = t171 * t373;
+        let t400 = t181 + joint_accelerations[4];
+        let t401 = t348 + t400;
+        let t405 = t371 - t340;
+        let t414 = t365 * t401;
+        let t418 = s5_arm * t401;
+        let t421 = t162 + t285;
+        let t423 = t169 + t289;
+        let t428 = t348 - t400;
+        let t431 = t345 + t380;
+        let t441 = t362 * t428;
+        let t445 = c5_arm * t428;
+        let t450 = t335 * t371 + t346 + t152 * t400;
+        let t454 = t357 * t371 + t354 + t163 * t400;
+        let t458 = c4_arm * t400 - (t365 * t371 + t363);
+        let t459 = 0.4 * t362;
+        let t461 = t242 + 0.39;
+        let t463 = t459 * t381 - t461 * t401;
+        let t466 = 0.39 * t232 - t295;
+        let t469 = t466 + t391 - t461 * t197;
+        let t475 = 0.39 * t268;
+        let t476 = t322 + t475;
+        let t478 = 0.39 * t173;
+        let t479 = t121 + t478;
+        let t481 = s5_arm * t476 + c5_arm * t479;
+        let t482 = t459 * t197 - 0.4 * t414 - t481;
+        let t496 = 0.39 * c5_arm;
+        let t503 = t392 + t461 * t228 - t466;
+        let t507 = t461 * t428 + t364 * t372;
+        let t515 = c5_arm * t476 - s5_arm * t479;
+        let t516 = t364 * t228 - 0.4 * t441 - t515;
+        let t518 = t335 * t503 - t344 * t507 + t152 * t516;
+        let t523 = t353 * t507 - t357 * t503 - t163 * t516;
+        let t528 = t362 * t507 - t365 * t503 + c4_arm * t516;
+        let t530 = 0.39 * s5_arm;
+        let t534 = 0.39 * t445 + t530 * t228 - s5_arm * t466;
+        let t546 = 0.16 * (t8 + t421 * 0.950625 + 2.4375 * t325);
+        let t552 = 0.16 * (0.950625 * t423 - 2.5 * t117 - 2.4375 * t330);
+        let t554 = 0.39 * s4_arm * t479;
+        let t555 = 0.39 * t476;
+        let t559 = t335 * c6_arm + t152 * s6_arm;
+        let t564 = c6_arm * t340 + s6_arm * t400 + joint_velocities[5] * t205;
+        let t568 = t152 * c6_arm - t335 * s6_arm;
+        let t569 = t214 * t207;
+        let t570 = t568 * t569;
+        let t572 = t214 * t205;
+        let t574 = t559 * t564 + t570 - t344 * t572;
+        let t577 = s6_arm * t357 - c6_arm * t163;
+        let t578 = t577 * t569;
+        let t581 = c6_arm * t357 + s6_arm * t163;
+        let t585 = t578 - t564 * t581 + t353 * t572;
+        let t587 = c6_arm * t365;
+        let t588 = c4_arm * s6_arm - t587;
+        let t590 = s6_arm * t365;
+        let t592 = t590 + c4_arm * c6_arm;
+        let t593 = t592 * t569;
+        let t596 = t564 * t588 + t593 + t362 * t572;
+        let t597 = s5_arm * c6_arm;
+        let t599 = s5_arm * s6_arm;
+        let t600 = t599 * t569;
+        let t603 = t564 * t597 - t600 + c5_arm * t572;
+        let t604 = t203 * t207;
+        let t605 = t205 * t207;
+        let t606 = t605 + t564;
+        let t607 = s6_arm * t606;
+        let t608 = t604 + t607;
+        let t614 = c6_arm * t400 - s6_arm * t340 - joint_velocities[5] * t214;
+        let t615 = t569 - t614;
+        let t618 = t206 + t208;
+        let t619 = t227 - t618;
+        let t632 = t428 + t608;
+        let t640 = joint_accelerations[5] - t380;
+        let t641 = t572 + t640;
+        let t643 = t618 - t228;
+        let t646 = t605 - t564;
+        let t675 = t572 - t640;
+        let t678 = t569 + t614;
+        let t702 = t559 * t605 - t570 + t344 * t640;
+        let t706 = t581 * t605 + t578 + t353 * t640;
+        let t710 = t588 * t605 - t593 - t362 * t640;
+        let t714 = t597 * t605 + t600 - c5_arm * t640;
+        let t717 = 0.4 * t590 + c6_arm * t461;
+        let t720 = t717 * t615 + t459 * t641;
+        let t725 = s6_arm * t461 - 0.4 * t587;
+        let t728 = t459 * t618 - t725 * t615 - t481;
+        let t736 = s6_arm * t515 + c6_arm * t466;
+        let t737 = t725 * t641 + t717 * t618 - t736;
+        let t751 = c6_arm * t496;
+        let t753 = s6_arm * t496;
+        let t765 = t481 + t717 * t606 - t459 * t227;
+        let t769 = t459 * t675 + t725 * t606;
+        let t774 = c6_arm * t515 - s6_arm * t466;
+        let t778 = t774 + t725 * t227 + t717 * t675;
+        let t780 = t559 * t765 - t568 * t769 - t344 * t778;
+        let t785 = t353 * t778 - (t581 * t765 + t577 * t769);
+        let t790 = t588 * t765 - t592 * t769 + t362 * t778;
+        let t799 = t751 * t675 + t753 * t227 + t530 * t606 + t481 * t597 + c5_arm * t774;
+        let t800 = s6_arm * t481;
+        let t804 = t559 * c7_arm - t344 * s7_arm;
+        let t809 = c7_arm * t564 - s7_arm * t640 - joint_velocities[6] * t217;
+        let t813 = t559 * s7_arm + t344 * c7_arm;
+        let t814 = t224 * t219;
+        let t815 = t813 * t814;
+        let t817 = t224 * t217;
+        let t819 = t804 * t809 - t815 + t568 * t817;
+        let t822 = s7_arm * t353 - c7_arm * t581;
+        let t826 = s7_arm * t581 + c7_arm * t353;
+        let t827 = t826 * t814;
+        let t830 = t809 * t822 + t827 + t577 * t817;
+        let t832 = s7_arm * t362;
+        let t833 = c7_arm * t588 + t832;
+        let t835 = c7_arm * t362;
+        let t837 = t835 - s7_arm * t588;
+        let t838 = t837 * t814;
+        let t841 = t809 * t833 + t838 + t592 * t817;
+        let t844 = c7_arm * t597 + c5_arm * s7_arm;
+        let t848 = c5_arm * c7_arm - s7_arm * t597;
+        let t849 = t848 * t814;
+        let t852 = t809 * t844 + t849 - t599 * t817;
+        let t853 = s6_arm * c7_arm;
+        let t855 = s6_arm * s7_arm;
+        let t856 = t855 * t814;
+        let t859 = t809 * t853 - t856 + c6_arm * t817;
+        let t860 = t214 * t219;
+        let t861 = t217 * t219;
+        let t862 = t809 - t861;
+        let t864 = t860 + s7_arm * t862;
+        let t865 = t225 - t218;
+        let t871 = s7_arm * t564 + c7_arm * t640 + joint_velocities[6] * t224;
+        let t872 = t814 + t871;
+        let t893 = t864 - t675;
+        let t900 = t614 + joint_accelerations[6];
+        let t901 = t900 - t817;
+        let t903 = t220 - t225;
+        let t906 = t861 + t809;
+        let t942 = t817 + t900;
+        let t945 = t814 - t871;
+        let t993 = 0.4 * t835 - s7_arm * t725;
+        let t996 = t993 * t872 - t717 * t901;
+        let t998 = t218 + t220;
+        let t1002 = c7_arm * t725 + 0.4 * t832;
+        let t1005 = t736 - (t717 * t998 + t1002 * t872);
+        let t1013 = s7_arm * t774 + c7_arm * t481;
+        let t1014 = t1002 * t901 + t993 * t998 - t1013;
+        let t1032 = c7_arm * t751 - s7_arm * t530;
+        let t1036 = s7_arm * t751 + c7_arm * t530;
+        let t1049 = t993 * t862 + t717 * t226 - t736;
+        let t1053 = t717 * t942 + t1002 * t862;
+        let t1061 = c7_arm * t774 - s7_arm * t481;
+        let t1062 = t993 * t942 - t1002 * t226 - t1061;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t9, c2_arm * t15 - s2_arm * t7,
-                s2_arm * (t11 + joint_accelerations[1]) + c2_arm * (t24 - t19), -t8,
-                s2_arm * (t20 - t24) - c2_arm * t30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t58,
-                c2_arm * t66 - s2_arm * (t63 + t68), t90, t9 - t58, t102, t109, -(0.4 * t90), -t122,
-                0.8 * t9, t133, 0.0, 0.0, 0.0, 0.0, t162, -(t140 * t182 + t152 * t173 + t48 * t200),
-                t140 * t214 + t152 * t217 - t48 * t220, t58 + t109 - t162,
-                t140 * t216 - t152 * t235 - t48 * t238, t252,
-                t48 * t266 - (t140 * t268 + t152 * t270), -t292, -t122, t133, 0.0, 0.0, 0.0, 0.0,
-                t318, t152 * t343 - (t302 * t350 + t311 * t340),
-                t302 * t370 + t311 * t400 - t152 * t403, t419 - t318,
-                t302 * t399 + t311 * t426 + t152 * t429, t448,
-                t302 * t461 - t311 * t468 + t152 * t481, t517, t292 + t419 * 0.78, t545, 0.0, 0.0,
-                0.0, 0.0, t573, t567 * t605 - t558 * t614 + t311 * t395,
-                t558 * t638 - t567 * t397 - t311 * t642, t318 + t448 - t573,
-                t558 * t396 - t567 * t671 + t311 * t674, t698,
-                t558 * t716 + t567 * t724 + t311 * t733, t776, -t517, t545, 0.0, 0.0, 0.0, 0.0,
-                t816, t567 * t862 - (t800 * t869 + t809 * t859),
-                t800 * t898 - t809 * t901 + t567 * t904, t573 + t698 - t816,
-                t800 * t939 - t809 * t941 + t567 * t944, t812 - t800 * t858 + t567 * t897,
-                t800 * t995 - t809 * t1004 + t567 * t1013,
-                t800 * t1049 + t809 * t1053 + t567 * t1062, t776, t545, 0.0, 0.0, 0.0, 0.0,
+                ::overact::math::sign(joint_velocities[0]), 1.0, t8,
+                c2_arm * t7 - s2_arm * (t12 - t14),
+                s2_arm * (t10 + joint_accelerations[1]) + c2_arm * (t23 - t18),
+                joint_accelerations[0] - t8, s2_arm * (t19 - t23) - c2_arm * t30, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t58, c2_arm * t66 - s2_arm * (t63 + t68), t90, t8 - t58, t102,
+                t109, -(0.4 * t90), -t122, 0.8 * t8, t133, 0.0, 0.0, 0.0, 0.0, t162,
+                -(t140 * t182 + t152 * t173 + t48 * t233), t140 * t247 + t152 * t250 - t48 * t253,
+                t58 + t109 - t162, t140 * t249 - t152 * t268 - t48 * t271, t285,
+                t48 * t299 - (t140 * t301 + t152 * t303), -t325, -t122, t133, 0.0, 0.0, 0.0, 0.0,
+                t350, t152 * t229 - (t335 * t381 + t344 * t372),
+                t335 * t401 + t344 * t231 - t152 * t405, t421 - t350,
+                t335 * t230 + t344 * t428 + t152 * t431, t450,
+                t335 * t463 - t344 * t469 + t152 * t482, t518, t325 + t421 * 0.78, t546, 0.0, 0.0,
+                0.0, 0.0, t574, t568 * t606 - t559 * t615 + t344 * t619,
+                t559 * t641 + t568 * t643 - t344 * t646, t350 + t450 - t574,
+                t559 * t209 - t568 * t675 + t344 * t678, t702,
+                t559 * t720 + t568 * t728 + t344 * t737, t780, -t518, t546, 0.0, 0.0, 0.0, 0.0,
+                t819, t568 * t865 - (t804 * t872 + t813 * t862),
+                t804 * t901 - t813 * t903 + t568 * t906, t574 + t702 - t819,
+                t804 * t221 - t813 * t942 + t568 * t945, t815 - t804 * t861 + t568 * t900,
+                t804 * t996 - t813 * t1005 + t568 * t1014,
+                t804 * t1049 + t813 * t1053 + t568 * t1062, t780, t546, 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t10, t18 - t19, t5, t10, t13, joint_accelerations[1], t33,
                 -t34, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, -t63,
                 s3_arm * (t53 + t76) - c3_arm * t61, -(t91 + c3_arm * t85), t68,
                 -(s3_arm * t95 + t104), t59, 0.4 * t91 + c3_arm * t113, t127, -(t116 + t117), -t134,
-                0.0, 0.0, 0.0, 0.0, t169, s3_arm * (t176 + t203) - c3_arm * t200,
-                -(t163 * t217 + t165 * t214 + c3_arm * t220), -(t62 + t169),
-                t163 * t235 - t165 * t216 - c3_arm * t238, t256,
-                t165 * t268 + t163 * t270 + c3_arm * t266, t297, t127, -t134, 0.0, 0.0, 0.0, 0.0,
-                t329, t325 * t350 + t321 * t340 - t163 * t343,
-                t163 * t403 - (t321 * t400 + t325 * t370), t421 - t329,
-                -(t325 * t399 + t321 * t426 + t163 * t429), -t452,
-                t321 * t468 - t325 * t461 - t163 * t481, t522, 0.78 * t421 - t297, t551, 0.0, 0.0,
-                0.0, 0.0, t584, t580 * t614 + t576 * t605 - t321 * t395,
-                t321 * t642 - (t576 * t397 + t580 * t638), t329 - t452 - t584,
-                -(t580 * t396 + t576 * t671 + t321 * t674), -t702,
-                t576 * t724 - t580 * t716 - t321 * t733, t781, -t522, t551, 0.0, 0.0, 0.0, 0.0,
-                t827, t823 * t859 - t819 * t869 + t576 * t862,
-                t819 * t898 + t823 * t901 + t576 * t904, t584 - t702 - t827,
-                t819 * t939 + t823 * t941 + t576 * t944, t576 * t897 - (t819 * t858 + t824),
-                t819 * t995 + t823 * t1004 + t576 * t1013,
-                t819 * t1049 - t823 * t1053 + t576 * t1062, t781, t551, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, t169, s3_arm * (t176 + t236) - c3_arm * t233,
+                -(t163 * t250 + t165 * t247 + c3_arm * t253), -(t62 + t169),
+                t163 * t268 - t165 * t249 - c3_arm * t271, t289,
+                t165 * t301 + t163 * t303 + c3_arm * t299, t330, t127, -t134, 0.0, 0.0, 0.0, 0.0,
+                t361, t357 * t381 + t353 * t372 - t163 * t229,
+                t163 * t405 - (t353 * t231 + t357 * t401), t423 - t361,
+                -(t357 * t230 + t353 * t428 + t163 * t431), -t454,
+                t353 * t469 - t357 * t463 - t163 * t482, t523, 0.78 * t423 - t330, t552, 0.0, 0.0,
+                0.0, 0.0, t585, t581 * t615 + t577 * t606 - t353 * t619,
+                t577 * t643 - t581 * t641 + t353 * t646, t361 - t454 - t585,
+                -(t581 * t209 + t577 * t675 + t353 * t678), -t706,
+                t577 * t728 - t581 * t720 - t353 * t737, t785, -t523, t552, 0.0, 0.0, 0.0, 0.0,
+                t830, t826 * t862 - t822 * t872 + t577 * t865,
+                t822 * t901 + t826 * t903 + t577 * t906, t585 - t706 - t830,
+                t822 * t221 + t826 * t942 + t577 * t945, t577 * t900 - (t822 * t861 + t827),
+                t822 * t996 + t826 * t1005 + t577 * t1014,
+                t822 * t1049 - t826 * t1053 + t577 * t1062, t785, t552, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 t56, t66, t88, -t56, t100, t81, -t121, -t130, 0.0, 0.0, joint_accelerations[2],
                 joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t176,
-                2.5 * (t208 - t210), -(t228 - c4_arm * t217), t203, -(s4_arm * t216 + t247), t170,
-                -(c4_arm * t121), s4_arm * t121, -t130, 0.0, 0.0, 0.0, 0.0, 0.0, t337,
-                2.5 * (t360 + t361) + c4_arm * t343, -(t330 * t400 + t412 + c4_arm * t403),
-                -(t175 + t337), c4_arm * t429 - (t333 * t399 + t439), t456,
-                t330 * t468 - t333 * t461 + c4_arm * t481, t527, -(s4_arm * (t477 + t478)), -t553,
-                0.0, 0.0, 0.0, 0.0, t595, t591 * t605 - t587 * t614 - t330 * t395,
-                t587 * t638 - t591 * t397 + t330 * t642, t337 + t456 - t595,
-                t587 * t396 - t591 * t671 - t330 * t674, t706,
-                t587 * t716 + t591 * t724 - t330 * t733, t786, -t527, -t553, 0.0, 0.0, 0.0, 0.0,
-                t838, t834 * t859 - t830 * t869 + t591 * t862,
-                t830 * t898 + t834 * t901 + t591 * t904, t595 + t706 - t838,
-                t830 * t939 + t834 * t941 + t591 * t944, t591 * t897 - (t830 * t858 + t835),
-                t830 * t995 + t834 * t1004 + t591 * t1013,
-                t830 * t1049 - t834 * t1053 + t591 * t1062, t786, -t553, 0.0, 0.0, 0.0, 0.0,
+                2.5 * (t241 - t243), -(t261 - c4_arm * t250), t236, -(s4_arm * t249 + t280), t170,
+                -(c4_arm * t121), s4_arm * t121, -t130, 0.0, 0.0, 0.0, 0.0, 0.0, t369,
+                2.5 * (t391 + t392) + c4_arm * t229, -(t362 * t231 + t414 + c4_arm * t405),
+                -(t175 + t369), c4_arm * t431 - (t365 * t230 + t441), t458,
+                t362 * t469 - t365 * t463 + c4_arm * t482, t528, -(s4_arm * (t478 + t479)), -t554,
+                0.0, 0.0, 0.0, 0.0, t596, t592 * t606 - t588 * t615 - t362 * t619,
+                t588 * t641 + t592 * t643 + t362 * t646, t369 + t458 - t596,
+                t588 * t209 - t592 * t675 - t362 * t678, t710,
+                t588 * t720 + t592 * t728 - t362 * t737, t790, -t528, -t554, 0.0, 0.0, 0.0, 0.0,
+                t841, t837 * t862 - t833 * t872 + t592 * t865,
+                t833 * t901 + t837 * t903 + t592 * t906, t596 + t710 - t841,
+                t833 * t221 + t837 * t942 + t592 * t945, t592 * t900 - (t833 * t861 + t838),
+                t833 * t996 + t837 * t1005 + t592 * t1014,
+                t833 * t1049 - t837 * t1053 + t592 * t1062, t790, -t554, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t200,
-                t220, -t160, t238, t213, -t262, -t289, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t342,
-                c5_arm * t340 - s5_arm * t350, t416 - c5_arm * t400, t235 - t342,
-                s5_arm * t399 - t443, -t338, c5_arm * t464 - (t495 * t465 + 0.39 * t416), t533,
-                t474 + t475, t554, 0.0, 0.0, 0.0, 0.0, t602,
-                -(s5_arm * (t607 + t629) + c5_arm * t395),
-                t596 * t638 + t598 * t397 + c5_arm * t642, t341 - t602,
-                t596 * t396 + t598 * t671 - c5_arm * t674, t710,
-                t529 * t614 - (t747 * t380 + t749 * t638) + t480 * t598 + c5_arm * t732, t795,
-                -t533, t554, 0.0, 0.0, 0.0, 0.0, t849, t845 * t859 - t841 * t869 - t598 * t862,
-                t841 * t898 + t845 * t901 - t598 * t904, t602 + t710 - t849,
-                t841 * t939 + t845 * t941 - t598 * t944, -(t841 * t858 + t846 + t598 * t897),
-                t732 * t845 + t598 * t1012 - (t1031 * t997 + t1035 * t898 + t749 * t869),
-                t1035 * t1046 - t1031 * t941 - t749 * t859 + t598 * t1061 - t732 * t841, t795, t554,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t233,
+                t253, -t160, t271, t246, -t295, -t322, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t374,
+                c5_arm * t372 - s5_arm * t381, t418 - c5_arm * t231, t268 - t374,
+                s5_arm * t230 - t445, -t370, c5_arm * t466 - (t496 * t197 + 0.39 * t418), t534,
+                t475 + t476, t555, 0.0, 0.0, 0.0, 0.0, t603,
+                -(s5_arm * (t608 + t632) + c5_arm * t619),
+                t597 * t641 - t599 * t643 + c5_arm * t646, t373 - t603,
+                t597 * t209 + t599 * t675 - c5_arm * t678, t714,
+                t530 * t615 - (t751 * t618 + t753 * t641) + t481 * t599 + c5_arm * t736, t799,
+                -t534, t555, 0.0, 0.0, 0.0, 0.0, t852, t848 * t862 - t844 * t872 - t599 * t865,
+                t844 * t901 + t848 * t903 - t599 * t906, t603 + t714 - t852,
+                t844 * t221 + t848 * t942 - t599 * t945, -(t844 * t861 + t849 + t599 * t900),
+                t736 * t848 + t599 * t1013 - (t1032 * t998 + t1036 * t901 + t753 * t872),
+                t1036 * t226 - t1032 * t942 - t753 * t862 + t599 * t1061 - t736 * t844, t799, t555,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t316, t343, -t403, t316,
-                t429, t369, -t480, -t514, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
-                ::overact::math::sign(joint_velocities[4]), 1.0, t607,
-                c6_arm * t605 - s6_arm * t614, s6_arm * t638 - c6_arm * t397, -t629,
-                s6_arm * t396 - c6_arm * t671, -t603, -(c6_arm * t480), t796, t514, 0.0, 0.0, 0.0,
-                0.0, 0.0, t856, c6_arm * t862 - s6_arm * (t861 + t890),
-                t850 * t898 - t852 * t901 + c6_arm * t904, t606 - t856,
-                t850 * t939 - t852 * t941 + c6_arm * t944, t853 - t850 * t858 + c6_arm * t897,
-                -(t732 * t852 + c6_arm * t1012), -(t732 * t850 + c6_arm * t1061), t796, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t348, t229, -t405, t348,
+                t431, t400, -t481, -t515, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                ::overact::math::sign(joint_velocities[4]), 1.0, t608,
+                c6_arm * t606 - s6_arm * t615, s6_arm * t641 + c6_arm * t643, -t632,
+                s6_arm * t209 - c6_arm * t675, -t604, -(c6_arm * t481), t800, t515, 0.0, 0.0, 0.0,
+                0.0, 0.0, t859, c6_arm * t865 - s6_arm * (t864 + t893),
+                t853 * t901 - t855 * t903 + c6_arm * t906, t607 - t859,
+                t853 * t221 - t855 * t942 + c6_arm * t945, t856 - t853 * t861 + c6_arm * t900,
+                -(t736 * t855 + c6_arm * t1013), -(t736 * t853 + c6_arm * t1061), t800, 0.0, 0.0,
                 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t571, t395, -t642, t571, t674, t637, -t732,
-                -t770, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
-                ::overact::math::sign(joint_velocities[5]), 1.0, -t861,
-                s7_arm * t869 - c7_arm * t859, -(s7_arm * t898 + c7_arm * t901), t890,
-                -(s7_arm * t939 + c7_arm * t941), t857, -(c7_arm * t732), s7_arm * t732, -t770, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t572, t619, -t646, t572, t678, t640, -t736,
+                -t774, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
+                ::overact::math::sign(joint_velocities[5]), 1.0, -t864,
+                s7_arm * t872 - c7_arm * t862, -(s7_arm * t901 + c7_arm * t903), t893,
+                -(s7_arm * t221 + c7_arm * t942), t860, -(c7_arm * t736), s7_arm * t736, -t774, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -834,7 +833,7 @@ impl KukaLwr {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, t814, t862, t904, -t814, t944, t897, -t1012, -t1061, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, t817, t865, t906, -t817, t945, t900, -t1013, -t1061, 0.0,
                 0.0, joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],
@@ -850,7 +849,7 @@ impl KukaLwr {
     /// Output: 7 x 69.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1019 operations (425 additions, 594 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 846 intermediates.
+    /// 1019 operations (424 additions, 595 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 846 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 7],
@@ -932,36 +931,36 @@ impl KukaLwr {
         let t174 = t151 + t173;
         let t175 = t134 * t174;
         let t176 = t146 * t166;
-        let t178 = t140 * t140;
-        let t179 = t150 * t150;
-        let t180 = t178 + t179;
-        let t181 = t178 - t179;
-        let t183 = t63 + t83 - t181;
-        let t184 = t183 - t180;
-        let t187 = t159 * t174;
-        let t188 = t157 * t166;
-        let t192 = s4_arm * t174;
-        let t193 = c4_arm * t166;
-        let t195 = joint_accelerations[3] - t71;
-        let t196 = t195 - t154;
-        let t198 = t184 + t181;
-        let t201 = t165 + t142;
-        let t209 = s4_arm * t196;
-        let t213 = t154 + t195;
-        let t216 = t151 - t173;
-        let t225 = c4_arm * t213;
-        let t238 = t32 - 0.4 * (t18 + t23);
-        let t240 = s4_arm * t128 + c4_arm * t238;
-        let t242 = 0.4 * c4_arm;
-        let t245 = t240 + 0.4 * t209 + t242 * t180;
-        let t249 = t119 + 0.4 * t192;
-        let t260 = t119 + 0.4 * t193;
-        let t262 = 0.4 * s4_arm;
-        let t270 = c4_arm * t128 - s4_arm * t238;
-        let t271 = t262 * t183 - 0.4 * t225 - t270;
+        let t178 = t149 * t149;
+        let t179 = t140 * t140;
+        let t180 = t178 - t179;
+        let t183 = t159 * t174;
+        let t184 = t157 * t166;
+        let t188 = s4_arm * t174;
+        let t189 = c4_arm * t166;
+        let t191 = joint_accelerations[3] - t71;
+        let t192 = t191 - t154;
+        let t194 = t150 * t150;
+        let t195 = t194 - t178;
+        let t198 = t165 + t142;
+        let t206 = s4_arm * t192;
+        let t209 = t179 - t194;
+        let t211 = t154 + t191;
+        let t214 = t151 - t173;
+        let t223 = c4_arm * t211;
+        let t236 = t32 - 0.4 * (t18 + t23);
+        let t238 = s4_arm * t128 + c4_arm * t236;
+        let t240 = 0.4 * c4_arm;
+        let t244 = t238 + 0.4 * t206 + t240 * (t179 + t194);
+        let t248 = t119 + 0.4 * t188;
+        let t259 = t119 + 0.4 * t189;
+        let t261 = 0.4 * s4_arm;
+        let t264 = t178 + t194;
+        let t270 = c4_arm * t128 - s4_arm * t236;
+        let t271 = t261 * t264 - 0.4 * t223 - t270;
         let t285 = t134 * c5_arm - t47 * s5_arm;
         let t291 = c5_arm * t150 - s5_arm * t149;
-        let t293 = c5_arm * t142 + s5_arm * t195 + joint_velocities[4] * t291;
+        let t293 = c5_arm * t142 + s5_arm * t191 + joint_velocities[4] * t291;
         let t297 = t134 * s5_arm + t47 * c5_arm;
         let t300 = c5_arm * t149 + s5_arm * t150;
         let t301 = t140 + joint_velocities[4];
@@ -980,50 +979,50 @@ impl KukaLwr {
         let t331 = t291 * t291;
         let t332 = t301 * t301;
         let t333 = t331 + t332;
-        let t338 = c6_arm * t300 + s6_arm * t301;
-        let t339 = t338 * t338;
-        let t342 = c6_arm * t301 - s6_arm * t300;
-        let t343 = t342 * t342;
-        let t344 = t339 + t343;
-        let t345 = t344 - t333;
-        let t351 = c5_arm * t195 - s5_arm * t142 - joint_velocities[4] * t300;
-        let t352 = t302 - t351;
-        let t362 = t321 * t352;
-        let t363 = t319 * t328;
-        let t370 = t173 + joint_accelerations[4];
-        let t371 = t305 + t370;
-        let t373 = t331 - t332;
-        let t374 = t345 + t373;
-        let t377 = t327 - t293;
-        let t386 = t321 * t371;
-        let t390 = s5_arm * t371;
-        let t394 = t305 - t370;
-        let t397 = t302 + t351;
-        let t407 = t319 * t394;
-        let t411 = c5_arm * t394;
-        let t425 = t262 * s5_arm;
-        let t427 = t242 + 0.39;
-        let t429 = t425 * t352 - t427 * t371;
-        let t432 = 0.39 * t183 - t240;
-        let t436 = t432 + 0.4 * t362 - t427 * t333;
-        let t443 = t270 + 0.39 * t213;
-        let t446 = t119 + 0.39 * t166;
-        let t448 = s5_arm * t443 + c5_arm * t446;
-        let t449 = t425 * t333 - 0.4 * t386 - t448;
-        let t463 = 0.39 * c5_arm;
-        let t471 = 0.4 * t363 + t427 * t344 - t432;
-        let t474 = t262 * c5_arm;
-        let t476 = t427 * t394 + t474 * t328;
-        let t484 = c5_arm * t443 - s5_arm * t446;
-        let t485 = t474 * t344 - 0.4 * t407 - t484;
+        let t334 = t333 - t264;
+        let t335 = t331 - t332;
+        let t336 = t334 + t335;
+        let t342 = c5_arm * t191 - s5_arm * t142 - joint_velocities[4] * t300;
+        let t343 = t302 - t342;
+        let t353 = t321 * t343;
+        let t354 = t319 * t328;
+        let t361 = t173 + joint_accelerations[4];
+        let t362 = t305 + t361;
+        let t366 = t327 - t293;
+        let t375 = t321 * t362;
+        let t379 = s5_arm * t362;
+        let t383 = t305 - t361;
+        let t386 = t302 + t342;
+        let t396 = t319 * t383;
+        let t400 = c5_arm * t383;
+        let t414 = t261 * s5_arm;
+        let t416 = t240 + 0.39;
+        let t418 = t414 * t343 - t416 * t362;
+        let t421 = 0.39 * t264 - t238;
+        let t425 = t421 + 0.4 * t353 - t416 * t333;
+        let t432 = t270 + 0.39 * t211;
+        let t435 = t119 + 0.39 * t166;
+        let t437 = s5_arm * t432 + c5_arm * t435;
+        let t438 = t414 * t333 - 0.4 * t375 - t437;
+        let t452 = 0.39 * c5_arm;
+        let t462 = c6_arm * t300 + s6_arm * t301;
+        let t463 = t462 * t462;
+        let t466 = c6_arm * t301 - s6_arm * t300;
+        let t467 = t466 * t466;
+        let t468 = t463 + t467;
+        let t471 = 0.4 * t354 + t416 * t468 - t421;
+        let t474 = t261 * c5_arm;
+        let t476 = t416 * t383 + t474 * t328;
+        let t484 = c5_arm * t432 - s5_arm * t435;
+        let t485 = t474 * t468 - 0.4 * t396 - t484;
         let t499 = 0.39 * s5_arm;
         let t507 = t285 * c6_arm + t146 * s6_arm;
-        let t512 = c6_arm * t293 + s6_arm * t370 + joint_velocities[5] * t342;
+        let t512 = c6_arm * t293 + s6_arm * t361 + joint_velocities[5] * t466;
         let t516 = t146 * c6_arm - t285 * s6_arm;
         let t517 = joint_velocities[5] - t291;
-        let t518 = t338 * t517;
+        let t518 = t462 * t517;
         let t519 = t516 * t518;
-        let t521 = t338 * t342;
+        let t521 = t462 * t466;
         let t526 = s6_arm * t314 - c6_arm * t157;
         let t527 = t526 * t518;
         let t530 = c6_arm * t314 + s6_arm * t157;
@@ -1036,39 +1035,39 @@ impl KukaLwr {
         let t548 = s5_arm * s6_arm;
         let t549 = t548 * t518;
         let t553 = t300 * t517;
-        let t554 = t342 * t517;
+        let t554 = t466 * t517;
         let t555 = t554 + t512;
-        let t563 = c6_arm * t370 - s6_arm * t293 - joint_velocities[5] * t338;
+        let t563 = c6_arm * t361 - s6_arm * t293 - joint_velocities[5] * t462;
         let t564 = t518 - t563;
-        let t567 = t339 - t343;
-        let t588 = joint_accelerations[5] - t351;
+        let t567 = t463 - t467;
+        let t588 = joint_accelerations[5] - t342;
         let t589 = t521 + t588;
         let t591 = t517 * t517;
-        let t592 = t591 - t339;
+        let t592 = t591 - t463;
         let t595 = t554 - t512;
-        let t616 = t343 - t591;
+        let t616 = t467 - t591;
         let t618 = t521 - t588;
         let t621 = t518 + t563;
-        let t660 = 0.4 * t539 + c6_arm * t427;
-        let t663 = t660 * t564 + t425 * t589;
-        let t665 = t343 + t591;
-        let t669 = s6_arm * t427 - 0.4 * t536;
-        let t672 = t425 * t665 - t669 * t564 - t448;
-        let t680 = s6_arm * t484 + c6_arm * t432;
+        let t660 = 0.4 * t539 + c6_arm * t416;
+        let t663 = t660 * t564 + t414 * t589;
+        let t665 = t467 + t591;
+        let t669 = s6_arm * t416 - 0.4 * t536;
+        let t672 = t414 * t665 - t669 * t564 - t437;
+        let t680 = s6_arm * t484 + c6_arm * t421;
         let t681 = t669 * t589 + t660 * t665 - t680;
-        let t695 = c6_arm * t463;
-        let t697 = s6_arm * t463;
-        let t707 = t339 + t591;
-        let t710 = t448 + t660 * t555 - t425 * t707;
-        let t714 = t425 * t618 + t669 * t555;
-        let t719 = c6_arm * t484 - s6_arm * t432;
+        let t695 = c6_arm * t452;
+        let t697 = s6_arm * t452;
+        let t707 = t463 + t591;
+        let t710 = t437 + t660 * t555 - t414 * t707;
+        let t714 = t414 * t618 + t669 * t555;
+        let t719 = c6_arm * t484 - s6_arm * t421;
         let t723 = t719 + t669 * t707 + t660 * t618;
         let t751 = t507 * c7_arm - t297 * s7_arm;
-        let t757 = s7_arm * t338 + c7_arm * t517;
+        let t757 = s7_arm * t462 + c7_arm * t517;
         let t759 = c7_arm * t512 - s7_arm * t588 - joint_velocities[6] * t757;
         let t763 = t507 * s7_arm + t297 * c7_arm;
-        let t766 = c7_arm * t338 - s7_arm * t517;
-        let t767 = t342 + joint_velocities[6];
+        let t766 = c7_arm * t462 - s7_arm * t517;
+        let t767 = t466 + joint_velocities[6];
         let t768 = t766 * t767;
         let t769 = t763 * t768;
         let t771 = t766 * t757;
@@ -1086,35 +1085,35 @@ impl KukaLwr {
         let t807 = s6_arm * c7_arm;
         let t809 = s6_arm * s7_arm;
         let t810 = t809 * t768;
-        let t814 = t338 * t767;
+        let t814 = t462 * t767;
         let t815 = t757 * t767;
         let t816 = t759 - t815;
         let t819 = t767 * t767;
         let t820 = t766 * t766;
         let t821 = t819 - t820;
-        let t822 = t707 + t821;
-        let t823 = t820 + t819;
-        let t824 = t823 - t822;
+        let t822 = t820 + t819;
+        let t823 = t707 - t822;
+        let t824 = t821 + t823;
         let t830 = s7_arm * t512 + c7_arm * t588 + joint_velocities[6] * t766;
         let t831 = t768 + t830;
         let t859 = t563 + joint_accelerations[6];
         let t860 = t859 - t771;
         let t864 = t815 + t759;
-        let t890 = t824 + t821;
-        let t892 = t771 + t859;
-        let t895 = t768 - t830;
-        let t943 = 0.4 * t789 - s7_arm * t669;
-        let t946 = t943 * t831 - t660 * t860;
+        let t891 = t771 + t859;
+        let t894 = t768 - t830;
+        let t942 = 0.4 * t789 - s7_arm * t669;
+        let t945 = t942 * t831 - t660 * t860;
+        let t947 = t707 + t821;
         let t951 = c7_arm * t669 + 0.4 * t786;
-        let t954 = t680 - (t660 * t822 + t951 * t831);
-        let t962 = s7_arm * t719 + c7_arm * t448;
-        let t963 = t951 * t860 + t943 * t822 - t962;
+        let t954 = t680 - (t660 * t947 + t951 * t831);
+        let t962 = s7_arm * t719 + c7_arm * t437;
+        let t963 = t951 * t860 + t942 * t947 - t962;
         let t981 = c7_arm * t695 - s7_arm * t499;
         let t985 = s7_arm * t695 + c7_arm * t499;
-        let t998 = t943 * t816 + t660 * t823 - t680;
-        let t1002 = t660 * t892 + t951 * t816;
-        let t1010 = c7_arm * t719 - s7_arm * t448;
-        let t1011 = t943 * t892 - t951 * t823 - t1010;
+        let t998 = t942 * t816 + t660 * t822 - t680;
+        let t1002 = t660 * t891 + t951 * t816;
+        let t1010 = c7_arm * t719 - s7_arm * t437;
+        let t1011 = t942 * t891 - t951 * t822 - t1010;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
@@ -1124,21 +1123,21 @@ impl KukaLwr {
                 s2_arm * (t19 - t23) - c2_arm * t29, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 t37 * t45 - t53 + c2_arm * t55, c2_arm * t65 - (t37 * t72 + t47 * t60), t89, t100,
                 t53 - t37 * t59 + c2_arm * t80, -(0.4 * t89), -(0.4 * t100), 0.0, 0.0, 0.0, 0.0,
-                t134 * t142 - t152 - t47 * t154, -(t175 + t176 + t47 * t184),
-                t134 * t196 + t146 * t198 - t47 * t201, t134 * t181 - t146 * t213 - t47 * t216,
-                t152 - t134 * t165 - t47 * t195, t47 * t245 - (t175 * t242 + t146 * t249),
-                -(t134 * t260 + t176 * t262 + t47 * t271), 0.0, 0.0, 0.0, 0.0,
-                t285 * t293 - t303 - t146 * t305, t146 * t345 - (t285 * t352 + t297 * t328),
-                t285 * t371 + t297 * t374 - t146 * t377, t285 * t373 + t297 * t394 + t146 * t397,
-                t285 * t327 + t303 + t146 * t370, t285 * t429 - t297 * t436 + t146 * t449,
+                t134 * t142 - t152 - t47 * t154, -(t175 + t176 + t47 * t180),
+                t134 * t192 - t146 * t195 - t47 * t198, t134 * t209 - t146 * t211 - t47 * t214,
+                t152 - t134 * t165 - t47 * t191, t47 * t244 - (t175 * t240 + t146 * t248),
+                -(t134 * t259 + t176 * t261 + t47 * t271), 0.0, 0.0, 0.0, 0.0,
+                t285 * t293 - t303 - t146 * t305, -(t146 * t336 + t285 * t343 + t297 * t328),
+                t285 * t362 - t297 * t334 - t146 * t366, t285 * t335 + t297 * t383 + t146 * t386,
+                t285 * t327 + t303 + t146 * t361, t285 * t418 - t297 * t425 + t146 * t438,
                 t285 * t471 - t297 * t476 + t146 * t485, 0.0, 0.0, 0.0, 0.0,
                 t507 * t512 + t519 - t297 * t521, t516 * t555 - t507 * t564 + t297 * t567,
                 t507 * t589 + t516 * t592 - t297 * t595, t507 * t616 - t516 * t618 + t297 * t621,
                 t507 * t554 - t519 + t297 * t588, t507 * t663 + t516 * t672 + t297 * t681,
                 t507 * t710 - t516 * t714 - t297 * t723, 0.0, 0.0, 0.0, 0.0,
-                t751 * t759 - t769 + t516 * t771, t516 * t824 - (t751 * t831 + t763 * t816),
-                t751 * t860 - t763 * t821 + t516 * t864, t516 * t895 - (t751 * t890 + t763 * t892),
-                t769 - t751 * t815 + t516 * t859, t751 * t946 - t763 * t954 + t516 * t963,
+                t751 * t759 - t769 + t516 * t771, -(t516 * t824 + t751 * t831 + t763 * t816),
+                t751 * t860 - t763 * t821 + t516 * t864, t751 * t823 - t763 * t891 + t516 * t894,
+                t769 - t751 * t815 + t516 * t859, t751 * t945 - t763 * t954 + t516 * t963,
                 t751 * t998 + t763 * t1002 + t516 * t1011, 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -1147,75 +1146,74 @@ impl KukaLwr {
                 -(t58 + s3_arm * t60), s3_arm * t72 - c3_arm * t60, -(t90 + c3_arm * t84),
                 -(s3_arm * t93 + t102), t58, 0.4 * t90 + c3_arm * t111,
                 0.4 * t102 - s3_arm * (t111 + t65 * 0.4), 0.0, 0.0, 0.0, 0.0,
-                t158 - t142 * t159 - c3_arm * t154, t187 + t188 - c3_arm * t184,
-                -(t157 * t198 + t159 * t196 + c3_arm * t201),
-                t157 * t213 - t159 * t181 - c3_arm * t216, t159 * t165 - t158 - c3_arm * t195,
-                t242 * t187 + t157 * t249 + c3_arm * t245,
-                t159 * t260 + t262 * t188 - c3_arm * t271, 0.0, 0.0, 0.0, 0.0,
-                t311 - t293 * t314 + t157 * t305, t314 * t352 + t310 * t328 - t157 * t345,
-                t157 * t377 - (t310 * t374 + t314 * t371),
-                -(t314 * t373 + t310 * t394 + t157 * t397), -(t314 * t327 + t311 + t157 * t370),
-                t310 * t436 - t314 * t429 - t157 * t449, t310 * t476 - t314 * t471 - t157 * t485,
-                0.0, 0.0, 0.0, 0.0, t527 - t512 * t530 + t310 * t521,
-                t530 * t564 + t526 * t555 - t310 * t567, t526 * t592 - t530 * t589 + t310 * t595,
-                -(t530 * t616 + t526 * t618 + t310 * t621), -(t530 * t554 + t527 + t310 * t588),
-                t526 * t672 - t530 * t663 - t310 * t681, t310 * t723 - (t530 * t710 + t526 * t714),
-                0.0, 0.0, 0.0, 0.0, t759 * t776 + t781 + t526 * t771,
-                t780 * t816 - t776 * t831 + t526 * t824, t776 * t860 + t780 * t821 + t526 * t864,
-                t780 * t892 - t776 * t890 + t526 * t895, t526 * t859 - (t776 * t815 + t781),
-                t776 * t946 + t780 * t954 + t526 * t963, t776 * t998 - t780 * t1002 + t526 * t1011,
-                0.0, 0.0, 0.0, 0.0,
+                t158 - t142 * t159 - c3_arm * t154, t183 + t184 - c3_arm * t180,
+                t157 * t195 - t159 * t192 - c3_arm * t198,
+                t157 * t211 - t159 * t209 - c3_arm * t214, t159 * t165 - t158 - c3_arm * t191,
+                t240 * t183 + t157 * t248 + c3_arm * t244,
+                t159 * t259 + t261 * t184 - c3_arm * t271, 0.0, 0.0, 0.0, 0.0,
+                t311 - t293 * t314 + t157 * t305, t314 * t343 + t310 * t328 + t157 * t336,
+                t310 * t334 - t314 * t362 + t157 * t366, -(t314 * t335 + t310 * t383 + t157 * t386),
+                -(t314 * t327 + t311 + t157 * t361), t310 * t425 - t314 * t418 - t157 * t438,
+                t310 * t476 - t314 * t471 - t157 * t485, 0.0, 0.0, 0.0, 0.0,
+                t527 - t512 * t530 + t310 * t521, t530 * t564 + t526 * t555 - t310 * t567,
+                t526 * t592 - t530 * t589 + t310 * t595, -(t530 * t616 + t526 * t618 + t310 * t621),
+                -(t530 * t554 + t527 + t310 * t588), t526 * t672 - t530 * t663 - t310 * t681,
+                t310 * t723 - (t530 * t710 + t526 * t714), 0.0, 0.0, 0.0, 0.0,
+                t759 * t776 + t781 + t526 * t771, t780 * t816 - t776 * t831 - t526 * t824,
+                t776 * t860 + t780 * t821 + t526 * t864, t776 * t823 + t780 * t891 + t526 * t894,
+                t526 * t859 - (t776 * t815 + t781), t776 * t945 + t780 * t954 + t526 * t963,
+                t776 * t998 - t780 * t1002 + t526 * t1011, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t65, t87,
                 t98, t80, -t119, -t128, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, -(t164 + s4_arm * t166),
-                t192 - t193, -(t209 - c4_arm * t198), -(s4_arm * t181 + t225), t164,
+                t188 - t189, -(t206 + c4_arm * t195), -(s4_arm * t209 + t223), t164,
                 -(c4_arm * t119), s4_arm * t119, 0.0, 0.0, 0.0, 0.0,
-                t320 - t293 * t321 - c4_arm * t305, t362 + t363 + c4_arm * t345,
-                -(t319 * t374 + t386 + c4_arm * t377), c4_arm * t397 - (t321 * t373 + t407),
-                c4_arm * t370 - (t321 * t327 + t320), t319 * t436 - t321 * t429 + c4_arm * t449,
+                t320 - t293 * t321 - c4_arm * t305, t353 + t354 - c4_arm * t336,
+                t319 * t334 - t375 - c4_arm * t366, c4_arm * t386 - (t321 * t335 + t396),
+                c4_arm * t361 - (t321 * t327 + t320), t319 * t425 - t321 * t418 + c4_arm * t438,
                 t319 * t476 - t321 * t471 + c4_arm * t485, 0.0, 0.0, 0.0, 0.0,
                 t512 * t537 + t542 + t319 * t521, t541 * t555 - t537 * t564 - t319 * t567,
                 t537 * t589 + t541 * t592 + t319 * t595, t537 * t616 - t541 * t618 - t319 * t621,
                 t537 * t554 - t542 - t319 * t588, t537 * t663 + t541 * t672 - t319 * t681,
                 t537 * t710 - t541 * t714 + t319 * t723, 0.0, 0.0, 0.0, 0.0,
-                t759 * t787 + t792 + t541 * t771, t791 * t816 - t787 * t831 + t541 * t824,
-                t787 * t860 + t791 * t821 + t541 * t864, t791 * t892 - t787 * t890 + t541 * t895,
-                t541 * t859 - (t787 * t815 + t792), t787 * t946 + t791 * t954 + t541 * t963,
+                t759 * t787 + t792 + t541 * t771, t791 * t816 - t787 * t831 - t541 * t824,
+                t787 * t860 + t791 * t821 + t541 * t864, t787 * t823 + t791 * t891 + t541 * t894,
+                t541 * t859 - (t787 * t815 + t792), t787 * t945 + t791 * t954 + t541 * t963,
                 t787 * t998 - t791 * t1002 + t541 * t1011, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t154, t184, t201, t216, t195, -t240, -t270,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t154, t180, t198, t214, t191, -t238, -t270,
                 joint_accelerations[3], joint_velocities[3],
                 ::overact::math::sign(joint_velocities[3]), 1.0, t326 + s5_arm * t328,
-                c5_arm * t328 - s5_arm * t352, t390 - c5_arm * t374, s5_arm * t373 - t411, -t326,
-                c5_arm * t432 - (t463 * t333 + 0.39 * t390),
-                0.39 * t411 + t499 * t344 - s5_arm * t432, 0.0, 0.0, 0.0, 0.0,
+                c5_arm * t328 - s5_arm * t343, t379 + c5_arm * t334, s5_arm * t335 - t400, -t326,
+                c5_arm * t421 - (t452 * t333 + 0.39 * t379),
+                0.39 * t400 + t499 * t468 - s5_arm * t421, 0.0, 0.0, 0.0, 0.0,
                 t512 * t546 - t549 + c5_arm * t521, -(t546 * t564 + t548 * t555 + c5_arm * t567),
                 t546 * t589 - t548 * t592 + c5_arm * t595,
                 t546 * t616 + t548 * t618 - c5_arm * t621, t546 * t554 + t549 - c5_arm * t588,
-                t499 * t564 - (t695 * t665 + t697 * t589) + t448 * t548 + c5_arm * t680,
-                t695 * t618 + t697 * t707 + t499 * t555 + t448 * t546 + c5_arm * t719, 0.0, 0.0,
-                0.0, 0.0, t759 * t798 + t803 - t548 * t771, t802 * t816 - t798 * t831 - t548 * t824,
-                t798 * t860 + t802 * t821 - t548 * t864, t802 * t892 - t798 * t890 - t548 * t895,
+                t499 * t564 - (t695 * t665 + t697 * t589) + t437 * t548 + c5_arm * t680,
+                t695 * t618 + t697 * t707 + t499 * t555 + t437 * t546 + c5_arm * t719, 0.0, 0.0,
+                0.0, 0.0, t759 * t798 + t803 - t548 * t771, t802 * t816 - t798 * t831 + t548 * t824,
+                t798 * t860 + t802 * t821 - t548 * t864, t798 * t823 + t802 * t891 - t548 * t894,
                 -(t798 * t815 + t803 + t548 * t859),
-                t680 * t802 + t548 * t962 - (t981 * t822 + t985 * t860 + t697 * t831),
-                t985 * t823 - t981 * t892 - t697 * t816 + t548 * t1010 - t680 * t798, 0.0, 0.0, 0.0,
+                t680 * t802 + t548 * t962 - (t981 * t947 + t985 * t860 + t697 * t831),
+                t985 * t822 - t981 * t891 - t697 * t816 + t548 * t1010 - t680 * t798, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, -t305, t345, -t377, t397, t370, -t448, -t484, joint_accelerations[4],
+                0.0, 0.0, -t305, -t336, -t366, t386, t361, -t437, -t484, joint_accelerations[4],
                 joint_velocities[4], ::overact::math::sign(joint_velocities[4]), 1.0,
                 t553 + s6_arm * t555, c6_arm * t555 - s6_arm * t564, s6_arm * t589 + c6_arm * t592,
-                s6_arm * t616 - c6_arm * t618, -t553, -(c6_arm * t448), s6_arm * t448, 0.0, 0.0,
+                s6_arm * t616 - c6_arm * t618, -t553, -(c6_arm * t437), s6_arm * t437, 0.0, 0.0,
                 0.0, 0.0, t759 * t807 - t810 + c6_arm * t771,
-                c6_arm * t824 - (t807 * t831 + t809 * t816),
+                -(c6_arm * t824 + t807 * t831 + t809 * t816),
                 t807 * t860 - t809 * t821 + c6_arm * t864,
-                c6_arm * t895 - (t807 * t890 + t809 * t892), t810 - t807 * t815 + c6_arm * t859,
+                t807 * t823 - t809 * t891 + c6_arm * t894, t810 - t807 * t815 + c6_arm * t859,
                 -(t680 * t809 + c6_arm * t962), -(t680 * t807 + c6_arm * t1010), 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -1225,14 +1223,14 @@ impl KukaLwr {
                 t621, t588, -t680, -t719, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, -(t814 + s7_arm * t816),
                 s7_arm * t831 - c7_arm * t816, -(s7_arm * t860 + c7_arm * t821),
-                -(c7_arm * t892 - s7_arm * t890), t814, -(c7_arm * t680), s7_arm * t680, 0.0, 0.0,
+                -(s7_arm * t823 + c7_arm * t891), t814, -(c7_arm * t680), s7_arm * t680, 0.0, 0.0,
                 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t771, t824, t864, t895, t859, -t962, -t1010,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t771, -t824, t864, t894, t859, -t962, -t1010,
                 joint_accelerations[6], joint_velocities[6],
                 ::overact::math::sign(joint_velocities[6]), 1.0,
             ],

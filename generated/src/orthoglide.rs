@@ -962,7 +962,7 @@ impl Orthoglide {
     ///
     /// Output: 12.
     ///
-    /// 140 operations (46 additions, 88 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 137 intermediates.
+    /// 141 operations (46 additions, 88 multiplications, 7 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 138 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -976,8 +976,7 @@ impl Orthoglide {
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
         let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
         let t8 = 1.0 - t2 * t6;
         ::overact::guard::reach(t8, "along_x")?;
@@ -1024,52 +1023,53 @@ impl Orthoglide {
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
         let t64 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t67 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
-        let t70 = c_foot_along_y * minus_rate_left_bar_along_y;
-        let t72 = t64 + t67 * t67 + t70 * t70;
-        let t75 = acceleration[0] - (pose[0] * t64 - pose[0] * t72);
-        let t78 = pose[0] * (minus_rate_foot_along_y * t70);
-        let t79 = gdrive_vz_along_y * t78;
-        let t89 = acceleration[2] + pose[2] * t72 + t78 + t78;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t75 + acceleration[1]
-            - (t79 - 0.31 * t54 * t72 + t79) + gdrive_vz_along_y * t89;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t75
-            + minus_gfoot_vz_along_y * t89;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t75;
-        let t97 = 1.0 - t8 * t12;
-        ::overact::guard::reach(t97, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t97);
+        let t68 = minus_s_foot_along_y * minus_rate_left_bar_along_y;
+        let t71 = c_foot_along_y * minus_rate_left_bar_along_y;
+        let t73 = t64 + t68 * t68 + t71 * t71;
+        let t76 = acceleration[0] - (pose[0] * t64 - pose[0] * t73);
+        let t79 = pose[0] * (minus_rate_foot_along_y * t71);
+        let t80 = gdrive_vz_along_y * t79;
+        let t90 = acceleration[2] + pose[2] * t73 + t79 + t79;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t76 + acceleration[1]
+            - (t80 - 0.31 * t54 * t73 + t80) + gdrive_vz_along_y * t90;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t76
+            + minus_gfoot_vz_along_y * t90;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t76;
+        let t98 = 1.0 - t8 * t12;
+        ::overact::guard::reach(t98, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t98);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
         let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t102 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t102, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t102);
-        let t104 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t104, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t104;
+        let t103 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t103, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t103);
+        let t105 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t105, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t105;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t108 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t109 = c_foot_along_z * minus_rate_left_bar_along_z;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (gdrive_vx_along_z * (t102 * gdrive_vy_along_z));
+            * (gdrive_vx_along_z * (t103 * gdrive_vy_along_z));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t119 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
-        let t121 = t108 * t108 + minus_rate_foot_along_z * minus_rate_foot_along_z
-            + t119 * t119;
-        let t123 = pose[1] * minus_rate_foot_along_z;
-        let t124 = t108 * t123;
-        let t127 = acceleration[0] + pose[0] * t121 + t124 + t124;
-        let t132 = acceleration[1] - (minus_rate_foot_along_z * t123 - pose[1] * t121);
-        let t135 = gdrive_vx_along_z * t124;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t127 + gdrive_vy_along_z * t132
-            + acceleration[2] - (t135 - 0.31 * t104 * t121 + t135);
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t127
-            + minus_gfoot_vy_along_z * t132;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t132;
+        let t120 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t122 = t109 * t109 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t120 * t120;
+        let t124 = pose[1] * minus_rate_foot_along_z;
+        let t125 = t109 * t124;
+        let t128 = acceleration[0] + pose[0] * t122 + t125 + t125;
+        let t133 = acceleration[1] - (minus_rate_foot_along_z * t124 - pose[1] * t122);
+        let t136 = gdrive_vx_along_z * t125;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t128 + gdrive_vy_along_z * t133
+            + acceleration[2] - (t136 - 0.31 * t105 * t122 + t136);
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t128
+            + minus_gfoot_vy_along_z * t133;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t133;
         Ok([
             rate_dot_drive_along_x, -minus_rate_dot_foot_along_x, -minus_rate_dot_left_bar_along_x,
             minus_rate_dot_foot_along_x, rate_dot_drive_along_y, -minus_rate_dot_foot_along_y,
@@ -1177,7 +1177,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 165 operations (60 additions, 96 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 168 intermediates.
+    /// 166 operations (60 additions, 97 multiplications, 9 divisions), 6 square roots, 0 trigonometric pairs, 0 signs, 169 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1257,12 +1257,12 @@ impl Orthoglide {
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
         let t87 = c_foot_along_z * minus_rate_left_bar_along_z;
-        let t88 = t87 * t87;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let t91 = gdrive_vx_along_z * gdrive_vy_along_z;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0] + t87 * t91;
-        let t96 = gdrive_vx_along_z * gdrive_vx_along_z;
-        let t98 = t88 + minus_rate_foot_along_z * minus_rate_foot_along_z + t88 * t96;
+        let t96 = minus_s_foot_along_z * minus_rate_left_bar_along_z;
+        let t98 = t87 * t87 + minus_rate_foot_along_z * minus_rate_foot_along_z
+            + t96 * t96;
         let t100 = pose[1] * minus_rate_foot_along_z;
         let t101 = t87 * t100;
         let t110 = gdrive_vx_along_z * t101;
@@ -1271,28 +1271,29 @@ impl Orthoglide {
             - (t110 - 0.31 * t83 * t98 + t110);
         let t116 = actuator_accelerations[2] - rate_dot_drive_along_z;
         let t118 = t31 + gdrive_vx_along_y * t78 + gdrive_vx_along_z * t116;
-        let t121 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y + t96;
-        ::overact::guard::platform(t121, 1.0, "actuators")?;
-        let t122 = 1.0 / t121;
-        let t125 = gdrive_vy_along_x + gdrive_vx_along_y + t91;
-        let t126 = t125 * t122;
-        let t130 = t26 + gdrive_vy_along_z * gdrive_vy_along_z - t125 * t126;
-        ::overact::guard::platform(t130, 1.0, "actuators")?;
-        let t131 = 1.0 / t130;
-        let t137 = gdrive_vy_along_x * t31 + t78 + gdrive_vy_along_z * t116
-            - t118 * t126;
-        let t143 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+        let t122 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vx_along_z;
+        ::overact::guard::platform(t122, 1.0, "actuators")?;
+        let t123 = 1.0 / t122;
+        let t126 = gdrive_vy_along_x + gdrive_vx_along_y + t91;
+        let t127 = t126 * t123;
+        let t131 = t26 + gdrive_vy_along_z * gdrive_vy_along_z - t126 * t127;
+        ::overact::guard::platform(t131, 1.0, "actuators")?;
+        let t132 = 1.0 / t131;
+        let t138 = gdrive_vy_along_x * t31 + t78 + gdrive_vy_along_z * t116
+            - t118 * t127;
+        let t144 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z;
-        let t144 = t143 * t122;
-        let t146 = t17 + gdrive_vz_along_y + gdrive_vy_along_z - t125 * t144;
-        let t147 = t146 * t131;
-        let t163 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t143 * t144 - t146 * t147;
-        ::overact::guard::platform(t163, 1.0, "actuators")?;
-        let t164 = (gdrive_vz_along_x * t31 + gdrive_vz_along_y * t78 + t116
-            - t118 * t144 - t147 * t137) / t163;
-        let t166 = t131 * t137 - t147 * t164;
-        Ok([t118 * t122 - t126 * t166 - t144 * t164, t166, t164])
+        let t145 = t144 * t123;
+        let t147 = t17 + gdrive_vz_along_y + gdrive_vy_along_z - t126 * t145;
+        let t148 = t147 * t132;
+        let t164 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t144 * t145 - t147 * t148;
+        ::overact::guard::platform(t164, 1.0, "actuators")?;
+        let t165 = (gdrive_vz_along_x * t31 + gdrive_vz_along_y * t78 + t116
+            - t118 * t145 - t148 * t138) / t164;
+        let t167 = t132 * t138 - t148 * t165;
+        Ok([t118 * t123 - t127 * t167 - t145 * t165, t167, t165])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1304,7 +1305,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 432 operations (148 additions, 274 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 323 intermediates.
+    /// 452 operations (151 additions, 293 multiplications, 8 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 343 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1313,317 +1314,356 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t2 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
-        let t3 = 1.0 - t2;
-        ::overact::guard::reach(t3, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t3);
+        let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
-        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t7 = 1.0 - t6;
+        let t4 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t4;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t9, 1.0, "along_x")?;
         let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let t11 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t11;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t13 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let minus_gfoot_vz_along_x = gdrive_vz_along_x
-            * (minus_s_foot_along_x * minus_gleft_bar_vz_along_x);
+        let t14 = minus_s_foot_along_x * minus_rate_left_bar_along_x;
+        let t16 = c_foot_along_x * minus_rate_left_bar_along_x;
+        let t18 = t14 * t14 + t16 * t16;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t22 = minus_s_left_bar_along_x * minus_s_foot_along_x * t11;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * t22;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t20 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t23 = gdrive_vz_along_x * twist[2];
-        let t25 = t23 * (t7 * minus_rate_foot_along_x);
-        let t31 = acceleration[2] + pose[2] * t13;
+        let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t27 = t18 + t26;
+        let t30 = pose[2] * (minus_rate_foot_along_x * t16);
+        let t36 = minus_s_left_bar_along_x * c_foot_along_x;
+        let gdrive_vz_along_x = pose[1] * minus_gfoot_vz_along_x + t36 * t11;
+        let t39 = gdrive_vz_along_x * twist[2];
+        let t41 = acceleration[2] + t16 * t39;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (acceleration[1] + pose[1] * (t13 + t20) + t25 + t25)
-            + minus_gfoot_vz_along_x * t31;
-        let t34 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t35 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t36 = minus_rate_left_bar_along_x * t35;
-        let t37 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t39 = t36 + t37 + t36;
-        let t40 = minus_s_left_bar_along_x * t39;
-        let t41 = minus_gfoot_vy_along_x * t40;
-        let t42 = t34 - t41;
-        let t44 = t42 * (0.31 * c_foot_along_x);
-        let t46 = t2 * t20;
-        let t47 = t13 - t46;
-        let t48 = t20 + t47;
-        let t50 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t52 = minus_s_left_bar_along_x * minus_rate_foot_along_x * t35;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t31;
-        let t54 = t52 + minus_rate_dot_left_bar_along_x;
-        let t57 = minus_s_foot_along_x * t44 + t9 * t48 + t50 * t54;
-        let rate_dot_drive_along_x = acceleration[0] + 0.31 * t57;
+            * (acceleration[1] + pose[1] * t27 + t30 + t30)
+            + minus_gfoot_vz_along_x * t41;
+        let t44 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t45 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t46 = minus_rate_left_bar_along_x * t45;
+        let t47 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t49 = t46 + t47 + t46;
+        let t50 = minus_s_left_bar_along_x * t49;
+        let t51 = minus_gfoot_vy_along_x * t50;
+        let t52 = t44 - t51;
+        let t54 = t52 * (0.31 * c_foot_along_x);
+        let t56 = minus_s_left_bar_along_x * minus_rate_foot_along_x;
+        let t57 = t56 * t56;
+        let t58 = t27 - t57;
+        let t60 = t56 * t45;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t41;
+        let t62 = t60 + minus_rate_dot_left_bar_along_x;
+        let t65 = minus_s_foot_along_x * t54 + t9 * t58 + t36 * t62;
+        let rate_dot_drive_along_x = acceleration[0] + 0.31 * t65;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t61 = gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t62 = gdrive_vz_along_x * rate_dot_drive_along_x;
-        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1] + t23;
-        let t71 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t74 = c_foot_along_x * t20
+        let t69 = gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t70 = gdrive_vz_along_x * rate_dot_drive_along_x;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1] + t39;
+        let t79 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t82 = c_foot_along_x * t26
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t75 = minus_gleft_bar_vz_along_x * rate_dot_drive_along_x;
-        let t79 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t80 = minus_gfoot_vz_along_x * t79;
-        let t84 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t20;
-        let t86 = gdrive_vy_along_x * t84 + t75;
-        let t88 = minus_gfoot_vz_along_x * rate_dot_drive_along_x;
-        let t90 = gdrive_vz_along_x * t84 + c_foot_along_x * t88;
-        let t93 = minus_gfoot_vz_along_x * t40 - minus_gleft_bar_vz_along_x * t52;
-        let t96 = c_left_bar_along_x * t39 + minus_s_left_bar_along_x * t44;
-        let t97 = minus_gfoot_vy_along_x * t96;
-        let t99 = t46 + t13;
-        let t102 = minus_gfoot_vz_along_x * t96
-            + minus_gleft_bar_vz_along_x * (t99 - t48);
-        let t105 = minus_s_left_bar_along_x * t54 + c_left_bar_along_x * t47;
-        let t106 = minus_gfoot_vy_along_x * t105;
-        let t109 = minus_gfoot_vz_along_x * t105 + minus_gleft_bar_vz_along_x * t37;
-        let t110 = t71 - t93;
-        let t111 = 3.225806451612903 * acceleration[2];
-        let t112 = minus_gfoot_vy_along_x * t111;
-        let t115 = minus_gfoot_vz_along_x * t111
+        let t83 = c_foot_along_x * rate_dot_drive_along_x;
+        let t84 = minus_gfoot_vy_along_x * t83;
+        let t88 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t93 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t26;
+        let t95 = gdrive_vy_along_x * t93 + t84;
+        let t98 = gdrive_vz_along_x * t93 + minus_gfoot_vz_along_x * t83;
+        let t101 = minus_gfoot_vz_along_x * t50 - t60 / t4;
+        let t104 = c_left_bar_along_x * t49 + minus_s_left_bar_along_x * t54;
+        let t105 = minus_gfoot_vy_along_x * t104;
+        let t107 = t57 + t18;
+        let t110 = minus_gfoot_vz_along_x * t104
+            + minus_gleft_bar_vz_along_x * (t107 - t58);
+        let t114 = minus_s_left_bar_along_x * t62 + c_left_bar_along_x * (t18 - t57);
+        let t115 = minus_gfoot_vy_along_x * t114;
+        let t118 = minus_gfoot_vz_along_x * t114 + minus_gleft_bar_vz_along_x * t47;
+        let t119 = t79 - t101;
+        let t120 = 3.225806451612903 * acceleration[2];
+        let t121 = minus_gfoot_vy_along_x * t120;
+        let t124 = minus_gfoot_vz_along_x * t120
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t116 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t119 = gdrive_vy_along_x * t57 + 3.225806451612903 * t61;
-        let t121 = c_left_bar_along_x * t88;
-        let t126 = gdrive_vz_along_x * t57 + minus_s_foot_along_x * t121
-            + -31.64516129032258 + t50 * t75;
-        let t132 = t9 * (minus_rate_dot_left_bar_along_x - t52) - t50 * t99
-            - minus_s_foot_along_x * t39;
-        let t134 = gdrive_vy_along_x * t132 - t121;
-        let t142 = gdrive_vz_along_x * t132 - minus_s_left_bar_along_x * t80
+        let t125 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t128 = gdrive_vy_along_x * t65 + 3.225806451612903 * t69;
+        let t130 = minus_s_left_bar_along_x * t88;
+        let t131 = minus_gfoot_vy_along_x * t130;
+        let t136 = gdrive_vz_along_x * t65 + minus_s_foot_along_x * t131
+            + -31.64516129032258 + t36 * t84;
+        let t142 = t9 * (minus_rate_dot_left_bar_along_x - t60) - t36 * t107
+            - minus_s_foot_along_x * t49;
+        let t144 = gdrive_vy_along_x * t142 - t131;
+        let t152 = gdrive_vz_along_x * t142 - minus_gfoot_vz_along_x * t130
             + minus_gleft_bar_vz_along_x
-                * (t9 * rate_dot_drive_along_x + 31.64516129032258 * pose[2]);
-        let t144 = t79 - 0.31 * t44;
-        let t152 = -9.81 - acceleration[2];
+                * (c_left_bar_along_x * t83 + 31.64516129032258 * pose[2]);
+        let t155 = minus_gfoot_vy_along_x * (t88 - 0.31 * t54);
+        let t162 = -9.81 - acceleration[2];
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t155 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        ::overact::guard::reach(t155, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t155);
+        let t165 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        ::overact::guard::reach(t165, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t165);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
-        let t159 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t159, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t159);
-        let t161 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t161, 1.0, "along_y")?;
-        let gdrive_vx_along_y = minus_s_left_bar_along_y / t161;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t161;
-        let minus_gleft_bar_vx_along_y = c_foot_along_y * minus_gfoot_vz_along_y;
-        let t165 = pose[0] * minus_gleft_bar_vx_along_y;
-        let t166 = minus_s_foot_along_y * t165;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t166;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t170 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t170, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t170);
+        let t172 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t172, 1.0, "along_y")?;
+        let t173 = 1.0 / t172;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t173;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t176 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t177 = minus_s_foot_along_y * t176;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t177;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t169 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t171 = acceleration[0] + pose[0] * t169;
+        let t180 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t182 = acceleration[0] + pose[0] * t180;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t176 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t177 = t176 + t169;
-        let t179 = gdrive_vx_along_y * twist[0];
-        let t181 = t179 * (t159 * minus_rate_foot_along_y);
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t171
-            + minus_gfoot_vz_along_y * (acceleration[2] + pose[2] * t177 + t181 + t181);
-        let t187 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t188 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t189 = minus_rate_left_bar_along_y * t188;
-        let t190 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t192 = t189 + t190 + t189;
-        let t193 = c_left_bar_along_y * t192;
-        let t194 = t193 * t165;
-        let t195 = minus_gfoot_vz_along_y * t194;
-        let t196 = t187 - t195;
-        let t198 = t196 * (0.31 * c_foot_along_y);
-        let t200 = t188 * t188;
-        let t201 = t200 + t169;
-        let t203 = minus_s_left_bar_along_y * c_foot_along_y;
-        let t204 = t200 * t165;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t171;
-        let t206 = t204 + minus_rate_dot_left_bar_along_y;
-        let t209 = minus_s_foot_along_y * t198 + t161 * t201 + t203 * t206;
-        let t210 = 3.225806451612903 * acceleration[1];
-        let t211 = t209 + t210;
-        let rate_dot_drive_along_y = 0.31 * t211;
-        let t213 = gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t187 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t190 = gdrive_vx_along_y * twist[0];
+        let t192 = t190 * (t170 * minus_rate_foot_along_y);
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t182
+            + minus_gfoot_vz_along_y
+                * (acceleration[2] + pose[2] * (t187 + t180) + t192 + t192);
+        let t198 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t199 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t200 = minus_rate_left_bar_along_y * t199;
+        let t201 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t203 = t200 + t201 + t200;
+        let t204 = minus_s_left_bar_along_y * t203;
+        let t205 = minus_gfoot_vz_along_y * t204;
+        let t206 = t198 - t205;
+        let t208 = t206 * (0.31 * c_foot_along_y);
+        let t210 = t199 * t199;
+        let t213 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t214 = t210 * t176;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t182;
+        let t216 = t214 + minus_rate_dot_left_bar_along_y;
+        let t219 = minus_s_foot_along_y * t208 + t172 * (t210 + t180) + t213 * t216;
+        let t220 = 3.225806451612903 * acceleration[1];
+        let t221 = t219 + t220;
+        let rate_dot_drive_along_y = 0.31 * t221;
+        let t223 = gdrive_vx_along_y * rate_dot_drive_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t215 = gdrive_vz_along_y * rate_dot_drive_along_y;
-        let rate_drive_along_y = t179 + twist[1] + gdrive_vz_along_y * twist[2];
-        let t224 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t227 = c_foot_along_y * t176
+        let t225 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let rate_drive_along_y = t190 + twist[1] + gdrive_vz_along_y * twist[2];
+        let t234 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t237 = c_foot_along_y * t187
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t230 = c_foot_along_y * (9.81 - t215);
-        let t234 = minus_gfoot_vz_along_y * t230;
-        let t238 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t176;
-        let t242 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t244 = gdrive_vx_along_y * t238 + minus_gfoot_vx_along_y * t242;
-        let t247 = gdrive_vz_along_y * t238 + minus_gfoot_vz_along_y * t242;
-        let t250 = minus_gfoot_vx_along_y * t194 - minus_gleft_bar_vx_along_y * t204;
-        let t252 = t193 + minus_s_left_bar_along_y * t198;
-        let t254 = t177 - t200;
-        let t257 = minus_gfoot_vx_along_y * t252
-            + minus_gleft_bar_vx_along_y * (t254 - t201);
-        let t258 = minus_gfoot_vz_along_y * t252;
-        let t262 = minus_s_left_bar_along_y * t206 + c_left_bar_along_y * (t201 - t176);
-        let t265 = minus_gfoot_vx_along_y * t262 + minus_gleft_bar_vx_along_y * t190;
-        let t266 = minus_gfoot_vz_along_y * t262;
-        let t267 = t224 - t250;
-        let t269 = 10.40582726326743 * (acceleration[0] / t161);
-        let t272 = t166 * t269 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t273 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t274 = t209 + t211;
-        let t275 = gdrive_vx_along_y * t274;
-        let t277 = 31.64516129032258 - gdrive_vz_along_y * t274;
-        let t283 = t161 * (minus_rate_dot_left_bar_along_y - t204) - t203 * t254
-            - minus_s_foot_along_y * t192;
-        let t285 = minus_s_left_bar_along_y * t234;
-        let t289 = gdrive_vx_along_y * t283 + t166 * t285 + 3.225806451612903 * t242;
-        let t291 = gdrive_vz_along_y * t283 + t285;
-        let t293 = t230 + 0.31 * t198;
-        let t302 = 1.0 - t3 * t6;
-        ::overact::guard::reach(t302, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t302);
+        let t240 = c_foot_along_y * (9.81 - t225);
+        let t243 = gdrive_vz_along_y * t237;
+        let t248 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t187;
+        let t252 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t254 = gdrive_vx_along_y * t248 + minus_gfoot_vx_along_y * t252;
+        let t257 = gdrive_vz_along_y * t248 + minus_gfoot_vz_along_y * t252;
+        let t259 = minus_gleft_bar_vx_along_y * t214;
+        let t260 = minus_gfoot_vx_along_y * t204 - t259;
+        let t263 = c_left_bar_along_y * t203 + minus_s_left_bar_along_y * t208;
+        let t265 = pose[0] * t259;
+        let t268 = minus_gfoot_vx_along_y * t263
+            + minus_gleft_bar_vx_along_y * (t265 - t210);
+        let t269 = minus_gfoot_vz_along_y * t263;
+        let t273 = minus_s_left_bar_along_y * t216 + c_left_bar_along_y * (t180 - t265);
+        let t276 = minus_gfoot_vx_along_y * t273 + minus_gleft_bar_vx_along_y * t201;
+        let t277 = minus_gfoot_vz_along_y * t273;
+        let t278 = t234 - t260;
+        let t280 = 10.40582726326743 * (t173 * acceleration[0]);
+        let t283 = t177 * t280 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t284 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t285 = t219 + t221;
+        let t286 = gdrive_vx_along_y * t285;
+        let t288 = 31.64516129032258 - gdrive_vz_along_y * t285;
+        let t295 = t172 * (minus_rate_dot_left_bar_along_y - t214) - t213 * (t265 + t180)
+            - minus_s_foot_along_y * t203;
+        let t297 = minus_s_left_bar_along_y * t240;
+        let t301 = gdrive_vx_along_y * t295 + minus_gfoot_vx_along_y * t297
+            + 3.225806451612903 * t252;
+        let t304 = gdrive_vz_along_y * t295 + minus_gfoot_vz_along_y * t297;
+        let t306 = t240 + 0.31 * t208;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t319 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        ::overact::guard::reach(t319, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t319);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
-        let t306 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t306, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t306);
-        let t308 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t308, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t308;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let t324 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t324, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t324);
+        let t326 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t326, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t326;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = gdrive_vy_along_z
             * (minus_s_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t318 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
-        let t319 = t318 * t318;
-        let t320 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t335 = minus_rate_foot_along_z * minus_rate_foot_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t322 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t323 = t322 - t319;
-        let t324 = t320 + t323;
-        let t327 = gdrive_vy_along_z * twist[1];
-        let t329 = t327 * (t306 * minus_rate_foot_along_z);
-        let t335 = acceleration[1] + pose[1] * t322;
+        let t337 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t341 = pose[1] * minus_rate_foot_along_z;
+        let t342 = c_foot_along_z * minus_rate_left_bar_along_z * t341;
+        let t348 = acceleration[1] + pose[1] * t337;
         let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
-            * (acceleration[0] + pose[0] * (t319 + t324) + t329 + t329)
-            + minus_gfoot_vy_along_z * t335;
-        let t338 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t339 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t340 = minus_rate_left_bar_along_z * t339;
-        let t341 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t343 = t340 + t341 + t340;
-        let t344 = minus_s_left_bar_along_z * t343;
-        let t345 = minus_gfoot_vx_along_z * t344;
-        let t346 = t338 - t345;
-        let t348 = t346 * (0.31 * c_foot_along_z);
-        let t351 = minus_s_left_bar_along_z * c_foot_along_z;
-        let t352 = t318 * t339;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t335;
-        let t354 = t352 + minus_rate_dot_left_bar_along_z;
-        let t357 = minus_s_foot_along_z * t348 + t308 * t324 + t351 * t354;
-        let rate_dot_drive_along_z = acceleration[2] + 0.31 * t357;
-        let t360 = 9.81 + rate_dot_drive_along_z;
-        let t361 = gdrive_vx_along_z * t360;
-        let t362 = gdrive_vy_along_z * t360;
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t327 + twist[2];
-        let t373 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t376 = c_foot_along_z * t320
+            * (acceleration[0] + pose[0] * (t335 + t337) + t342 + t342)
+            + minus_gfoot_vy_along_z * t348;
+        let t351 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t352 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t353 = minus_rate_left_bar_along_z * t352;
+        let t354 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t356 = t353 + t354 + t353;
+        let t357 = minus_s_left_bar_along_z * t356;
+        let t358 = minus_gfoot_vx_along_z * t357;
+        let t359 = t351 - t358;
+        let t361 = t359 * (0.31 * c_foot_along_z);
+        let t363 = t352 * t352;
+        let t366 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t368 = 3.225806451612903 * t341 * t352;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t348;
+        let t370 = t368 + minus_rate_dot_left_bar_along_z;
+        let t373 = minus_s_foot_along_z * t361 + t326 * (t363 + t337) + t366 * t370;
+        let rate_dot_drive_along_z = acceleration[2] + 0.31 * t373;
+        let t376 = 9.81 + rate_dot_drive_along_z;
+        let t377 = gdrive_vx_along_z * t376;
+        let t378 = gdrive_vy_along_z * t376;
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0]
+            + gdrive_vy_along_z * twist[1] + twist[2];
+        let t390 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t393 = c_foot_along_z * t335
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t377 = c_foot_along_z * t360;
-        let t378 = minus_gfoot_vx_along_z * t377;
-        let t382 = minus_s_foot_along_z * t360;
-        let t383 = minus_gfoot_vy_along_z * t382;
-        let t387 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t320;
-        let t389 = gdrive_vx_along_z * t387 + t378;
-        let t392 = gdrive_vy_along_z * t387 + minus_gfoot_vy_along_z * t377;
-        let t395 = minus_gfoot_vy_along_z * t344 - minus_gleft_bar_vy_along_z * t352;
-        let t398 = c_left_bar_along_z * t343 + minus_s_left_bar_along_z * t348;
-        let t399 = minus_gfoot_vx_along_z * t398;
-        let t401 = t319 + t322;
-        let t404 = minus_gfoot_vy_along_z * t398
-            + minus_gleft_bar_vy_along_z * (t401 - t324);
-        let t407 = minus_s_left_bar_along_z * t354 + c_left_bar_along_z * t323;
-        let t408 = minus_gfoot_vx_along_z * t407;
-        let t411 = minus_gfoot_vy_along_z * t407 + minus_gleft_bar_vy_along_z * t341;
-        let t412 = t373 - t395;
-        let t413 = minus_gfoot_vx_along_z * t210;
-        let t416 = minus_gfoot_vy_along_z * t210
+        let t394 = c_foot_along_z * t376;
+        let t395 = minus_gfoot_vx_along_z * t394;
+        let t399 = minus_s_foot_along_z * t376;
+        let t404 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t335;
+        let t406 = gdrive_vx_along_z * t404 + t395;
+        let t409 = gdrive_vy_along_z * t404 + minus_gfoot_vy_along_z * t394;
+        let t411 = minus_gleft_bar_vy_along_z * t368;
+        let t412 = minus_gfoot_vy_along_z * t357 - t411;
+        let t415 = c_left_bar_along_z * t356 + minus_s_left_bar_along_z * t361;
+        let t416 = minus_gfoot_vx_along_z * t415;
+        let t418 = pose[1] * t411;
+        let t421 = minus_gfoot_vy_along_z * t415
+            + minus_gleft_bar_vy_along_z * (t418 - t363);
+        let t425 = minus_s_left_bar_along_z * t370 + c_left_bar_along_z * (t337 - t418);
+        let t426 = minus_gfoot_vx_along_z * t425;
+        let t429 = minus_gfoot_vy_along_z * t425 + minus_gleft_bar_vy_along_z * t354;
+        let t430 = t390 - t412;
+        let t431 = minus_gfoot_vx_along_z * t220;
+        let t434 = minus_gfoot_vy_along_z * t220
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t417 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t420 = gdrive_vx_along_z * t357 + 3.225806451612903 * t361;
-        let t422 = 3.225806451612903 * t362;
-        let t423 = gdrive_vy_along_z * t357 + t422;
-        let t429 = t308 * (minus_rate_dot_left_bar_along_z - t352) - t351 * t401
-            - minus_s_foot_along_z * t343;
-        let t432 = gdrive_vx_along_z * t429 - minus_s_foot_along_z * t422;
-        let t437 = gdrive_vy_along_z * t429 - minus_s_left_bar_along_z * t383
-            + 3.225806451612903 * t377;
-        let t439 = t382 - 0.31 * t348;
+        let t435 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t438 = gdrive_vx_along_z * t373 + 3.225806451612903 * t377;
+        let t441 = gdrive_vy_along_z * t373 + 3.225806451612903 * t378;
+        let t448 = t326 * (minus_rate_dot_left_bar_along_z - t368) - t366 * (t418 + t337)
+            - minus_s_foot_along_z * t356;
+        let t450 = minus_s_left_bar_along_z * t399;
+        let t452 = gdrive_vx_along_z * t448 - minus_gfoot_vx_along_z * t450;
+        let t457 = gdrive_vy_along_z * t448 - minus_gfoot_vy_along_z * t450
+            + 3.225806451612903 * t394;
+        let t459 = t399 - 0.31 * t361;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t74, t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t57, t132, -t84,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t57, t132, -t84,
-                rate_dot_drive_along_x, 0.0, -t74, -t84, acceleration[0], t213, t213,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t82, t93,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t65, t142, -t93,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t65, t142, -t93,
+                rate_dot_drive_along_x, 0.0, -t82, -t93, acceleration[0], t223, t223,
                 gdrive_vx_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y), gdrive_vx_along_y,
-                t224, -(gdrive_vx_along_y * t227 - minus_gfoot_vx_along_y * t230), t244, t213, t250,
-                -t257, -t265, t267, t272, t273, -t275, t289, -t244, t213, t250, -t257, -t265, t267,
-                t272, t273, -t275, t289, -t244, t213, t224, minus_gfoot_vx_along_y * t293,
-                -(t244 - 0.31 * t265), acceleration[0], t361,
+                t234, -(gdrive_vx_along_y * t237 - minus_gfoot_vx_along_y * t240), t254, t223, t260,
+                -t268, -t276, t278, t283, t284, -t286, t301, -t254, t223, t260, -t268, -t276, t278,
+                t283, t284, -t286, t301, -t254, t223, t234, minus_gfoot_vx_along_y * t306,
+                -(t254 - 0.31 * t276), acceleration[0], t377,
                 gdrive_vx_along_z * rate_dot_drive_along_z, gdrive_vx_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), gdrive_vx_along_z,
-                t338, -(gdrive_vx_along_z * (t376 + t378)), t389, t361, t345, -t399, -t408, t346,
-                t413, 0.0, -t420, t432, -t389, t361, t345, -t399, -t408, t346, t413, 0.0, -t420,
-                t432, -t389, t361, t338, -(minus_gfoot_vx_along_z * t439 - t387),
-                -(t389 - 0.31 * t408), acceleration[0], acceleration[0],
+                t351, -(gdrive_vx_along_z * (t393 + t395)), t406, t377, t358, -t416, -t426, t359,
+                t431, 0.0, -t438, t452, -t406, t377, t358, -t416, -t426, t359, t431, 0.0, -t438,
+                t452, -t406, t377, t351, -(minus_gfoot_vx_along_z * t459 - t404),
+                -(t406 - 0.31 * t426), acceleration[0], acceleration[0],
             ],
             [
-                t61, t61, gdrive_vy_along_x * rate_drive_along_x,
+                t69, t69, gdrive_vy_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x), gdrive_vy_along_x,
-                t34, -(gdrive_vy_along_x * (t74 + t75)), t86, t61, t41, -t97, -t106, t42, t112, 0.0,
-                -t119, t134, -t86, t61, t41, -t97, -t106, t42, t112, 0.0, -t119, t134, -t86, t61,
-                t34, -(minus_gfoot_vy_along_x * t144 - t84), -(t86 - 0.31 * t106), acceleration[1],
+                t44, -(gdrive_vy_along_x * (t82 + t84)), t95, t69, t51, -t105, -t115, t52, t121,
+                0.0, -t128, t144, -t95, t69, t51, -t105, -t115, t52, t121, 0.0, -t128, t144, -t95,
+                t69, t44, -(t155 - t93), -(t95 - 0.31 * t115), acceleration[1],
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t227, t238,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t209, t283, -t238,
-                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t209, t283, -t238,
-                rate_dot_drive_along_y, 0.0, -t227, -t238, acceleration[1], t362,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, -t237, t248,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t219, t295, -t248,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t219, t295, -t248,
+                rate_dot_drive_along_y, 0.0, -t237, -t248, acceleration[1], t378,
                 gdrive_vy_along_z * rate_dot_drive_along_z, gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_z,
-                t373, -(gdrive_vy_along_z * t376 + t383), t392, t362, t395, -t404, -t411, t412,
-                t416, t417, -t423, t437, -t392, t362, t395, -t404, -t411, t412, t416, t417, -t423,
-                t437, -t392, t362, t373, -(minus_gfoot_vy_along_z * t439), -(t392 - 0.31 * t411),
-                acceleration[1], acceleration[1],
+                t390, -(gdrive_vy_along_z * t393 + minus_gfoot_vy_along_z * t399), t409, t378, t412,
+                -t421, -t429, t430, t434, t435, -t441, t457, -t409, t378, t412, -t421, -t429, t430,
+                t434, t435, -t441, t457, -t409, t378, t390, -(minus_gfoot_vy_along_z * t459),
+                -(t409 - 0.31 * t429), acceleration[1], acceleration[1],
             ],
             [
-                t62, t62, gdrive_vz_along_x * rate_drive_along_x,
+                t70, t70, gdrive_vz_along_x * rate_drive_along_x,
                 ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x), gdrive_vz_along_x,
-                t71, -(gdrive_vz_along_x * t74 + t80), t90, t62, t93, -t102, -t109, t110, t115,
-                t116, -t126, t142, -t90, t62, t93, -t102, -t109, t110, t115, t116, -t126, t142,
-                -t90, t62, t71, -(minus_gfoot_vz_along_x * t144), -(t90 - 0.31 * t109), -t152, t215,
-                t215, gdrive_vz_along_y * rate_drive_along_y,
+                t79, -(gdrive_vz_along_x * t82 + minus_gfoot_vz_along_x * t88), t98, t70, t101,
+                -t110, -t118, t119, t124, t125, -t136, t152, -t98, t70, t101, -t110, -t118, t119,
+                t124, t125, -t136, t152, -t98, t70, t79, -(t22 * t155), -(t98 - 0.31 * t118), -t162,
+                t225, t225, gdrive_vz_along_y * rate_drive_along_y,
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y), gdrive_vz_along_y,
-                t187, -(gdrive_vz_along_y * t227 - t234), t247, t215, t195, -t258, -t266, t196,
-                t269, 0.0, t277, t291, -t247, t215, t195, -t258, -t266, t196, t269, 0.0, t277, t291,
-                -t247, t215, t187, t238 + minus_gfoot_vz_along_y * t293, -(t247 - 0.31 * t266),
-                -t152, t360, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, -t376, t387, t360, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -t357, t429, -t387, t360, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t357,
-                t429, -t387, t360, 0.0, -t376, -t387, -t152, -t152,
+                t198, -(t243 - minus_gfoot_vz_along_y * t240), t257, t225, t205, -t269, -t277, t206,
+                t280, 0.0, t288, t304, -t257, t225, t205, -t269, -t277, t206, t280, 0.0, t288, t304,
+                -t257, t225, t198,
+                -(t243
+                    - minus_gfoot_vz_along_y
+                        * (t306
+                            + 0.31
+                                * (c_left_bar_along_y * minus_rate_dot_foot_along_y))),
+                -(t257 - 0.31 * t277),
+                -t162,
+                t376,
+                rate_dot_drive_along_z,
+                rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z),
+                1.0,
+                0.0,
+                -t393,
+                t404,
+                t376,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t373,
+                t448,
+                -t404,
+                t376,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -t373,
+                t448,
+                -t404,
+                t376,
+                0.0,
+                -t393,
+                -t404,
+                -t162,
+                -t162,
             ],
         ])
     }
@@ -1638,7 +1678,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 425 operations (142 additions, 275 multiplications, 8 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 322 intermediates.
+    /// 451 operations (157 additions, 287 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 348 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1649,309 +1689,380 @@ impl Orthoglide {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
-        (s_left_bar_along_x, c_left_bar_along_x),
-        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
-        (minus_c_foot_along_z, s_foot_along_z), (s_left_bar_along_z, c_left_bar_along_z),
-        ] = ::overact::math::sin_cos_all([
-            joints[1], joints[2], joints[6], joints[5], joints[9], joints[10],
+        (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
+        (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
+        (s_left_bar_along_z, c_left_bar_along_z)] = ::overact::math::sin_cos_all([
+            joints[1], joints[2], joints[5], joints[6], joints[9], joints[10],
         ]);
-        let t4 = s_foot_along_x * c_left_bar_along_x;
-        ::overact::guard::leg(t4, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t4;
-        let t6 = 0.31 * c_left_bar_along_x;
-        let t7 = minus_c_foot_along_x * t6;
-        let minus_gleft_bar_vz_along_x = s_foot_along_x * minus_gfoot_vy_along_x;
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
+        let t5 = s_foot_along_x * c_left_bar_along_x;
+        ::overact::guard::leg(t5, 1.0, "along_x")?;
+        let minus_gdrive_vy_along_x = t4 / t5;
+        let t7 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t7;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t10 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let minus_gdrive_vz_along_x = s_left_bar_along_x / t4;
-        let minus_gfoot_vz_along_x = minus_gdrive_vz_along_x
-            * (minus_c_foot_along_x * minus_gleft_bar_vz_along_x);
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t5;
+        let t13 = minus_c_foot_along_x * s_left_bar_along_x * t7;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * t13;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t17 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t20 = s_foot_along_x * minus_rate_left_bar_along_x;
-        let t21 = s_left_bar_along_x * minus_rate_foot_along_x;
-        let t23 = t20 * (0.31 * t21);
-        let t28 = minus_gdrive_vz_along_x * twist[2];
-        let t30 = acceleration[2] - t20 * t28;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (acceleration[1] - (t7 * (t10 + t17) + t23 + t23))
-            + minus_gfoot_vz_along_x * t30;
-        let t33 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t34 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t35 = minus_rate_left_bar_along_x * t34;
-        let t36 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t38 = t35 + t35 - t36;
-        let t39 = s_left_bar_along_x * t38;
-        let t40 = minus_gfoot_vy_along_x * t39;
-        let t41 = t33 + t40;
-        let t43 = t41 * (0.31 * s_foot_along_x);
-        let t45 = t21 * t21;
-        let t46 = t10 - t45;
-        let t47 = t17 + t46;
-        let t49 = s_foot_along_x * s_left_bar_along_x;
-        let t50 = t21 * t34;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t30;
-        let t52 = t50 - minus_rate_dot_left_bar_along_x;
-        let t55 = minus_c_foot_along_x * t43 - (t4 * t47 + t49 * t52);
-        let rate_dot_drive_along_x = acceleration[0] - 0.31 * t55;
-        let minus_gdrive_vy_along_x = minus_gfoot_vy_along_x * t7;
-        let t59 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
-        let t60 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1] - t28;
-        let t69 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t72 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t17;
-        let t73 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t74 = minus_gfoot_vy_along_x * t73;
-        let t75 = minus_gdrive_vy_along_x * t72;
-        let t77 = minus_gfoot_vz_along_x * t73;
-        let t81 = t33 * t6 - t75;
-        let t82 = s_foot_along_x * rate_dot_drive_along_x;
-        let t85 = minus_gfoot_vy_along_x * t82 - minus_gdrive_vy_along_x * t81;
-        let t88 = minus_gfoot_vz_along_x * t82 - minus_gdrive_vz_along_x * t81;
-        let t91 = minus_gleft_bar_vz_along_x * t50 - minus_gfoot_vz_along_x * t39;
-        let t94 = c_left_bar_along_x * t38 - s_left_bar_along_x * t43;
-        let t95 = minus_gfoot_vy_along_x * t94;
-        let t97 = t45 + t10;
-        let t100 = minus_gfoot_vz_along_x * t94
-            + minus_gleft_bar_vz_along_x * (t97 - t47);
-        let t103 = s_left_bar_along_x * t52 + c_left_bar_along_x * t46;
-        let t104 = minus_gfoot_vy_along_x * t103;
-        let t107 = minus_gleft_bar_vz_along_x * t36 - minus_gfoot_vz_along_x * t103;
-        let t108 = t69 - t91;
-        let t109 = 3.225806451612903 * acceleration[2];
-        let t110 = minus_gfoot_vy_along_x * t109;
-        let t113 = minus_gfoot_vz_along_x * t109
+        let t17 = s_left_bar_along_x * minus_rate_foot_along_x;
+        let t18 = minus_rate_left_bar_along_x * t17;
+        let t20 = t18 * (0.31 * s_foot_along_x);
+        let t21 = minus_gdrive_vy_along_x * t20;
+        let t23 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t24 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t25 = t23 + t24;
+        let t30 = 0.31 * t4;
+        let t34 = acceleration[1] - (t30 * t25 + t20 + t20);
+        let t38 = s_foot_along_x * s_left_bar_along_x;
+        let minus_gdrive_vz_along_x = t30 * minus_gfoot_vz_along_x + t38 * t7;
+        let t41 = 0.31 * s_left_bar_along_x;
+        let t43 = acceleration[2] - t41 * t23;
+        let rate_dot_drive_along_x = acceleration[0] - (t21 - 0.31 * t5 * t25 + t21)
+            - minus_gdrive_vy_along_x * t34 - minus_gdrive_vz_along_x * t43;
+        let t46 = minus_gdrive_vy_along_x * rate_dot_drive_along_x;
+        let t47 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
+        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
+            - minus_gdrive_vz_along_x * twist[2];
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t34
+            + minus_gfoot_vz_along_x * t43;
+        let t60 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t61 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t63 = s_foot_along_x * t24;
+        let t64 = minus_c_foot_along_x * minus_rate_dot_foot_along_x - t63;
+        let t65 = s_foot_along_x * rate_dot_drive_along_x;
+        let t66 = minus_gfoot_vy_along_x * t65;
+        let t69 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t71 = minus_gdrive_vz_along_x * t64;
+        let t75 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t24;
+        let t77 = t66 - minus_gdrive_vy_along_x * t75;
+        let t80 = minus_gfoot_vz_along_x * t65 - minus_gdrive_vz_along_x * t75;
+        let t81 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t82 = minus_rate_left_bar_along_x * t81;
+        let t83 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t85 = t82 + t82 - t83;
+        let t86 = s_left_bar_along_x * minus_gfoot_vy_along_x;
+        let t87 = t85 * t86;
+        let t88 = t17 * t81;
+        let t89 = minus_gleft_bar_vz_along_x * t88;
+        let t91 = t89 - t13 * t87;
+        let t93 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t95 = t18 + t93 + t18;
+        let t97 = c_left_bar_along_x * t85 - s_left_bar_along_x * t95;
+        let t98 = minus_gfoot_vy_along_x * t97;
+        let t100 = t41 * t89;
+        let t104 = minus_gfoot_vz_along_x * t97
+            + minus_gleft_bar_vz_along_x * (t100 - t81 * t81);
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t43;
+        let t110 = s_left_bar_along_x * (t88 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t23 - t100);
+        let t111 = minus_gfoot_vy_along_x * t110;
+        let t114 = minus_gleft_bar_vz_along_x * t83 - minus_gfoot_vz_along_x * t110;
+        let t115 = t60 + t87;
+        let t116 = t61 - t91;
+        let t117 = 3.225806451612903 * acceleration[2];
+        let t118 = minus_gfoot_vy_along_x * t117;
+        let t121 = minus_gfoot_vz_along_x * t117
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t114 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
-        let t117 = 3.225806451612903 * t59 - minus_gdrive_vy_along_x * t55;
-        let t118 = s_left_bar_along_x * t74;
-        let t126 = minus_c_foot_along_x * t118 - minus_gdrive_vz_along_x * t55
+        let t122 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t124 = 3.225806451612903 * (acceleration[0] - rate_dot_drive_along_x);
+        let t125 = 3.225806451612903 * t46;
+        let t127 = t125 - minus_gdrive_vy_along_x * t124;
+        let t135 = t13 * t125 - minus_gdrive_vz_along_x * t124
             + minus_gleft_bar_vz_along_x
-                * (s_left_bar_along_x * t82 + 9.81 * c_left_bar_along_x);
-        let t132 = t4 * (t50 + minus_rate_dot_left_bar_along_x) + t49 * t97
-            + minus_c_foot_along_x * t38;
-        let t134 = minus_gdrive_vy_along_x * t132 + t118;
-        let t142 = minus_gleft_bar_vz_along_x
-            * (c_left_bar_along_x * t82 - 9.81 * s_left_bar_along_x)
-            - (minus_gdrive_vz_along_x * t132 + s_left_bar_along_x * t77);
-        let t144 = t73 + 0.31 * t43;
-        let t152 = -9.81 - acceleration[2];
-        let t157 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t157, 1.0, "along_y")?;
-        let minus_gdrive_vx_along_y = s_left_bar_along_y / t157;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t157;
-        let t160 = s_foot_along_y * s_left_bar_along_y;
-        let t161 = minus_c_foot_along_y / t157;
-        let t162 = t160 * t161;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t162;
+                * (s_left_bar_along_x * t65 + 9.81 * c_left_bar_along_x);
+        let t142 = t5 * (t88 + minus_rate_dot_left_bar_along_x) + t38 * (t100 + t23)
+            + minus_c_foot_along_x * t85;
+        let t144 = t69 * t86;
+        let t145 = minus_gdrive_vy_along_x * t142 + t144;
+        let t153 = minus_gleft_bar_vz_along_x
+            * (c_left_bar_along_x * t65 - 9.81 * s_left_bar_along_x)
+            - (minus_gdrive_vz_along_x * t142 + t13 * t144);
+        let t155 = t69 + 0.31 * t95;
+        let t168 = -9.81 - acceleration[2];
+        let t173 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t173, 1.0, "along_y")?;
+        let t174 = 1.0 / t173;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t174;
+        let t176 = 0.31 * s_left_bar_along_y;
+        let minus_gdrive_vx_along_y = minus_gfoot_vz_along_y * t176;
+        let t178 = minus_c_foot_along_y / t173;
+        let minus_gdrive_vz_along_y = c_left_bar_along_y * t178;
         let minus_gleft_bar_vx_along_y = s_foot_along_y * minus_gfoot_vz_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t167 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t169 = acceleration[0] - 0.31 * s_left_bar_along_y * t167;
+        let t182 = s_foot_along_y * s_left_bar_along_y;
+        let t183 = t182 * t178;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t183;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t175 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t176 = t175 + t167;
-        let minus_gdrive_vz_along_y = c_left_bar_along_y * t161;
-        let t180 = 0.31 * s_foot_along_y;
-        let t181 = s_left_bar_along_y * minus_rate_foot_along_y;
-        let t183 = t180 * (minus_rate_left_bar_along_y * t181);
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t169
-            + minus_gfoot_vz_along_y
-                * (acceleration[2]
-                    - (0.31 * t157 * t176 * minus_gdrive_vz_along_y + t183 + t183));
-        let t189 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t190 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t191 = minus_rate_left_bar_along_y * t190;
-        let t192 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t194 = t191 + t191 - t192;
-        let t195 = s_left_bar_along_y * t194;
-        let t196 = minus_gfoot_vz_along_y * t195;
-        let t197 = t189 + t196;
-        let t198 = t197 * t180;
-        let t200 = t190 * t190;
-        let t201 = t200 + t167;
-        let t203 = t181 * t190;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t169;
-        let t205 = t203 - minus_rate_dot_left_bar_along_y;
-        let t208 = minus_c_foot_along_y * t198 - (t157 * t201 + t160 * t205);
-        let t209 = 3.225806451612903 * acceleration[1];
-        let t210 = t208 - t209;
-        let minus_rate_dot_drive_along_y = 0.31 * t210;
-        let t212 = minus_gdrive_vx_along_y * minus_rate_dot_drive_along_y;
-        let t213 = minus_gdrive_vz_along_y * minus_rate_dot_drive_along_y;
+        let t188 = s_left_bar_along_y * minus_rate_foot_along_y;
+        let t189 = minus_rate_left_bar_along_y * t188;
+        let t191 = t189 * (0.31 * s_foot_along_y);
+        let t192 = minus_gdrive_vz_along_y * t191;
+        let t194 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t195 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t196 = t194 + t195;
+        let t197 = 0.31 * t173 * t196;
+        let t202 = acceleration[0] - t176 * t195;
+        let t208 = acceleration[2] - (t197 * minus_gdrive_vz_along_y + t191 + t191);
+        let rate_dot_drive_along_y = acceleration[1] - (t192 - t197 + t192)
+            - minus_gdrive_vx_along_y * t202 - minus_gdrive_vz_along_y * t208;
+        let t211 = minus_gdrive_vx_along_y * rate_dot_drive_along_y;
+        let t212 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let t223 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t225 = minus_gleft_bar_vx_along_y * (9.81 - t213);
-        let t229 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t175;
-        let t236 = s_foot_along_y * minus_rate_dot_drive_along_y
-            + 9.81 * minus_c_foot_along_y;
-        let t240 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t175;
-        let t242 = minus_gfoot_vx_along_y * t236 + minus_gdrive_vx_along_y * t240;
-        let t245 = minus_gfoot_vz_along_y * t236 + minus_gdrive_vz_along_y * t240;
-        let t248 = minus_gleft_bar_vx_along_y * t203 - minus_gfoot_vx_along_y * t195;
-        let t251 = c_left_bar_along_y * t194 - s_left_bar_along_y * t198;
-        let t253 = t176 - t200;
-        let t256 = minus_gfoot_vx_along_y * t251
-            + minus_gleft_bar_vx_along_y * (t253 - t201);
-        let t257 = minus_gfoot_vz_along_y * t251;
-        let t262 = s_left_bar_along_y * t205 + c_left_bar_along_y * (t201 - t175);
-        let t264 = minus_gleft_bar_vx_along_y * t192 - minus_gfoot_vx_along_y * t262;
-        let t265 = minus_gfoot_vz_along_y * t262;
-        let t266 = t223 - t248;
-        let t268 = 10.40582726326743 * (acceleration[0] / t157);
-        let t271 = t162 * t268 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t272 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
-        let t274 = minus_gdrive_vx_along_y * (t208 + t210);
-        let t277 = c_left_bar_along_y * t225 - minus_gdrive_vz_along_y * t208;
-        let t284 = t157 * (t203 + minus_rate_dot_left_bar_along_y) + t160 * t253
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t202
+            + minus_gfoot_vz_along_y * t208;
+        let t225 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t226 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t227 = 9.81 + t212;
+        let t228 = minus_gleft_bar_vx_along_y * t227;
+        let t232 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t194;
+        let t239 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t243 = s_foot_along_y * minus_rate_dot_foot_along_y
             + minus_c_foot_along_y * t194;
-        let t286 = s_left_bar_along_y * t225;
-        let t289 = 3.225806451612903 * t236 + minus_gdrive_vx_along_y * t284
-            + t162 * t286;
-        let t291 = minus_gdrive_vz_along_y * t284 + t286;
-        let t293 = t225 + t198 / t157;
-        let t304 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t304, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t304;
-        let t306 = 0.31 * c_left_bar_along_z;
-        let t307 = minus_c_foot_along_z * t306;
-        let minus_gdrive_vx_along_z = minus_gfoot_vx_along_z * t307;
-        let t310 = 0.31 * s_left_bar_along_z;
-        let minus_gdrive_vy_along_z = t310 * minus_gfoot_vx_along_z;
+        let t245 = minus_gfoot_vx_along_y * t239 - minus_gdrive_vx_along_y * t243;
+        let t248 = minus_gfoot_vz_along_y * t239 - minus_gdrive_vz_along_y * t243;
+        let t249 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t250 = t188 * t249;
+        let t252 = minus_rate_left_bar_along_y * t249;
+        let t253 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t255 = t252 + t252 - t253;
+        let t256 = s_left_bar_along_y * t255;
+        let t258 = minus_gleft_bar_vx_along_y * t250 - minus_gfoot_vx_along_y * t256;
+        let t259 = minus_gfoot_vz_along_y * t256;
+        let t263 = t189 + c_left_bar_along_y * minus_rate_dot_foot_along_y + t189;
+        let t265 = c_left_bar_along_y * t255 - s_left_bar_along_y * t263;
+        let t267 = t249 * t249;
+        let t268 = t267 + t195;
+        let t269 = t196 - t267;
+        let t272 = minus_gfoot_vx_along_y * t265
+            + minus_gleft_bar_vx_along_y * (t269 - t268);
+        let t273 = minus_gfoot_vz_along_y * t265;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t202;
+        let t280 = s_left_bar_along_y * (t250 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t268 - t194);
+        let t282 = minus_gleft_bar_vx_along_y * t253 - minus_gfoot_vx_along_y * t280;
+        let t283 = minus_gfoot_vz_along_y * t280;
+        let t284 = t225 - t258;
+        let t285 = t226 + t259;
+        let t287 = 10.40582726326743 * (t174 * acceleration[0]);
+        let t290 = t183 * t287 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t291 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t292 = 3.225806451612903 * acceleration[1];
+        let t293 = 3.225806451612903 * rate_dot_drive_along_y;
+        let t294 = t292 - t293;
+        let t296 = minus_gdrive_vx_along_y * (t294 - t293);
+        let t299 = 3.225806451612903 * t227 - minus_gdrive_vz_along_y * t294;
+        let t306 = t173 * (t250 + minus_rate_dot_left_bar_along_y) + t182 * t269
+            + minus_c_foot_along_y * t255;
+        let t308 = t182 * t227;
+        let t311 = 3.225806451612903 * t239
+            - (minus_gdrive_vx_along_y * t306 + minus_gfoot_vx_along_y * t308);
+        let t314 = minus_gdrive_vz_along_y * t306 + minus_gfoot_vz_along_y * t308;
+        let t316 = t228 + t174 * t263;
+        let t327 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t328 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t328, 1.0, "along_z")?;
+        let minus_gdrive_vx_along_z = t327 / t328;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t328;
         let minus_gleft_bar_vy_along_z = s_foot_along_z * minus_gfoot_vx_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
+        let t334 = 0.31 * s_left_bar_along_z;
+        let minus_gdrive_vy_along_z = t334 * minus_gfoot_vx_along_z;
         let minus_gfoot_vy_along_z = minus_gdrive_vy_along_z
             * (minus_c_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t317 = s_left_bar_along_z * minus_rate_foot_along_z;
-        let t318 = t317 * t317;
-        let t319 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t321 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t322 = t321 - t318;
-        let t323 = t319 + t322;
-        let t326 = 0.31 * s_foot_along_z;
-        let t328 = t326 * (minus_rate_left_bar_along_z * t317);
-        let t334 = acceleration[1] - t310 * t321;
+        let t340 = s_left_bar_along_z * minus_rate_foot_along_z;
+        let t341 = minus_rate_left_bar_along_z * t340;
+        let t343 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t344 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t348 = t341 * (0.31 * s_foot_along_z);
+        let t354 = acceleration[1] - t334 * t344;
         let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
-            * (acceleration[0] - (t307 * (t318 + t323) + t328 + t328))
-            + minus_gfoot_vy_along_z * t334;
-        let t337 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t338 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t339 = minus_rate_left_bar_along_z * t338;
-        let t340 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t342 = t339 + t339 - t340;
-        let t343 = s_left_bar_along_z * t342;
-        let t344 = minus_gfoot_vx_along_z * t343;
-        let t345 = t337 + t344;
-        let t346 = t345 * t326;
-        let t349 = s_foot_along_z * s_left_bar_along_z;
-        let t350 = t317 * t338;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t334;
-        let t352 = t350 - minus_rate_dot_left_bar_along_z;
-        let t355 = minus_c_foot_along_z * t346 - (t304 * t323 + t349 * t352);
-        let rate_dot_drive_along_z = acceleration[2] - 0.31 * t355;
-        let t358 = 9.81 + rate_dot_drive_along_z;
-        let t359 = minus_gdrive_vx_along_z * t358;
-        let t360 = minus_gdrive_vy_along_z * t358;
+            * (acceleration[0] - (0.31 * t327 * (t343 + t344) + t348 + t348))
+            + minus_gfoot_vy_along_z * t354;
+        let t359 = t341 + c_left_bar_along_z * minus_rate_dot_foot_along_z + t341;
+        let t361 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t362 = t361 * t361;
+        let t365 = s_foot_along_z * s_left_bar_along_z;
+        let t366 = t340 * t361;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t354;
+        let t368 = t366 - minus_rate_dot_left_bar_along_z;
+        let t371 = minus_c_foot_along_z * t359 - (t328 * (t362 + t344) + t365 * t368);
+        let t373 = t168 + 0.31 * t371;
+        let t374 = minus_gdrive_vx_along_z * t373;
+        let t375 = minus_gdrive_vy_along_z * t373;
+        let rate_dot_drive_along_z = -9.81 - t373;
         let rate_drive_along_z = twist[2]
             - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
-        let t372 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t373 = minus_c_foot_along_z * t358;
-        let t377 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t319;
-        let t378 = minus_gdrive_vx_along_z * t377;
-        let t380 = minus_gfoot_vy_along_z * t373;
-        let t383 = s_foot_along_z * t358;
-        let t386 = t337 * t306 - t378;
-        let t388 = minus_gfoot_vx_along_z * t383 - minus_gdrive_vx_along_z * t386;
-        let t391 = minus_gfoot_vy_along_z * t383 - minus_gdrive_vy_along_z * t386;
-        let t394 = minus_gleft_bar_vy_along_z * t350 - minus_gfoot_vy_along_z * t343;
-        let t397 = c_left_bar_along_z * t342 - s_left_bar_along_z * t346;
-        let t398 = minus_gfoot_vx_along_z * t397;
-        let t400 = t318 + t321;
-        let t403 = minus_gfoot_vy_along_z * t397
-            + minus_gleft_bar_vy_along_z * (t400 - t323);
-        let t406 = s_left_bar_along_z * t352 + c_left_bar_along_z * t322;
-        let t407 = minus_gfoot_vx_along_z * t406;
-        let t410 = minus_gleft_bar_vy_along_z * t340 - minus_gfoot_vy_along_z * t406;
-        let t411 = t372 - t394;
-        let t412 = minus_gfoot_vx_along_z * t209;
-        let t415 = minus_gfoot_vy_along_z * t209
+        let t388 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t389 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t392 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t343;
+        let t393 = s_foot_along_z * t373;
+        let t394 = minus_gfoot_vx_along_z * t393;
+        let t397 = minus_c_foot_along_z * t373;
+        let t398 = minus_gfoot_vy_along_z * t397;
+        let t403 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t343;
+        let t405 = t394 + minus_gdrive_vx_along_z * t403;
+        let t408 = minus_gfoot_vy_along_z * t393 + minus_gdrive_vy_along_z * t403;
+        let t409 = minus_rate_left_bar_along_z * t361;
+        let t410 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t412 = t409 + t409 - t410;
+        let t413 = s_left_bar_along_z * t412;
+        let t414 = minus_gfoot_vx_along_z * t413;
+        let t415 = minus_gleft_bar_vy_along_z * t366;
+        let t417 = t415 - minus_gfoot_vy_along_z * t413;
+        let t420 = c_left_bar_along_z * t412 - s_left_bar_along_z * t359;
+        let t421 = minus_gfoot_vx_along_z * t420;
+        let t423 = t334 * t415;
+        let t426 = minus_gfoot_vy_along_z * t420
+            + minus_gleft_bar_vy_along_z * (t423 - t362);
+        let t430 = s_left_bar_along_z * t368 + c_left_bar_along_z * (t344 - t423);
+        let t431 = minus_gfoot_vx_along_z * t430;
+        let t434 = minus_gleft_bar_vy_along_z * t410 - minus_gfoot_vy_along_z * t430;
+        let t435 = t388 + t414;
+        let t436 = t389 - t417;
+        let t437 = minus_gfoot_vx_along_z * t292;
+        let t440 = minus_gfoot_vy_along_z * t292
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t416 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t419 = 3.225806451612903 * t359 - minus_gdrive_vx_along_z * t355;
-        let t421 = 3.225806451612903 * t360;
-        let t422 = t421 - minus_gdrive_vy_along_z * t355;
-        let t428 = t304 * (t350 + minus_rate_dot_left_bar_along_z) + t349 * t400
-            + minus_c_foot_along_z * t342;
-        let t431 = minus_gdrive_vx_along_z * t428 + minus_c_foot_along_z * t421;
-        let t436 = 3.225806451612903 * t383
-            - (minus_gdrive_vy_along_z * t428 + s_left_bar_along_z * t380);
-        let t438 = t373 + 0.31 * t346;
+        let t441 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t444 = 3.225806451612903 * t374 + minus_gdrive_vx_along_z * t371;
+        let t446 = 3.225806451612903 * t375;
+        let t447 = minus_gdrive_vy_along_z * t371 + t446;
+        let t454 = t328 * (t366 + minus_rate_dot_left_bar_along_z) + t365 * (t423 + t344)
+            + minus_c_foot_along_z * t412;
+        let t457 = minus_gdrive_vx_along_z * t454 - minus_c_foot_along_z * t446;
+        let t462 = 3.225806451612903 * t393 + minus_gdrive_vy_along_z * t454
+            - s_left_bar_along_z * t398;
+        let t464 = 0.31 * t359 - t397;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t72, t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t132, -t81,
-                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t55, t132, -t81,
-                rate_dot_drive_along_x, 0.0, t72, -t81, acceleration[0], t212, t212,
+                ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t64, t75,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t124, t142, -t75,
+                rate_dot_drive_along_x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t124, t142, -t75,
+                rate_dot_drive_along_x, 0.0, t64, -t75, acceleration[0], -t211, -t211,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
-                -minus_gdrive_vx_along_y, t223, t162 * t225 - minus_gdrive_vx_along_y * t229, -t242,
-                t212, t248, -t256, t264, t266, t271, t272, -t274, -t289, t242, t212, t248, -t256,
-                t264, t266, t271, t272, -t274, -t289, t242, t212, t223, t162 * t293,
-                -(0.31 * t264 - t242), acceleration[0], -t359,
+                -minus_gdrive_vx_along_y, t225, t183 * t228 - minus_gdrive_vx_along_y * t232, t245,
+                -t211, t258, -t272, t282, t284, t290, t291, -t296, t311, -t245, -t211, t258, -t272,
+                t282, t284, t290, t291, -t296, t311, -t245, -t211, t225, t183 * t316,
+                -(t245 + 0.31 * t282), acceleration[0], t374,
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z),
-                -minus_gdrive_vx_along_z, t337, minus_gfoot_vx_along_z * t373 - t378, t388, -t359,
-                -t344, -t398, -t407, t345, t412, 0.0, t419, -t431, -t388, -t359, -t344, -t398,
-                -t407, t345, t412, 0.0, t419, -t431, -t388, -t359, t337,
-                t386 + minus_gfoot_vx_along_z * t438, -(t388 - 0.31 * t407), acceleration[0],
+                -minus_gdrive_vx_along_z, t388, -(minus_gdrive_vx_along_z * (t392 + t394)), -t405,
+                t374, -t414, -t421, -t431, t435, t437, 0.0, -t444, -t457, t405, t374, -t414, -t421,
+                -t431, t435, t437, 0.0, -t444, -t457, t405, t374, t388,
+                t403 + minus_gfoot_vx_along_z * t464, t405 + 0.31 * t431, acceleration[0],
                 acceleration[0],
             ],
             [
-                -t59, -t59, -(minus_gdrive_vy_along_x * rate_drive_along_x),
+                -t46, -t46, -(minus_gdrive_vy_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vy_along_x, rate_drive_along_x),
-                -minus_gdrive_vy_along_x, t33, t74 - t75, t85, -t59, -t40, -t95, -t104, t41, t110,
-                0.0, t117, -t134, -t85, -t59, -t40, -t95, -t104, t41, t110, 0.0, t117, -t134, -t85,
-                -t59, t33, t81 + minus_gfoot_vy_along_x * t144, -(t85 - 0.31 * t104),
-                acceleration[1], -minus_rate_dot_drive_along_y, -minus_rate_dot_drive_along_y,
-                rate_drive_along_y, ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t229, t240,
-                -minus_rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t208, t284, -t240,
-                -minus_rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t208, t284, -t240,
-                -minus_rate_dot_drive_along_y, 0.0, t229, -t240, acceleration[1], -t360,
+                -minus_gdrive_vy_along_x, t60, -(minus_gdrive_vy_along_x * (t64 - t66)), t77, -t46,
+                -t87, -t98, -t111, t115, t118, 0.0, t127, -t145, -t77, -t46, -t87, -t98, -t111,
+                t115, t118, 0.0, t127, -t145, -t77, -t46, t60, t75 + minus_gfoot_vy_along_x * t155,
+                -(t77 - 0.31 * t111), acceleration[1], rate_dot_drive_along_y,
+                rate_dot_drive_along_y, rate_drive_along_y,
+                ::overact::math::sign(rate_drive_along_y), 1.0, 0.0, t232, t243,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t294, t306, -t243,
+                rate_dot_drive_along_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t294, t306, -t243,
+                rate_dot_drive_along_y, 0.0, t232, -t243, acceleration[1], t375,
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
-                -minus_gdrive_vy_along_z, t372, t380 - minus_gdrive_vy_along_z * t377, t391, -t360,
-                t394, -t403, t410, t411, t415, t416, t422, t436, -t391, -t360, t394, -t403, t410,
-                t411, t415, t416, t422, t436, -t391, -t360, t372, minus_gfoot_vy_along_z * t438,
-                -(t391 + 0.31 * t410), acceleration[1], acceleration[1],
+                -minus_gdrive_vy_along_z, t389, -(t398 + minus_gdrive_vy_along_z * t392), -t408,
+                t375, t417, -t426, t434, t436, t440, t441, -t447, -t462, t408, t375, t417, -t426,
+                t434, t436, t440, t441, -t447, -t462, t408, t375, t389,
+                minus_gfoot_vy_along_z * t464, -(0.31 * t434 - t408), acceleration[1],
+                acceleration[1],
             ],
             [
-                -t60, -t60, -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -t47, -t47, -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
-                -minus_gdrive_vz_along_x, t69, t77 - minus_gdrive_vz_along_x * t72, t88, -t60, t91,
-                -t100, t107, t108, t113, t114, t126, t142, -t88, -t60, t91, -t100, t107, t108, t113,
-                t114, t126, t142, -t88, -t60, t69, minus_gfoot_vz_along_x * t144,
-                -(t88 + 0.31 * t107), -t152, t213, t213,
+                -minus_gdrive_vz_along_x, t61, minus_gfoot_vz_along_x * t69 - t71, t80, -t47, t91,
+                -t104, t114, t116, t121, t122, t135, t153, -t80, -t47, t91, -t104, t114, t116, t121,
+                t122, t135, t153, -t80, -t47, t61,
+                minus_gfoot_vz_along_x * (0.31 * t93 + t155) - t71
+                    - minus_gdrive_vz_along_x * t63,
+                -(t80 + 0.31 * t114),
+                -t168,
+                -t212,
+                -t212,
                 -(minus_gdrive_vz_along_y * rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
-                -minus_gdrive_vz_along_y, t189, t225 - minus_gdrive_vz_along_y * t229, -t245, t213,
-                -t196, -t257, -t265, t197, t268, 0.0, t277, -t291, t245, t213, -t196, -t257, -t265,
-                t197, t268, 0.0, t277, -t291, t245, t213, t189, t240 + t293, t245 + 0.31 * t265,
-                -t152, t358, rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, 0.0, t377, t386, t358, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, t355, t428, -t386, t358, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t355,
-                t428, -t386, t358, 0.0, t377, -t386, -t152, -t152,
+                -minus_gdrive_vz_along_y,
+                t226,
+                t228 - minus_gdrive_vz_along_y * t232,
+                t248,
+                -t212,
+                -t259,
+                -t273,
+                -t283,
+                t285,
+                t287,
+                0.0,
+                t299,
+                -t314,
+                -t248,
+                -t212,
+                -t259,
+                -t273,
+                -t283,
+                t285,
+                t287,
+                0.0,
+                t299,
+                -t314,
+                -t248,
+                -t212,
+                t226,
+                t243 + t316,
+                -(t248 - 0.31 * t283),
+                -t168,
+                -t373,
+                rate_dot_drive_along_z,
+                rate_drive_along_z,
+                ::overact::math::sign(rate_drive_along_z),
+                1.0,
+                0.0,
+                t392,
+                t403,
+                -t373,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t371,
+                t454,
+                -t403,
+                -t373,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                t371,
+                t454,
+                -t403,
+                -t373,
+                0.0,
+                t392,
+                -t403,
+                -t168,
+                -t168,
             ],
         ])
     }
@@ -1966,7 +2077,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 487 operations (181 additions, 266 multiplications, 40 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 382 intermediates.
+    /// 508 operations (183 additions, 301 multiplications, 24 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 403 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1977,8 +2088,8 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        let t1 = 10.40582726326743 * (pose[2] * pose[2]);
+        let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
         let t4 = 0.31 * c_left_bar_along_x;
@@ -1989,336 +2100,348 @@ impl Orthoglide {
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
         ::overact::guard::leg(t9, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let t10 = 1.0 / t9;
+        let minus_gfoot_vy_along_x = 3.225806451612903 * t10;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t12 = gdrive_vy_along_x * actuator_accelerations[0];
-        let gdrive_vz_along_x = minus_s_left_bar_along_x / t9;
-        let t14 = gdrive_vz_along_x * actuator_accelerations[0];
-        let t15 = gdrive_vy_along_x * actuator_velocities[0];
-        let t16 = gdrive_vz_along_x * actuator_velocities[0];
+        let t13 = gdrive_vy_along_x * actuator_accelerations[0];
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let gdrive_vz_along_x = t10 * minus_s_left_bar_along_x;
+        let t16 = gdrive_vz_along_x * actuator_accelerations[0];
+        let t17 = gdrive_vy_along_x * actuator_velocities[0];
+        let t18 = gdrive_vz_along_x * actuator_velocities[0];
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t23 = 1.0 - t2 * t6;
-        ::overact::guard::reach(t23, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t23);
-        let t25 = 0.31 * c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] / t25;
-        let t27 = minus_s_foot_along_z * minus_s_foot_along_z;
-        let t28 = 1.0 - t27;
-        ::overact::guard::reach(t28, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t28);
-        let t30 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t30, 1.0, "along_z")?;
-        let gdrive_vy_along_z = minus_s_left_bar_along_z / t30;
-        let t32 = gdrive_vy_along_z * actuator_velocities[2];
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t36 = 1.0 - t23 * t27;
-        ::overact::guard::reach(t36, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t36);
-        let t38 = 0.31 * c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] / t38;
-        let t41 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t41, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t41);
-        let t43 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t43, 1.0, "along_y")?;
-        let gdrive_vx_along_y = minus_s_left_bar_along_y / t43;
-        let t45 = gdrive_vx_along_y * actuator_velocities[1];
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t30;
+        let t25 = t7 + t1 * t6;
+        ::overact::guard::reach(t25, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t25);
+        let t27 = 0.31 * c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] / t27;
+        let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t30, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t30);
+        let t32 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t32, 1.0, "along_z")?;
+        let gdrive_vy_along_z = minus_s_left_bar_along_z / t32;
+        let t34 = gdrive_vy_along_z * actuator_velocities[2];
+        let t38 = 1.0 - 10.40582726326743 * (pose[0] * pose[0]);
+        ::overact::guard::reach(t38, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t38);
+        let t40 = 0.31 * c_left_bar_along_y;
+        let minus_s_foot_along_y = pose[2] / t40;
+        let t43 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t43, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t43);
+        let t45 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t45, 1.0, "along_y")?;
+        let t46 = 1.0 / t45;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t46;
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t49 = gdrive_vx_along_y * actuator_velocities[1];
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t32;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t49 = gdrive_vx_along_z * actuator_velocities[2];
-        let t50 = actuator_velocities[0] + t45 + t49;
-        let t52 = gdrive_vx_along_z * gdrive_vy_along_z;
-        let t53 = gdrive_vy_along_x + gdrive_vx_along_y + t52;
-        let t57 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t53 = gdrive_vx_along_z * actuator_velocities[2];
+        let t54 = actuator_velocities[0] + t49 + t53;
+        let t57 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t61 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t57, 1.0, "actuators")?;
-        ::overact::guard::platform(t57, 1.0, "actuators")?;
-        let t58 = t53 / t57;
-        let t60 = t15 + actuator_velocities[1] + t32 - t50 * t58;
-        let t66 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
-            + gdrive_vy_along_z * gdrive_vy_along_z - t53 * t58;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        ::overact::guard::platform(t66, 1.0, "actuators")?;
-        let t68 = gdrive_vy_along_x * gdrive_vz_along_x;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t43;
+        ::overact::guard::platform(t61, 1.0, "actuators")?;
+        ::overact::guard::platform(t61, 1.0, "actuators")?;
+        let t62 = t57 / t61;
+        let t64 = t17 + actuator_velocities[1] + t34 - t54 * t62;
+        let t70 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0
+            + gdrive_vy_along_z * gdrive_vy_along_z - t57 * t62;
+        ::overact::guard::platform(t70, 1.0, "actuators")?;
+        ::overact::guard::platform(t70, 1.0, "actuators")?;
+        let t72 = gdrive_vy_along_x * gdrive_vz_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t73 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t75 = gdrive_vz_along_x + t73 + gdrive_vx_along_z;
-        let t76 = t75 / t57;
-        let t78 = t68 + gdrive_vz_along_y + gdrive_vy_along_z - t53 * t76;
-        let t79 = t78 / t66;
-        let t80 = gdrive_vz_along_y * actuator_velocities[1];
-        let t94 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t75 * t76 - t78 * t79;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        ::overact::guard::platform(t94, 1.0, "actuators")?;
-        let t95 = (t16 + t80 + actuator_velocities[2] - t50 * t76 - t79 * t60) / t94;
-        let t97 = t60 / t66 - t79 * t95;
-        let t99 = t7 * t68;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * t99;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t97
-            + minus_gfoot_vz_along_x * t95;
-        let t103 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let minus_rate_left_bar_along_x = t95 / t4;
-        let t105 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t106 = pose[2] * minus_rate_foot_along_x;
-        let t108 = 10.40582726326743 * (minus_rate_foot_along_x * t106);
-        let t109 = pose[2] * t108;
-        let t110 = t105 - t109;
-        let t111 = t103 + t110;
-        let rate_dot_drive_along_x = 0.31 * t111 / t9;
-        let t114 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t116 = t41 * t73;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t116;
-        let t122 = t50 / t57 - t58 * t97 - t76 * t95;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t122
-            + minus_gfoot_vz_along_y * t95;
-        let t126 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t127 = t126 * t126;
-        let minus_rate_left_bar_along_y = t122 / t38;
-        let t129 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t130 = t127 + t129;
-        let rate_dot_drive_along_y = 0.31 * t130 / t43;
-        let t133 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let t136 = t28 * t52;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * t136;
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t122
-            + minus_gfoot_vy_along_z * t97;
-        let t140 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t78 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t79 = t78 / t61;
+        let t81 = t72 + gdrive_vz_along_y + gdrive_vy_along_z - t57 * t79;
+        let t82 = t81 / t70;
+        let t83 = gdrive_vz_along_y * actuator_velocities[1];
+        let t97 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t78 * t79 - t81 * t82;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        let t98 = (t18 + t83 + actuator_velocities[2] - t54 * t79 - t82 * t64) / t97;
+        let t100 = t64 / t70 - t82 * t98;
+        let minus_gleft_bar_vz_along_x = 1.0 / t4;
+        let t103 = gdrive_vz_along_x * minus_gleft_bar_vz_along_x;
+        let minus_gfoot_vz_along_x = minus_s_foot_along_x * t103;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t100
+            + minus_gfoot_vz_along_x * t98;
+        let t107 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t98;
+        let t109 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t110 = t1 * t107;
+        let t111 = t109 - t110;
+        let t112 = t107 + t111;
+        let rate_dot_drive_along_x = 0.31 * t112 / t9;
+        let t115 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let minus_gleft_bar_vx_along_y = 1.0 / t40;
+        let t118 = pose[0] * minus_gleft_bar_vx_along_y;
+        let t119 = minus_s_foot_along_y * t118;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t119;
+        let t125 = t54 / t61 - t62 * t100 - t79 * t98;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t125
+            + minus_gfoot_vz_along_y * t98;
+        let t129 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t130 = t129 * t129;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t125;
+        let t132 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let rate_dot_drive_along_y = t46 * (0.31 * (t130 + t132));
+        let t136 = actuator_accelerations[1] - rate_dot_drive_along_y;
         let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t97;
-        let t143 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t144 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
-        let t145 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t146 = t144 * t145;
-        let t147 = t146 / t25;
-        let t148 = pose[1] * t147;
-        let t149 = t143 - t148;
-        let t150 = t140 + t149;
-        let rate_dot_drive_along_z = 0.31 * t150 / t30;
-        let t153 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t159 = t114 + gdrive_vx_along_y * t133 + gdrive_vx_along_z * t153;
-        let t161 = gdrive_vy_along_x * t114 + t133 + gdrive_vy_along_z * t153
-            - t58 * t159;
-        let t171 = (gdrive_vz_along_x * t114 + gdrive_vz_along_y * t133 + t153
-            - t76 * t159 - t79 * t161) / t94;
-        let t173 = t161 / t66 - t79 * t171;
-        let t177 = c_foot_along_x * minus_rate_left_bar_along_x * t106;
-        let t183 = t171 + pose[2] * t105;
+        let t140 = gdrive_vy_along_z * minus_gleft_bar_vy_along_z;
+        let minus_gfoot_vy_along_z = minus_s_foot_along_z * t140;
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t125
+            + minus_gfoot_vy_along_z * t100;
+        let t144 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t100;
+        let t146 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t147 = t144 + t146;
+        let t148 = pose[1] * minus_rate_foot_along_z;
+        let t149 = 3.225806451612903 * t148;
+        let t150 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t151 = t149 * t150;
+        let t152 = t151 / t27;
+        let t153 = pose[1] * t152;
+        let t154 = t147 - t153;
+        let t155 = 0.31 * t154;
+        let rate_dot_drive_along_z = t155 / t32;
+        let t157 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t163 = t115 + gdrive_vx_along_y * t136 + gdrive_vx_along_z * t157;
+        let t165 = gdrive_vy_along_x * t115 + t136 + gdrive_vy_along_z * t157
+            - t62 * t163;
+        let t175 = (gdrive_vz_along_x * t115 + gdrive_vz_along_y * t136 + t157
+            - t79 * t163 - t82 * t165) / t97;
+        let t177 = t165 / t70 - t82 * t175;
+        let t181 = pose[2] * minus_rate_foot_along_x;
+        let t182 = c_foot_along_x * minus_rate_left_bar_along_x * t181;
+        let t188 = t175 + pose[2] * t109;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t173 + pose[1] * (t105 + t103) + t177 + t177)
-            + minus_gfoot_vz_along_x * t183;
-        let t186 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
-        let t187 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
-        let t190 = c_foot_along_x * t103
+            * (t177 + pose[1] * (t109 + t107) + t182 + t182)
+            + minus_gfoot_vz_along_x * t188;
+        let t191 = minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x;
+        let t192 = minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x;
+        let t195 = c_foot_along_x * t107
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t191 = gdrive_vy_along_x * t190;
-        let t192 = actuator_accelerations[0] / t4;
-        let t193 = gdrive_vy_along_x * t192;
-        let t196 = t193 * t99;
-        let t199 = t4 * t186 - t191;
-        let t201 = gdrive_vy_along_x * t199 + t192;
-        let t204 = gdrive_vz_along_x * t199 + t192 * t99;
-        let t209 = t159 / t57 - t58 * t173 - t76 * t171;
-        let t211 = 3.225806451612903 * (actuator_accelerations[0] - t209);
-        let t212 = gdrive_vy_along_x * t211;
-        let t213 = 3.225806451612903 * t173;
-        let t214 = t212 + t213;
-        let t215 = 3.225806451612903 * t214;
-        let t216 = t186 - t215;
-        let t218 = t108 + t215 * t99;
-        let t219 = t187 - t218;
-        let t221 = minus_rate_left_bar_along_x
+        let t196 = gdrive_vy_along_x * t195;
+        let t197 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t198 = minus_gfoot_vy_along_x * t197;
+        let t201 = minus_gfoot_vz_along_x * t197;
+        let t204 = t4 * t191 - t196;
+        let t206 = actuator_accelerations[0] * minus_gleft_bar_vz_along_x;
+        let t207 = gdrive_vy_along_x * t204 + t206;
+        let t209 = t7 * t72;
+        let t211 = gdrive_vz_along_x * t204 + t206 * t209;
+        let t213 = minus_rate_left_bar_along_x
             * (c_left_bar_along_x * minus_rate_foot_along_x);
-        let t224 = t221 + minus_s_left_bar_along_x * minus_rate_dot_foot_along_x + t221;
-        let t226 = c_foot_along_x * t214;
-        let t228 = c_left_bar_along_x * t224 + minus_s_left_bar_along_x * t226;
+        let t216 = t213 + minus_s_left_bar_along_x * minus_rate_dot_foot_along_x + t213;
+        let t217 = c_left_bar_along_x * t216;
+        let t218 = t217 * t103;
+        let t220 = 10.40582726326743 * (minus_rate_foot_along_x * t181);
+        let t221 = t218 - t191;
+        let t223 = t220 - t221 * t209;
+        let t224 = t192 - t223;
+        let t226 = c_foot_along_x * (0.31 * t221);
+        let t228 = t217 - minus_s_left_bar_along_x * t226;
         let t229 = minus_gfoot_vy_along_x * t228;
-        let t231 = t109 + t105;
-        let t234 = minus_gfoot_vz_along_x * t228 + (t231 - t111) / t4;
-        let t235 = t4 * t108;
-        let minus_rate_dot_left_bar_along_x = t183 / t4;
+        let t231 = t110 + t109;
+        let t234 = minus_gfoot_vz_along_x * t228
+            + minus_gleft_bar_vz_along_x * (t231 - t112);
+        let t235 = t4 * t220;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t188;
         let t240 = minus_s_left_bar_along_x * (t235 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * t110;
+            + c_left_bar_along_x * t111;
         let t241 = minus_gfoot_vy_along_x * t240;
-        let t243 = t201 - t240 / t9;
-        let t245 = (t190 - t243) * t99;
-        let t247 = 3.225806451612903 * (t204 + t245);
-        let t248 = 3.225806451612903 * t171;
+        let t243 = t207 - t10 * t240;
+        let t245 = (t195 - t243) * t209;
+        let t247 = 3.225806451612903 * (t211 + t245);
+        let t248 = 3.225806451612903 * t175;
         let t249 = minus_gfoot_vy_along_x * t248;
         let t252 = minus_gfoot_vz_along_x * t248
             + 3.225806451612903 * minus_rate_dot_foot_along_x;
-        let t253 = minus_rate_dot_left_bar_along_x / t4;
-        let t254 = 3.225806451612903 * t12;
-        let t255 = t212 + t254;
-        let t259 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t262 = gdrive_vz_along_x * t211 + t254 * t99 + -31.64516129032258
-            + t259 * t192;
-        let t268 = t9 * (minus_rate_dot_left_bar_along_x - t235) - t259 * t231
-            - minus_s_foot_along_x * t224;
-        let t271 = gdrive_vy_along_x * t268 - minus_s_left_bar_along_x * t193;
-        let t279 = gdrive_vz_along_x * t268 - minus_s_left_bar_along_x * t196
-            + (actuator_accelerations[0] * t9 + 31.64516129032258 * pose[2]) / t4;
-        let t281 = t193 - t226 / t9;
-        let t284 = 9.81 + actuator_accelerations[2];
-        let t285 = actuator_accelerations[2] - t171;
-        let t286 = t285 - t284;
-        let t287 = gdrive_vx_along_y * actuator_accelerations[1];
-        let t288 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t293 = t209 + pose[0] * t129;
-        let t295 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t296 = t295 + t129;
-        let t299 = pose[0] * minus_rate_foot_along_y;
-        let t300 = c_foot_along_y * minus_rate_left_bar_along_y * t299;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t293
-            + minus_gfoot_vz_along_y * (t171 + pose[2] * t296 + t300 + t300);
-        let t306 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
-        let t307 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
-        let t310 = c_foot_along_y * t295
+        let t253 = minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x;
+        let t258 = t163 / t61 - t62 * t177 - t79 * t175;
+        let t260 = 3.225806451612903 * (actuator_accelerations[0] - t258);
+        let t263 = gdrive_vy_along_x * t260 + 3.225806451612903 * t13;
+        let t265 = minus_s_left_bar_along_x * t198;
+        let t268 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t271 = gdrive_vz_along_x * t260 + minus_s_foot_along_x * t265
+            + -31.64516129032258 + t268 * t206;
+        let t277 = t9 * (minus_rate_dot_left_bar_along_x - t235) - t268 * t231
+            - minus_s_foot_along_x * t216;
+        let t279 = gdrive_vy_along_x * t277 - t265;
+        let t287 = gdrive_vz_along_x * t277 - minus_s_left_bar_along_x * t201
+            + minus_gleft_bar_vz_along_x
+                * (actuator_accelerations[0] * t9 + 31.64516129032258 * pose[2]);
+        let t289 = t197 + 0.31 * t226;
+        let t293 = -9.81 - t175;
+        let t294 = gdrive_vx_along_y * actuator_accelerations[1];
+        let t295 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t300 = t258 + pose[0] * t132;
+        let t302 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t307 = c_foot_along_y * minus_rate_left_bar_along_y
+            * (pose[0] * minus_rate_foot_along_y);
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t300
+            + minus_gfoot_vz_along_y * (t175 + pose[2] * (t302 + t132) + t307 + t307);
+        let t313 = minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y;
+        let t314 = minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y;
+        let t317 = c_foot_along_y * t302
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t313 = (9.81 - t288) / t38;
-        let t314 = t116 * t313;
-        let t316 = gdrive_vz_along_y * t310;
-        let t319 = t38 * t307 - t316;
-        let t323 = 9.81 * minus_s_foot_along_y
+        let t319 = 9.81 - t295;
+        let t320 = t319 / t40;
+        let t321 = t119 * t320;
+        let t323 = gdrive_vz_along_y * t317;
+        let t326 = t40 * t314 - t323;
+        let t330 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t325 = gdrive_vx_along_y * t319 + minus_gfoot_vx_along_y * t323;
-        let t328 = gdrive_vz_along_y * t319 + minus_gfoot_vz_along_y * t323;
-        let t330 = 3.225806451612903 * t299 * t126;
-        let t333 = 3.225806451612903 * (actuator_accelerations[1] - t173);
-        let t334 = gdrive_vz_along_y * t333;
-        let t335 = t248 + t334;
-        let t336 = 3.225806451612903 * t335;
-        let t338 = t330 / t38 + t116 * t336;
-        let t339 = t306 - t338;
-        let t340 = t307 - t336;
-        let t341 = minus_rate_left_bar_along_y * t126;
-        let t344 = t341 + minus_s_left_bar_along_y * minus_rate_dot_foot_along_y + t341;
-        let t346 = c_foot_along_y * t335;
-        let t348 = c_left_bar_along_y * t344 + minus_s_left_bar_along_y * t346;
-        let t350 = t296 - t127;
-        let t353 = minus_gfoot_vx_along_y * t348 + (t350 - t130) / t38;
-        let t354 = minus_gfoot_vz_along_y * t348;
-        let minus_rate_dot_left_bar_along_y = t293 / t38;
-        let t361 = minus_gfoot_vz_along_y
-            * (minus_s_left_bar_along_y * (t330 + minus_rate_dot_left_bar_along_y)
-                + c_left_bar_along_y * (t130 - t295));
-        let t363 = t328 - 0.31 * t361;
-        let t365 = t116 * (t310 - t363);
-        let t367 = 3.225806451612903 * (t325 + t365);
-        let t369 = 10.40582726326743 * (t209 / t43);
-        let t372 = t116 * t369 + 3.225806451612903 * minus_rate_dot_foot_along_y;
-        let t373 = minus_rate_dot_left_bar_along_y / t38;
-        let t376 = gdrive_vx_along_y * t333 + 3.225806451612903 * t287;
-        let t378 = c_left_bar_along_y * t313 - t334;
-        let t385 = t43 * (minus_rate_dot_left_bar_along_y - t330)
-            - minus_s_left_bar_along_y * c_foot_along_y * t350
-            - minus_s_foot_along_y * t344;
-        let t390 = gdrive_vx_along_y * t385 + minus_s_left_bar_along_y * t314
-            + 3.225806451612903 * t323;
-        let t393 = gdrive_vz_along_y * t385 + minus_s_left_bar_along_y * t313;
-        let t395 = t313 + t346 / t43;
-        let t398 = gdrive_vx_along_z * t284;
-        let t399 = gdrive_vy_along_z * t284;
-        let t407 = 0.31 * c_foot_along_z;
-        let t409 = t407 * (minus_rate_left_bar_along_z * t144);
-        let t415 = t173 + pose[1] * t143;
+        let t332 = gdrive_vx_along_y * t326 + minus_gfoot_vx_along_y * t330;
+        let t335 = gdrive_vz_along_y * t326 + minus_gfoot_vz_along_y * t330;
+        let t336 = t130 * t118;
+        let t337 = t336 / t40;
+        let t339 = 3.225806451612903 * (actuator_accelerations[1] - t177);
+        let t340 = gdrive_vz_along_y * t339;
+        let t341 = t248 + t340;
+        let t342 = 3.225806451612903 * t341;
+        let t344 = t337 + t119 * t342;
+        let t345 = t313 - t344;
+        let t346 = t314 - t342;
+        let t347 = minus_rate_left_bar_along_y * t129;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t351 = t347 + minus_s_left_bar_along_y * minus_rate_dot_foot_along_y + t347;
+        let t353 = c_foot_along_y * t341;
+        let t355 = c_left_bar_along_y * t351 + minus_s_left_bar_along_y * t353;
+        let t357 = pose[0] * t337;
+        let t360 = minus_gfoot_vx_along_y * t355
+            + minus_gleft_bar_vx_along_y * (t357 - t130);
+        let t361 = minus_gfoot_vz_along_y * t355;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t300;
+        let t368 = minus_gfoot_vz_along_y
+            * (minus_s_left_bar_along_y * (t336 + minus_rate_dot_left_bar_along_y)
+                + c_left_bar_along_y * (t132 - t357));
+        let t370 = t335 - 0.31 * t368;
+        let t372 = t119 * (t317 - t370);
+        let t374 = 3.225806451612903 * (t332 + t372);
+        let t376 = 10.40582726326743 * (t46 * t258);
+        let t379 = t119 * t376 + 3.225806451612903 * minus_rate_dot_foot_along_y;
+        let t380 = minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y;
+        let t383 = gdrive_vx_along_y * t339 + 3.225806451612903 * t294;
+        let t385 = 3.225806451612903 * t319 - t340;
+        let t393 = t45 * (minus_rate_dot_left_bar_along_y - t336)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t357 + t132)
+            - minus_s_foot_along_y * t351;
+        let t398 = gdrive_vx_along_y * t393 + minus_s_left_bar_along_y * t321
+            + 3.225806451612903 * t330;
+        let t401 = gdrive_vz_along_y * t393 + minus_s_left_bar_along_y * t320;
+        let t403 = t320 + t46 * t353;
+        let t406 = 9.81 + actuator_accelerations[2];
+        let t407 = gdrive_vx_along_z * t406;
+        let t408 = gdrive_vy_along_z * t406;
+        let t416 = c_foot_along_z * minus_rate_left_bar_along_z * t148;
+        let t422 = t177 + pose[1] * t146;
         let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
-            * (t209 + pose[0] * (t140 + t143) + t409 + t409)
-            + minus_gfoot_vy_along_z * t415;
-        let t418 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
-        let t419 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
-        let t422 = c_foot_along_z * t140
+            * (t258 + pose[0] * t147 + t416 + t416) + minus_gfoot_vy_along_z * t422;
+        let t425 = minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z;
+        let t426 = minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z;
+        let t429 = c_foot_along_z * t144
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t423 = gdrive_vx_along_z * t422;
-        let t424 = minus_s_foot_along_z * t284;
-        let t431 = t25 * t418 - t423;
-        let t433 = minus_gleft_bar_vy_along_z * t284;
-        let t434 = gdrive_vx_along_z * t431 + t433;
-        let t437 = gdrive_vy_along_z * t431 + t433 * t136;
-        let t438 = minus_rate_left_bar_along_z * t145;
-        let t441 = t438 + minus_s_left_bar_along_z * minus_rate_dot_foot_along_z + t438;
-        let t442 = c_left_bar_along_z * t441;
-        let t444 = t442 * (gdrive_vy_along_z / t25);
-        let t445 = t444 - t418;
-        let t447 = t147 - t445 * t136;
-        let t448 = t419 - t447;
-        let t449 = t445 * t407;
-        let t451 = t442 - minus_s_left_bar_along_z * t449;
-        let t452 = minus_gfoot_vx_along_z * t451;
-        let t454 = t148 + t143;
-        let t457 = minus_gfoot_vy_along_z * t451
-            + minus_gleft_bar_vy_along_z * (t454 - t150);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t415;
-        let t462 = minus_s_left_bar_along_z * (t146 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * t149;
-        let t463 = minus_gfoot_vx_along_z * t462;
-        let t465 = t434 - t462 / t30;
-        let t467 = t136 * (t422 - t465);
-        let t469 = 3.225806451612903 * (t437 + t467);
-        let t470 = minus_gfoot_vx_along_z * t213;
-        let t473 = minus_gfoot_vy_along_z * t213
+        let t430 = gdrive_vx_along_z * t429;
+        let t431 = minus_s_foot_along_z * t406;
+        let t435 = minus_gfoot_vy_along_z * t431;
+        let t438 = t27 * t425 - t430;
+        let t440 = c_foot_along_z * t406;
+        let t442 = gdrive_vx_along_z * t438 + minus_gfoot_vx_along_z * t440;
+        let t445 = gdrive_vy_along_z * t438 + minus_gfoot_vy_along_z * t440;
+        let t446 = minus_rate_left_bar_along_z * t150;
+        let t449 = t446 + minus_s_left_bar_along_z * minus_rate_dot_foot_along_z + t446;
+        let t450 = c_left_bar_along_z * t449;
+        let t451 = t450 * t140;
+        let t452 = minus_rate_left_bar_along_z * t149;
+        let t455 = t452 + t452 - c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t456 = c_left_bar_along_z * t455;
+        let t458 = t152 - minus_gfoot_vy_along_z * t456;
+        let t459 = t426 - t458;
+        let t461 = t450 - minus_s_left_bar_along_z * t455;
+        let t462 = minus_gfoot_vx_along_z * t461;
+        let t464 = t153 + t146;
+        let t467 = minus_gfoot_vy_along_z * t461
+            + minus_gleft_bar_vy_along_z * (t464 - t154);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t422;
+        let t469 = t151 + minus_rate_dot_left_bar_along_z;
+        let t473 = minus_s_left_bar_along_z * t469 + c_left_bar_along_z * (t146 - t153);
+        let t474 = minus_gfoot_vx_along_z * t473;
+        let t483 = minus_gfoot_vy_along_z
+            * (c_left_bar_along_z * (c_left_bar_along_z * t440 - t155)
+                + minus_s_left_bar_along_z
+                    * (minus_s_left_bar_along_z * t440 - 0.31 * t469));
+        let t485 = 3.225806451612903 * (t445 - t483);
+        let t486 = minus_gfoot_vx_along_z * t456;
+        let t487 = 3.225806451612903 * t177;
+        let t488 = minus_gfoot_vx_along_z * t487;
+        let t491 = minus_gfoot_vy_along_z * t487
             + 3.225806451612903 * minus_rate_dot_foot_along_z;
-        let t474 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
-        let t475 = 3.225806451612903 * t285;
-        let t478 = gdrive_vx_along_z * t475 + 3.225806451612903 * t398;
-        let t480 = 3.225806451612903 * t399;
-        let t481 = gdrive_vy_along_z * t475 + t480;
-        let t488 = t30 * (minus_rate_dot_left_bar_along_z - t146)
-            - minus_s_left_bar_along_z * c_foot_along_z * t454
-            - minus_s_foot_along_z * t441;
-        let t490 = minus_s_foot_along_z * t480;
-        let t491 = gdrive_vx_along_z * t488 - t490;
-        let t496 = gdrive_vy_along_z * t488 - t490 * t136 + t30 * t433;
-        let t498 = t424 + 0.31 * t449;
+        let t492 = minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z;
+        let t494 = 3.225806451612903 * (t406 + t293);
+        let t497 = gdrive_vx_along_z * t494 + 3.225806451612903 * t407;
+        let t499 = 3.225806451612903 * t408;
+        let t500 = gdrive_vy_along_z * t494 + t499;
+        let t507 = t32 * (minus_rate_dot_left_bar_along_z - t151)
+            - minus_s_left_bar_along_z * c_foot_along_z * t464
+            - minus_s_foot_along_z * t449;
+        let t510 = gdrive_vx_along_z * t507 - minus_s_foot_along_z * t499;
+        let t515 = gdrive_vy_along_z * t507 - minus_s_left_bar_along_z * t435
+            + 3.225806451612903 * t440;
+        let t517 = t431 + 0.31 * t455;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t190, t199,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t211, t268, -t199,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t211, t268, -t199,
-                actuator_accelerations[0], 0.0, -t190, -t199, t209, t287, t287, t45,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t195, t204,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t260, t277, -t204,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t260, t277, -t204,
+                actuator_accelerations[0], 0.0, -t195, -t204, t258, t294, t294, t49,
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
-                gdrive_vx_along_y, t306, -(gdrive_vx_along_y * t310 - t314), t325, t287, t339,
-                -t353, -t367, t338, t372, t373, -t376, t390, -t325, t287, t339, -t353, -t367, t338,
-                t372, t373, -t376, t390, -t325, t287, t306, t116 * t395, t365, t209, t398,
-                gdrive_vx_along_z * actuator_accelerations[2], t49,
+                gdrive_vx_along_y, t313, -(gdrive_vx_along_y * t317 - t321), t332, t294, t345,
+                -t360, -t374, t344, t379, t380, -t383, t398, -t332, t294, t345, -t360, -t374, t344,
+                t379, t380, -t383, t398, -t332, t294, t313, t119 * t403, t372, t258, t407,
+                gdrive_vx_along_z * actuator_accelerations[2], t53,
                 ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]),
-                gdrive_vx_along_z, t418, -(t423 + minus_gfoot_vx_along_z * t424), t434, t398, t444,
-                -t452, -t463, -t445, t470, 0.0, -t478, t491, -t434, t398, t444, -t452, -t463, -t445,
-                t470, 0.0, -t478, t491, -t434, t398, t418, -(minus_gfoot_vx_along_z * t498 - t431),
-                -t465, t209, t209,
+                gdrive_vx_along_z, t425, -(t430 + minus_gfoot_vx_along_z * t431), t442, t407, t451,
+                -t462, -t474, -t486, t488, 0.0, -t497, t510, -t442, t407, t451, -t462, -t474, -t486,
+                t488, 0.0, -t497, t510, -t442, t407, t425, -(minus_gfoot_vx_along_z * t517 - t438),
+                -(t442 - t473 / t32), t258, t258,
             ],
             [
-                t12, t12, t15, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
-                gdrive_vy_along_x, t186, -(t191 + t193), t201, t12, t216, -t229, -t241, t215, t249,
-                0.0, -t255, t271, -t201, t12, t216, -t229, -t241, t215, t249, 0.0, -t255, t271,
-                -t201, t12, t186, -(t281 - t199), -t243, t173, actuator_accelerations[1],
-                actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0, -t310, t319,
-                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t333, t385, -t319,
-                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t333, t385, -t319,
-                actuator_accelerations[1], 0.0, -t310, -t319, t173, t399,
-                gdrive_vy_along_z * actuator_accelerations[2], t32,
+                t13, t13, t17, ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
+                gdrive_vy_along_x, t191, -(t196 + t198), t207, t13, t218, -t229, -t241, -t221, t249,
+                0.0, -t263, t279, -t207, t13, t218, -t229, -t241, -t221, t249, 0.0, -t263, t279,
+                -t207, t13, t191, -(minus_gfoot_vy_along_x * t289 - t204), -t243, t177,
+                actuator_accelerations[1], actuator_accelerations[1], actuator_velocities[1],
+                ::overact::math::sign(actuator_velocities[1]), 1.0, 0.0, -t317, t326,
+                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t339, t393, -t326,
+                actuator_accelerations[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t339, t393, -t326,
+                actuator_accelerations[1], 0.0, -t317, -t326, t177, t408,
+                gdrive_vy_along_z * actuator_accelerations[2], t34,
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
-                gdrive_vy_along_z, t419,
-                -(gdrive_vy_along_z * t422 + minus_gfoot_vy_along_z * t424), t437, t399, t448,
-                -t457, -t469, t447, t473, t474, -t481, t496, -t437, t399, t448, -t457, -t469, t447,
-                t473, t474, -t481, t496, -t437, t399, t419, -(minus_gfoot_vy_along_z * t498), t467,
-                t173, t173,
+                gdrive_vy_along_z, t426, -(gdrive_vy_along_z * t429 + t435), t445, t408, t459,
+                -t467, -t485, t458, t491, t492, -t500, t515, -t445, t408, t459, -t467, -t485, t458,
+                t491, t492, -t500, t515, -t445, t408, t426, -(minus_gfoot_vy_along_z * t517), -t483,
+                t177, t177,
             ],
             [
-                t14, t14, t16, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
-                gdrive_vz_along_x, t187, -(gdrive_vz_along_x * t190 + t196), t204, t14, t219, -t234,
-                -t247, t218, t252, t253, -t262, t279, -t204, t14, t219, -t234, -t247, t218, t252,
-                t253, -t262, t279, -t204, t14, t187, -(t281 * t99), t245, -t286, t288, t288, t80,
-                ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
-                gdrive_vz_along_y, t307, -(t316 - t313), t328, t288, t340, -t354, -t361, t336, t369,
-                0.0, t378, t393, -t328, t288, t340, -t354, -t361, t336, t369, 0.0, t378, t393,
-                -t328, t288, t307, t319 + t395, -t363, -t286, t284, actuator_accelerations[2],
+                t16, t16, t18, ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
+                gdrive_vz_along_x, t192, -(gdrive_vz_along_x * t195 + t201), t211, t16, t224, -t234,
+                -t247, t223, t252, t253, -t271, t287, -t211, t16, t224, -t234, -t247, t223, t252,
+                t253, -t271, t287, -t211, t16, t192, -(minus_gfoot_vz_along_x * t289), t245, -t293,
+                t295, t295, t83, ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
+                gdrive_vz_along_y, t314, -(t323 - t320), t335, t295, t346, -t361, -t368, t342, t376,
+                0.0, t385, t401, -t335, t295, t346, -t361, -t368, t342, t376, 0.0, t385, t401,
+                -t335, t295, t314, t326 + t403, -t370, -t293, t406, actuator_accelerations[2],
                 actuator_velocities[2], ::overact::math::sign(actuator_velocities[2]), 1.0, 0.0,
-                -t422, t431, t284, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t475, t488, -t431, t284, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, -t475, t488, -t431, t284, 0.0, -t422, -t431, -t286, -t286,
+                -t429, t438, t406, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t494, t507, -t438, t406, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, -t494, t507, -t438, t406, 0.0, -t429, -t438, -t293, -t293,
             ],
         ])
     }
@@ -2332,7 +2455,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 671 operations (234 additions, 429 multiplications, 8 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 550 intermediates.
+    /// 677 operations (235 additions, 432 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 556 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2349,8 +2472,7 @@ impl Orthoglide {
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t4 = 0.31 * c_left_bar_along_x;
         let minus_s_foot_along_x = pose[1] / t4;
-        let t6 = minus_s_foot_along_x * minus_s_foot_along_x;
-        let t7 = 1.0 - t6;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
         ::overact::guard::reach(t7, "along_x")?;
         let c_foot_along_x = ::overact::math::sqrt(t7);
         let t9 = c_left_bar_along_x * c_foot_along_x;
@@ -2378,348 +2500,347 @@ impl Orthoglide {
             + gdrive_vy_along_x * t37 + gdrive_vz_along_x * t42;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t51 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t51 = 10.40582726326743 * (pose[0] * pose[0]);
         let t52 = 1.0 - t51;
         ::overact::guard::reach(t52, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t52);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t54 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t54;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t58 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
-        ::overact::guard::reach(t58, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t58);
-        let t60 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t60, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t60;
-        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t57 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t57, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t57);
+        let t59 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t59, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t59;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t62 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t63 = 1.0 / c_left_bar_along_y;
+        let t64 = t62 * t63;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t64 = t2 * t6;
-        let t65 = 1.0 - t64;
-        ::overact::guard::reach(t65, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t65);
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t64 * gdrive_vz_along_y);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t64;
+        let t72 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
+        ::overact::guard::reach(t72, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t72);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t67 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t67;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t71 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t71, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t71);
-        let t73 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t73, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t73;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t77 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t77, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t77);
+        let t79 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t79, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t79;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t77 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let t83 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t80 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t84 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t86 = t80 - gdrive_vy_along_x * t77 + gdrive_vz_along_x * t84;
-        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t86, 1.0, "kept actuators")?;
-        let t87 = 1.0 / t86;
-        let t88 = t77 * t87;
-        let t90 = t84 * t87;
-        let t92 = minus_gfoot_vy_along_x * t88 - minus_gfoot_vz_along_x * t90;
+        let t86 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t90 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t92 = t86 - gdrive_vy_along_x * t83 + gdrive_vz_along_x * t90;
+        ::overact::guard::platform(t92, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t92, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t92, 1.0, "kept actuators")?;
+        let t93 = 1.0 / t92;
+        let t94 = t83 * t93;
+        let t96 = t90 * t93;
+        let t98 = minus_gfoot_vy_along_x * t94 - minus_gfoot_vz_along_x * t96;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t37
             + minus_gfoot_vz_along_x * t42;
-        let t96 = t92 * minus_rate_dot_foot_along_x;
-        let t99 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t87;
-        let t103 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t87;
-        let t105 = minus_gfoot_vz_along_x * t99 - minus_gfoot_vy_along_x * t103;
-        let t106 = t105 * minus_rate_dot_foot_along_x;
-        let t109 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t87;
-        let t113 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t87;
-        let t115 = minus_gfoot_vy_along_x * t109 - minus_gfoot_vz_along_x * t113;
-        let t116 = t115 * minus_rate_dot_foot_along_x;
-        let t117 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t121 = c_foot_along_x * t28
+        let t102 = t98 * minus_rate_dot_foot_along_x;
+        let t105 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t93;
+        let t109 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t93;
+        let t111 = minus_gfoot_vz_along_x * t105 - minus_gfoot_vy_along_x * t109;
+        let t112 = t111 * minus_rate_dot_foot_along_x;
+        let t115 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t93;
+        let t119 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t93;
+        let t121 = minus_gfoot_vy_along_x * t115 - minus_gfoot_vz_along_x * t119;
+        let t122 = t121 * minus_rate_dot_foot_along_x;
+        let t123 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t127 = c_foot_along_x * t28
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t128 = c_foot_along_x * rate_dot_drive_along_x;
-        let t130 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t28 - t92 * t128;
-        let t131 = t105 * t128;
-        let t132 = t115 * t128;
-        let t133 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t134 = minus_rate_left_bar_along_x * t133;
-        let t135 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t137 = t134 + t135 + t134;
-        let t138 = minus_s_left_bar_along_x * t137;
-        let t140 = minus_gleft_bar_vz_along_x * t90;
-        let t141 = 3.225806451612903 * t23;
-        let t142 = t141 * t133;
-        let t144 = t92 * t138 + t140 * t142;
-        let t145 = minus_gleft_bar_vz_along_x * t99;
-        let t148 = t145 * t142 - t105 * t138;
-        let t150 = minus_gleft_bar_vz_along_x * t113;
-        let t152 = t115 * t138 + t150 * t142;
-        let t154 = minus_rate_left_bar_along_x * t141;
-        let t155 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t157 = t154 + t154 - t155;
-        let t159 = c_left_bar_along_x * t137 - minus_s_left_bar_along_x * t157;
-        let t161 = t1 * t28;
-        let t162 = t133 * t133;
-        let t163 = t161 - t162;
-        let t165 = t92 * t159 - t140 * t163;
-        let t168 = t105 * t159 + t145 * t163;
-        let t171 = t115 * t159 - t150 * t163;
+        let t134 = c_foot_along_x * rate_dot_drive_along_x;
+        let t136 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t28 - t98 * t134;
+        let t137 = t111 * t134;
+        let t138 = t121 * t134;
+        let t139 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t140 = minus_rate_left_bar_along_x * t139;
+        let t141 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t143 = t140 + t141 + t140;
+        let t144 = minus_s_left_bar_along_x * t143;
+        let t146 = minus_gleft_bar_vz_along_x * t96;
+        let t147 = 3.225806451612903 * t23;
+        let t148 = t147 * t139;
+        let t150 = t98 * t144 + t146 * t148;
+        let t151 = minus_gleft_bar_vz_along_x * t105;
+        let t154 = t151 * t148 - t111 * t144;
+        let t156 = minus_gleft_bar_vz_along_x * t119;
+        let t158 = t121 * t144 + t156 * t148;
+        let t160 = minus_rate_left_bar_along_x * t147;
+        let t161 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t163 = t160 + t160 - t161;
+        let t165 = c_left_bar_along_x * t143 - minus_s_left_bar_along_x * t163;
+        let t167 = t1 * t28;
+        let t168 = t139 * t139;
+        let t169 = t167 - t168;
+        let t171 = t98 * t165 - t146 * t169;
+        let t174 = t111 * t165 + t151 * t169;
+        let t177 = t121 * t165 - t156 * t169;
         let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t42;
-        let t173 = t142 + minus_rate_dot_left_bar_along_x;
-        let t177 = minus_s_left_bar_along_x * t173 + c_left_bar_along_x * (t27 - t161);
-        let t180 = t92 * t177 - t140 * t135;
-        let t183 = t105 * t177 + t145 * t135;
-        let t186 = t115 * t177 - t150 * t135;
-        let t187 = t144 - t96;
-        let t188 = t106 + t148;
-        let t189 = t152 - t116;
-        let t191 = 3.225806451612903 * acceleration[2];
-        let t193 = t140 * t155 - t92 * t191;
-        let t196 = t105 * t191 + t145 * t155;
-        let t199 = t150 * t155 - t115 * t191;
-        let t200 = t140 * minus_rate_dot_left_bar_along_x;
-        let t201 = t145 * minus_rate_dot_left_bar_along_x;
-        let t202 = t150 * minus_rate_dot_left_bar_along_x;
-        let t209 = c_left_bar_along_x * t117;
-        let t214 = minus_s_left_bar_along_x * t128 - 9.81 * c_left_bar_along_x;
-        let t216 = minus_s_foot_along_x * t157 - (t9 * (t162 + t27) + t17 * t173)
-            + t92 * t209 - t140 * t214;
-        let t219 = t105 * t209 + t145 * t214;
-        let t222 = t115 * t209 - t150 * t214;
-        let t230 = minus_s_left_bar_along_x * t117;
-        let t235 = c_left_bar_along_x * t128 + 31.64516129032258 * pose[2];
-        let t237 = t9 * (minus_rate_dot_left_bar_along_x - t142) - t17 * (t161 + t27)
-            - minus_s_foot_along_x * t137 + t92 * t230 + t140 * t235;
-        let t240 = t105 * t230 - t145 * t235;
-        let t243 = t115 * t230 + t150 * t235;
-        let t245 = t117 + 0.31 * t157;
-        let t247 = t245 - 0.31 * t155;
-        let t250 = minus_rate_foot_along_x * t23;
-        let t265 = t4 * t245;
-        let t270 = 0.31 * (t214 - 0.31 * t173);
-        let t272 = acceleration[0] + t92 * t265 - t140 * t270;
-        let t275 = t105 * t265 + t145 * t270;
-        let t278 = t115 * t265 - t150 * t270;
+        let t179 = t148 + minus_rate_dot_left_bar_along_x;
+        let t183 = minus_s_left_bar_along_x * t179 + c_left_bar_along_x * (t27 - t167);
+        let t186 = t98 * t183 - t146 * t141;
+        let t189 = t111 * t183 + t151 * t141;
+        let t192 = t121 * t183 - t156 * t141;
+        let t193 = t150 - t102;
+        let t194 = t112 + t154;
+        let t195 = t158 - t122;
+        let t197 = 3.225806451612903 * acceleration[2];
+        let t199 = t146 * t161 - t98 * t197;
+        let t202 = t111 * t197 + t151 * t161;
+        let t205 = t156 * t161 - t121 * t197;
+        let t206 = t146 * minus_rate_dot_left_bar_along_x;
+        let t207 = t151 * minus_rate_dot_left_bar_along_x;
+        let t208 = t156 * minus_rate_dot_left_bar_along_x;
+        let t215 = c_left_bar_along_x * t123;
+        let t220 = minus_s_left_bar_along_x * t134 - 9.81 * c_left_bar_along_x;
+        let t222 = minus_s_foot_along_x * t163 - (t9 * (t168 + t27) + t17 * t179)
+            + t98 * t215 - t146 * t220;
+        let t225 = t111 * t215 + t151 * t220;
+        let t228 = t121 * t215 - t156 * t220;
+        let t236 = minus_s_left_bar_along_x * t123;
+        let t241 = c_left_bar_along_x * t134 + 31.64516129032258 * pose[2];
+        let t243 = t9 * (minus_rate_dot_left_bar_along_x - t148) - t17 * (t167 + t27)
+            - minus_s_foot_along_x * t143 + t98 * t236 + t146 * t241;
+        let t246 = t111 * t236 - t151 * t241;
+        let t249 = t121 * t236 + t156 * t241;
+        let t251 = t123 + 0.31 * t163;
+        let t253 = t251 - 0.31 * t161;
+        let t256 = minus_rate_foot_along_x * t23;
+        let t271 = t4 * t251;
+        let t276 = 0.31 * (t220 - 0.31 * t179);
+        let t278 = acceleration[0] + t98 * t271 - t146 * t276;
+        let t281 = t111 * t271 + t151 * t276;
+        let t284 = t121 * t271 - t156 * t276;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t63;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t280 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t282 = acceleration[0] + pose[0] * t280;
-        let t284 = minus_s_left_bar_along_y * c_foot_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (t284 * t54 * gdrive_vz_along_y);
+        let t287 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t289 = acceleration[0] + pose[0] * t287;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t291 = pose[0] * minus_rate_foot_along_y;
-        let t293 = t291 * (c_foot_along_y * minus_rate_left_bar_along_y);
-        let t294 = gdrive_vz_along_y * t293;
-        let t296 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t297 = t296 + t280;
-        let t306 = acceleration[2] + pose[2] * t297 + t293 + t293;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t282 + acceleration[1]
-            - (t294 - 0.31 * t60 * t297 + t294) + gdrive_vz_along_y * t306;
+        let t294 = pose[0] * minus_rate_foot_along_y;
+        let t296 = t294 * (c_foot_along_y * minus_rate_left_bar_along_y);
+        let t297 = gdrive_vz_along_y * t296;
+        let t299 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t300 = t299 + t287;
+        let t309 = acceleration[2] + pose[2] * t300 + t296 + t296;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t289 + acceleration[1]
+            - (t297 - 0.31 * t59 * t300 + t297) + gdrive_vz_along_y * t309;
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
-        let t314 = t80 * t87;
-        let t317 = minus_gfoot_vx_along_y * t314 + minus_gfoot_vz_along_y * t90;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t282
-            + minus_gfoot_vz_along_y * t306;
-        let t321 = t317 * minus_rate_dot_foot_along_y;
-        let t324 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t87;
-        let t327 = minus_gfoot_vx_along_y * t324 + minus_gfoot_vz_along_y * t99;
-        let t328 = t327 * minus_rate_dot_foot_along_y;
-        let t331 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t87;
-        let t334 = minus_gfoot_vx_along_y * t331 + minus_gfoot_vz_along_y * t113;
-        let t335 = t334 * minus_rate_dot_foot_along_y;
-        let t338 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t343 = c_foot_along_y * t296
+        let t317 = t86 * t93;
+        let t320 = minus_gfoot_vx_along_y * t317 + minus_gfoot_vz_along_y * t96;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t289
+            + minus_gfoot_vz_along_y * t309;
+        let t324 = t320 * minus_rate_dot_foot_along_y;
+        let t327 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t93;
+        let t330 = minus_gfoot_vx_along_y * t327 + minus_gfoot_vz_along_y * t105;
+        let t331 = t330 * minus_rate_dot_foot_along_y;
+        let t334 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t93;
+        let t337 = minus_gfoot_vx_along_y * t334 + minus_gfoot_vz_along_y * t119;
+        let t338 = t337 * minus_rate_dot_foot_along_y;
+        let t341 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t346 = c_foot_along_y * t299
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t348 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t349 = t317 * t348;
-        let t354 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t296 - t327 * t348;
-        let t355 = t334 * t348;
-        let t356 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t357 = minus_rate_left_bar_along_y * t356;
-        let t358 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t360 = t357 + t358 + t357;
-        let t361 = minus_s_left_bar_along_y * t360;
-        let t363 = minus_gleft_bar_vx_along_y * t314;
-        let t364 = 3.225806451612903 * t291;
-        let t365 = t364 * t356;
-        let t367 = t317 * t361 - t363 * t365;
-        let t368 = minus_gleft_bar_vx_along_y * t324;
-        let t371 = t368 * t365 - t327 * t361;
-        let t373 = minus_gleft_bar_vx_along_y * t331;
-        let t375 = t334 * t361 - t373 * t365;
-        let t377 = minus_rate_left_bar_along_y * t364;
-        let t378 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t380 = t377 + t377 - t378;
-        let t382 = c_left_bar_along_y * t360 - minus_s_left_bar_along_y * t380;
-        let t384 = t51 * t296;
-        let t385 = t356 * t356;
-        let t386 = t384 - t385;
-        let t388 = t317 * t382 + t363 * t386;
-        let t391 = t327 * t382 + t368 * t386;
-        let t394 = t334 * t382 + t373 * t386;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t282;
-        let t396 = t365 + minus_rate_dot_left_bar_along_y;
-        let t400 = minus_s_left_bar_along_y * t396 + c_left_bar_along_y * (t280 - t384);
-        let t403 = t317 * t400 + t363 * t358;
-        let t406 = t327 * t400 + t368 * t358;
-        let t409 = t334 * t400 + t373 * t358;
-        let t410 = t321 - t367;
-        let t411 = t328 + t371;
-        let t412 = t335 - t375;
-        let t413 = 3.225806451612903 * acceleration[0];
-        let t416 = t317 * t413 + t363 * t378;
-        let t419 = t327 * t413 + t368 * t378;
-        let t422 = t334 * t413 + t373 * t378;
-        let t423 = t363 * minus_rate_dot_left_bar_along_y;
-        let t424 = t368 * minus_rate_dot_left_bar_along_y;
-        let t425 = t373 * minus_rate_dot_left_bar_along_y;
-        let t426 = c_left_bar_along_y * t338;
-        let t428 = minus_s_left_bar_along_y * t348;
-        let t430 = t317 * t426 + t363 * t428;
-        let t440 = minus_s_foot_along_y * t380 - (t60 * (t385 + t280) + t284 * t396)
-            + t327 * t426 + t368 * t428;
-        let t443 = t334 * t426 + t373 * t428;
-        let t444 = c_left_bar_along_y * t348;
-        let t446 = minus_s_left_bar_along_y * t338;
-        let t448 = t363 * t444 - t317 * t446;
-        let t459 = t60 * (minus_rate_dot_left_bar_along_y - t365) - t284 * (t384 + t280)
-            - minus_s_foot_along_y * t360 + t327 * t446 - t368 * t444;
-        let t462 = t373 * t444 - t334 * t446;
-        let t463 = minus_rate_foot_along_y * t291;
-        let t468 = t338 + 0.31 * t380 - 0.31 * t378;
+        let t351 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t352 = t320 * t351;
+        let t357 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t299 - t330 * t351;
+        let t358 = t337 * t351;
+        let t359 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t360 = minus_rate_left_bar_along_y * t359;
+        let t361 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t363 = t360 + t361 + t360;
+        let t364 = minus_s_left_bar_along_y * t363;
+        let t366 = minus_gleft_bar_vx_along_y * t317;
+        let t367 = 3.225806451612903 * t294;
+        let t368 = t367 * t359;
+        let t370 = t320 * t364 - t366 * t368;
+        let t371 = minus_gleft_bar_vx_along_y * t327;
+        let t374 = t371 * t368 - t330 * t364;
+        let t376 = minus_gleft_bar_vx_along_y * t334;
+        let t378 = t337 * t364 - t376 * t368;
+        let t380 = minus_rate_left_bar_along_y * t367;
+        let t381 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t383 = t380 + t380 - t381;
+        let t385 = c_left_bar_along_y * t363 - minus_s_left_bar_along_y * t383;
+        let t387 = t51 * t299;
+        let t388 = t359 * t359;
+        let t389 = t387 - t388;
+        let t391 = t320 * t385 + t366 * t389;
+        let t394 = t330 * t385 + t371 * t389;
+        let t397 = t337 * t385 + t376 * t389;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t289;
+        let t399 = t368 + minus_rate_dot_left_bar_along_y;
+        let t403 = minus_s_left_bar_along_y * t399 + c_left_bar_along_y * (t287 - t387);
+        let t406 = t320 * t403 + t366 * t361;
+        let t409 = t330 * t403 + t371 * t361;
+        let t412 = t337 * t403 + t376 * t361;
+        let t413 = t324 - t370;
+        let t414 = t331 + t374;
+        let t415 = t338 - t378;
+        let t416 = 3.225806451612903 * acceleration[0];
+        let t419 = t320 * t416 + t366 * t381;
+        let t422 = t330 * t416 + t371 * t381;
+        let t425 = t337 * t416 + t376 * t381;
+        let t426 = t366 * minus_rate_dot_left_bar_along_y;
+        let t427 = t371 * minus_rate_dot_left_bar_along_y;
+        let t428 = t376 * minus_rate_dot_left_bar_along_y;
+        let t429 = c_left_bar_along_y * t341;
+        let t431 = minus_s_left_bar_along_y * t351;
+        let t433 = t320 * t429 + t366 * t431;
+        let t443 = minus_s_foot_along_y * t383 - (t59 * (t388 + t287) + t62 * t399)
+            + t330 * t429 + t371 * t431;
+        let t446 = t337 * t429 + t376 * t431;
+        let t447 = c_left_bar_along_y * t351;
+        let t449 = minus_s_left_bar_along_y * t341;
+        let t451 = t366 * t447 - t320 * t449;
+        let t462 = t59 * (minus_rate_dot_left_bar_along_y - t368) - t62 * (t387 + t287)
+            - minus_s_foot_along_y * t363 + t330 * t449 - t371 * t447;
+        let t465 = t376 * t447 - t337 * t449;
+        let t466 = minus_rate_foot_along_y * t294;
+        let t471 = t341 + 0.31 * t383 - 0.31 * t381;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t486 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t489 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t490 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (gdrive_vx_along_z * (t486 * t67));
+            * (gdrive_vx_along_z * (t489 * t490));
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t492 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t496 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t490;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t494 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t495 = t492 + t494;
-        let t498 = pose[1] * minus_rate_foot_along_z;
-        let t499 = c_foot_along_z * minus_rate_left_bar_along_z * t498;
-        let t502 = acceleration[0] + pose[0] * t495 + t499 + t499;
-        let t505 = acceleration[1] + pose[1] * t494;
-        let t508 = gdrive_vx_along_z * t499;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t502 + gdrive_vy_along_z * t505
-            + acceleration[2] - (t508 - 0.31 * t73 * t495 + t508);
-        let t515 = 9.81 + rate_dot_drive_along_z;
+        let t499 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t500 = t496 + t499;
+        let t503 = pose[1] * minus_rate_foot_along_z;
+        let t504 = c_foot_along_z * minus_rate_left_bar_along_z * t503;
+        let t507 = acceleration[0] + pose[0] * t500 + t504 + t504;
+        let t510 = acceleration[1] + pose[1] * t499;
+        let t513 = gdrive_vx_along_z * t504;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t507 + gdrive_vy_along_z * t510
+            + acceleration[2] - (t513 - 0.31 * t79 * t500 + t513);
+        let t520 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t523 = minus_gfoot_vy_along_z * t88 - minus_gfoot_vx_along_z * t314;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t502
-            + minus_gfoot_vy_along_z * t505;
-        let t527 = t523 * minus_rate_dot_foot_along_z;
-        let t530 = minus_gfoot_vx_along_z * t324 - minus_gfoot_vy_along_z * t103;
-        let t531 = t530 * minus_rate_dot_foot_along_z;
-        let t534 = minus_gfoot_vy_along_z * t109 - minus_gfoot_vx_along_z * t331;
-        let t535 = t534 * minus_rate_dot_foot_along_z;
-        let t536 = minus_s_foot_along_z * t515;
-        let t542 = c_foot_along_z * t492
+        let t528 = minus_gfoot_vy_along_z * t94 - minus_gfoot_vx_along_z * t317;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t507
+            + minus_gfoot_vy_along_z * t510;
+        let t532 = t528 * minus_rate_dot_foot_along_z;
+        let t535 = minus_gfoot_vx_along_z * t327 - minus_gfoot_vy_along_z * t109;
+        let t536 = t535 * minus_rate_dot_foot_along_z;
+        let t539 = minus_gfoot_vy_along_z * t115 - minus_gfoot_vx_along_z * t334;
+        let t540 = t539 * minus_rate_dot_foot_along_z;
+        let t541 = minus_s_foot_along_z * t520;
+        let t547 = c_foot_along_z * t496
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t544 = c_foot_along_z * t515;
-        let t545 = t523 * t544;
-        let t546 = t530 * t544;
-        let t551 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t492 - t534 * t544;
-        let t552 = minus_gleft_bar_vy_along_z * t88;
-        let t553 = 3.225806451612903 * t498;
-        let t554 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t555 = t553 * t554;
-        let t557 = minus_rate_left_bar_along_z * t554;
-        let t558 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t560 = t557 + t558 + t557;
-        let t561 = minus_s_left_bar_along_z * t560;
-        let t563 = t552 * t555 - t523 * t561;
-        let t565 = minus_gleft_bar_vy_along_z * t103;
-        let t567 = t530 * t561 + t565 * t555;
-        let t568 = minus_gleft_bar_vy_along_z * t109;
-        let t571 = t568 * t555 - t534 * t561;
-        let t573 = minus_rate_left_bar_along_z * t553;
-        let t574 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t576 = t573 + t573 - t574;
-        let t578 = c_left_bar_along_z * t560 - minus_s_left_bar_along_z * t576;
-        let t580 = t64 * t492;
-        let t581 = t554 * t554;
-        let t582 = t580 - t581;
-        let t584 = t523 * t578 + t552 * t582;
-        let t587 = t530 * t578 - t565 * t582;
-        let t590 = t534 * t578 + t568 * t582;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t505;
-        let t592 = t555 + minus_rate_dot_left_bar_along_z;
-        let t596 = minus_s_left_bar_along_z * t592 + c_left_bar_along_z * (t494 - t580);
-        let t599 = t523 * t596 + t552 * t558;
-        let t602 = t530 * t596 - t565 * t558;
-        let t605 = t534 * t596 + t568 * t558;
-        let t606 = t527 + t563;
-        let t607 = t567 - t531;
-        let t608 = t535 + t571;
-        let t609 = 3.225806451612903 * acceleration[1];
-        let t612 = t523 * t609 + t552 * t574;
-        let t615 = t565 * t574 - t530 * t609;
-        let t618 = t534 * t609 + t568 * t574;
-        let t619 = t552 * minus_rate_dot_left_bar_along_z;
-        let t620 = t565 * minus_rate_dot_left_bar_along_z;
-        let t621 = t568 * minus_rate_dot_left_bar_along_z;
-        let t622 = c_left_bar_along_z * t536;
-        let t624 = minus_s_left_bar_along_z * t544;
-        let t626 = t523 * t622 + t552 * t624;
-        let t629 = t530 * t622 - t565 * t624;
-        let t639 = minus_s_foot_along_z * t576 - (t73 * (t581 + t494) + t486 * t592)
-            + t534 * t622 + t568 * t624;
-        let t640 = minus_s_left_bar_along_z * t536;
-        let t642 = c_left_bar_along_z * t544;
-        let t644 = t523 * t640 - t552 * t642;
-        let t647 = t530 * t640 + t565 * t642;
-        let t658 = t73 * (minus_rate_dot_left_bar_along_z - t555) - t486 * (t580 + t494)
-            - minus_s_foot_along_z * t560 + t534 * t640 - t568 * t642;
-        let t662 = t536 + 0.31 * t576 - 0.31 * t574;
-        let t664 = minus_rate_foot_along_z * t498;
+        let t549 = c_foot_along_z * t520;
+        let t550 = t528 * t549;
+        let t551 = t535 * t549;
+        let t556 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t496 - t539 * t549;
+        let t557 = minus_gleft_bar_vy_along_z * t94;
+        let t558 = 3.225806451612903 * t503;
+        let t559 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t560 = t558 * t559;
+        let t562 = minus_rate_left_bar_along_z * t559;
+        let t563 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t565 = t562 + t563 + t562;
+        let t566 = minus_s_left_bar_along_z * t565;
+        let t568 = t557 * t560 - t528 * t566;
+        let t570 = minus_gleft_bar_vy_along_z * t109;
+        let t572 = t535 * t566 + t570 * t560;
+        let t573 = minus_gleft_bar_vy_along_z * t115;
+        let t576 = t573 * t560 - t539 * t566;
+        let t578 = minus_rate_left_bar_along_z * t558;
+        let t579 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t581 = t578 + t578 - t579;
+        let t583 = c_left_bar_along_z * t565 - minus_s_left_bar_along_z * t581;
+        let t586 = 10.40582726326743 * (t503 * t503);
+        let t587 = t559 * t559;
+        let t588 = t586 - t587;
+        let t590 = t528 * t583 + t557 * t588;
+        let t593 = t535 * t583 - t570 * t588;
+        let t596 = t539 * t583 + t573 * t588;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t510;
+        let t598 = t560 + minus_rate_dot_left_bar_along_z;
+        let t602 = minus_s_left_bar_along_z * t598 + c_left_bar_along_z * (t499 - t586);
+        let t605 = t528 * t602 + t557 * t563;
+        let t608 = t535 * t602 - t570 * t563;
+        let t611 = t539 * t602 + t573 * t563;
+        let t612 = t532 + t568;
+        let t613 = t572 - t536;
+        let t614 = t540 + t576;
+        let t615 = 3.225806451612903 * acceleration[1];
+        let t618 = t528 * t615 + t557 * t579;
+        let t621 = t570 * t579 - t535 * t615;
+        let t624 = t539 * t615 + t573 * t579;
+        let t625 = t557 * minus_rate_dot_left_bar_along_z;
+        let t626 = t570 * minus_rate_dot_left_bar_along_z;
+        let t627 = t573 * minus_rate_dot_left_bar_along_z;
+        let t628 = c_left_bar_along_z * t541;
+        let t630 = minus_s_left_bar_along_z * t549;
+        let t632 = t528 * t628 + t557 * t630;
+        let t635 = t535 * t628 - t570 * t630;
+        let t645 = minus_s_foot_along_z * t581 - (t79 * (t587 + t499) + t489 * t598)
+            + t539 * t628 + t573 * t630;
+        let t646 = minus_s_left_bar_along_z * t541;
+        let t648 = c_left_bar_along_z * t549;
+        let t650 = t528 * t646 - t557 * t648;
+        let t653 = t535 * t646 + t570 * t648;
+        let t664 = t79 * (minus_rate_dot_left_bar_along_z - t560) - t489 * (t586 + t499)
+            - minus_s_foot_along_z * t565 + t539 * t646 - t573 * t648;
+        let t668 = t541 + 0.31 * t581 - 0.31 * t579;
+        let t670 = minus_rate_foot_along_z * t503;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, -t96, t92 * t117 - t121, t130,
-                rate_dot_drive_along_x, -t144, t165, t180, t187, t193, t200, t216, t237, -t130,
-                rate_dot_drive_along_x, -t144, t165, t180, t187, t193, t200, t216, t237, -t130,
-                rate_dot_drive_along_x, -t96, t92 * t247 - t121 + t140 * t250,
-                -(t130 + 0.31 * t180), t272, 0.0, 0.0, 0.0, 0.0, 0.0, t321, -(t317 * t338), t349,
-                0.0, t367, -t388, -t403, t410, t416, t423, -t430, t448, -t349, 0.0, t367, -t388,
-                -t403, t410, t416, t423, -t430, t448, -t349, 0.0, t321, t363 * t463 - t317 * t468,
-                -(t349 - 0.31 * t403), t272, 0.0, 0.0, 0.0, 0.0, 0.0, -t527, t523 * t536, -t545,
-                0.0, t563, t584, t599, -t606, -t612, -t619, t626, t644, t545, 0.0, t563, t584, t599,
-                -t606, -t612, -t619, t626, t644, t545, 0.0, -t527, t523 * t662 - t552 * t664,
-                -(0.31 * t599 - t545), t272, t272,
+                ::overact::math::sign(rate_drive_along_x), 1.0, -t102, t98 * t123 - t127, t136,
+                rate_dot_drive_along_x, -t150, t171, t186, t193, t199, t206, t222, t243, -t136,
+                rate_dot_drive_along_x, -t150, t171, t186, t193, t199, t206, t222, t243, -t136,
+                rate_dot_drive_along_x, -t102, t98 * t253 - t127 + t146 * t256,
+                -(t136 + 0.31 * t186), t278, 0.0, 0.0, 0.0, 0.0, 0.0, t324, -(t320 * t341), t352,
+                0.0, t370, -t391, -t406, t413, t419, t426, -t433, t451, -t352, 0.0, t370, -t391,
+                -t406, t413, t419, t426, -t433, t451, -t352, 0.0, t324, t366 * t466 - t320 * t471,
+                -(t352 - 0.31 * t406), t278, 0.0, 0.0, 0.0, 0.0, 0.0, -t532, t528 * t541, -t550,
+                0.0, t568, t590, t605, -t612, -t618, -t625, t632, t650, t550, 0.0, t568, t590, t605,
+                -t612, -t618, -t625, t632, t650, t550, 0.0, -t532, t528 * t668 - t557 * t670,
+                -(0.31 * t605 - t550), t278, t278,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t106, t105 * t117, -t131, 0.0, t148, t168, t183, -t188,
-                -t196, -t201, t219, t240, t131, 0.0, t148, t168, t183, -t188, -t196, -t201, t219,
-                t240, t131, 0.0, -t106, t105 * t247 - t145 * t250, -(0.31 * t183 - t131), t275,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t112, t111 * t123, -t137, 0.0, t154, t174, t189, -t194,
+                -t202, -t207, t225, t246, t137, 0.0, t154, t174, t189, -t194, -t202, -t207, t225,
+                t246, t137, 0.0, -t112, t111 * t253 - t151 * t256, -(0.31 * t189 - t137), t281,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, -t328, t327 * t338 - t343, t354,
-                rate_dot_drive_along_y, t371, t391, t406, -t411, -t419, -t424, t440, t459, -t354,
-                rate_dot_drive_along_y, t371, t391, t406, -t411, -t419, -t424, t440, t459, -t354,
-                rate_dot_drive_along_y, -t328, t327 * t468 - t343 - t368 * t463,
-                -(t354 + 0.31 * t406), t275, 0.0, 0.0, 0.0, 0.0, 0.0, -t531, t530 * t536, -t546,
-                0.0, -t567, t587, t602, t607, t615, t620, t629, t647, t546, 0.0, -t567, t587, t602,
-                t607, t615, t620, t629, t647, t546, 0.0, -t531, t530 * t662 + t565 * t664,
-                -(0.31 * t602 - t546), t275, t275,
+                ::overact::math::sign(rate_drive_along_y), 1.0, -t331, t330 * t341 - t346, t357,
+                rate_dot_drive_along_y, t374, t394, t409, -t414, -t422, -t427, t443, t462, -t357,
+                rate_dot_drive_along_y, t374, t394, t409, -t414, -t422, -t427, t443, t462, -t357,
+                rate_dot_drive_along_y, -t331, t330 * t471 - t346 - t371 * t466,
+                -(t357 + 0.31 * t409), t281, 0.0, 0.0, 0.0, 0.0, 0.0, -t536, t535 * t541, -t551,
+                0.0, -t572, t593, t608, t613, t621, t626, t635, t653, t551, 0.0, -t572, t593, t608,
+                t613, t621, t626, t635, t653, t551, 0.0, -t536, t535 * t668 + t570 * t670,
+                -(0.31 * t608 - t551), t281, t281,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t116, t115 * t117, -t132, 0.0, -t152, t171, t186, t189,
-                t199, t202, t222, t243, t132, 0.0, -t152, t171, t186, t189, t199, t202, t222, t243,
-                t132, 0.0, -t116, t115 * t247 + t150 * t250, -(0.31 * t186 - t132), t278, 0.0, 0.0,
-                0.0, 0.0, 0.0, t335, -(t334 * t338), t355, 0.0, t375, -t394, -t409, t412, t422,
-                t425, -t443, t462, -t355, 0.0, t375, -t394, -t409, t412, t422, t425, -t443, t462,
-                -t355, 0.0, t335, t373 * t463 - t334 * t468, -(t355 - 0.31 * t409), t278, t515,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t122, t121 * t123, -t138, 0.0, -t158, t177, t192, t195,
+                t205, t208, t228, t249, t138, 0.0, -t158, t177, t192, t195, t205, t208, t228, t249,
+                t138, 0.0, -t122, t121 * t253 + t156 * t256, -(0.31 * t192 - t138), t284, 0.0, 0.0,
+                0.0, 0.0, 0.0, t338, -(t337 * t341), t358, 0.0, t378, -t397, -t412, t415, t425,
+                t428, -t446, t465, -t358, 0.0, t378, -t397, -t412, t415, t425, t428, -t446, t465,
+                -t358, 0.0, t338, t376 * t466 - t337 * t471, -(t358 - 0.31 * t412), t284, t520,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, -t535, t534 * t536 - t542, t551,
-                t515, t571, t590, t605, -t608, -t618, -t621, t639, t658, -t551, t515, t571, t590,
-                t605, -t608, -t618, -t621, t639, t658, -t551, t515, -t535,
-                t534 * t662 - t542 - t568 * t664, -(t551 + 0.31 * t605), t278, t278,
+                ::overact::math::sign(rate_drive_along_z), 1.0, -t540, t539 * t541 - t547, t556,
+                t520, t576, t596, t611, -t614, -t624, -t627, t645, t664, -t556, t520, t576, t596,
+                t611, -t614, -t624, -t627, t645, t664, -t556, t520, -t540,
+                t539 * t668 - t547 - t573 * t670, -(t556 + 0.31 * t611), t284, t284,
             ],
         ])
     }
@@ -2734,7 +2855,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 662 operations (231 additions, 424 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 547 intermediates.
+    /// 670 operations (234 additions, 429 multiplications, 7 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 555 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2753,18 +2874,20 @@ impl Orthoglide {
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let t4 = minus_c_foot_along_x * c_left_bar_along_x;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
         let t6 = 1.0 / t5;
-        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x * t6;
+        let minus_gdrive_vy_along_x = t4 * t6;
         let t8 = 1.0 / c_left_bar_along_x;
         let minus_gleft_bar_vz_along_x = 3.225806451612903 * t8;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
         let t12 = 0.31 * s_left_bar_along_x;
         let minus_gfoot_vy_along_x = 3.225806451612903 * t6;
         let t15 = s_foot_along_x * s_left_bar_along_x;
+        let t16 = t15 * t8;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (minus_gdrive_vy_along_x * (t15 * t8));
+            * (minus_gdrive_vy_along_x * t16);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
         let t21 = t12 * minus_rate_foot_along_x;
@@ -2772,345 +2895,351 @@ impl Orthoglide {
         let t23 = minus_gdrive_vy_along_x * t22;
         let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
         let t26 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t28 = 0.31 * t5 * (t25 + t26);
-        let t35 = acceleration[1] - (t28 * minus_gdrive_vy_along_x + t22 + t22);
-        let minus_gdrive_vz_along_x = s_left_bar_along_x * t6;
-        let t40 = acceleration[2] - t12 * t25;
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - t28 + t23)
-            - minus_gdrive_vy_along_x * t35 - minus_gdrive_vz_along_x * t40;
+        let t27 = t25 + t26;
+        let t32 = 0.31 * t4;
+        let t36 = acceleration[1] - (t32 * t27 + t22 + t22);
+        let minus_gdrive_vz_along_x = t32 * minus_gfoot_vz_along_x + t16;
+        let t42 = acceleration[2] - t12 * t25;
+        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t5 * t27 + t23)
+            - minus_gdrive_vy_along_x * t36 - minus_gdrive_vz_along_x * t42;
         let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
             - minus_gdrive_vz_along_x * twist[2];
-        let t52 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t52, 1.0, "along_y")?;
-        let t53 = 1.0 / t52;
-        let minus_gdrive_vx_along_y = t53 * s_left_bar_along_y;
-        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t53;
-        let t62 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t62, 1.0, "along_z")?;
-        let t63 = 1.0 / t62;
-        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z * t63;
-        let t66 = minus_gdrive_vx_along_y
-            + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
-        let minus_gdrive_vy_along_z = t63 * s_left_bar_along_z;
-        let t69 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
-        let t73 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
-            + minus_gdrive_vx_along_z;
-        let t75 = t69 - minus_gdrive_vy_along_x * t66 - minus_gdrive_vz_along_x * t73;
-        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t75, 1.0, "kept actuators")?;
-        let t76 = 1.0 / t75;
-        let t77 = t66 * t76;
-        let t79 = t73 * t76;
-        let t81 = minus_gfoot_vy_along_x * t77 + minus_gfoot_vz_along_x * t79;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t35
-            + minus_gfoot_vz_along_x * t40;
-        let t85 = t81 * minus_rate_dot_foot_along_x;
-        let t88 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t76;
-        let t92 = (minus_gdrive_vy_along_z
-            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t76;
-        let t94 = minus_gfoot_vy_along_x * t88 + minus_gfoot_vz_along_x * t92;
-        let t95 = t94 * minus_rate_dot_foot_along_x;
-        let t98 = (minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t76;
-        let t102 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t76;
-        let t104 = minus_gfoot_vy_along_x * t98 + minus_gfoot_vz_along_x * t102;
-        let t105 = t104 * minus_rate_dot_foot_along_x;
-        let t108 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - s_foot_along_x * t26;
-        let t109 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t117 = s_foot_along_x * rate_dot_drive_along_x;
-        let t119 = s_foot_along_x * minus_rate_dot_foot_along_x
-            + minus_c_foot_along_x * t26 + t81 * t117;
-        let t120 = t94 * t117;
-        let t121 = t104 * t117;
-        let t122 = minus_gleft_bar_vz_along_x * t79;
-        let t123 = 3.225806451612903 * t21;
-        let t124 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t125 = t123 * t124;
-        let t127 = minus_rate_left_bar_along_x * t124;
-        let t128 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t130 = t127 + t127 - t128;
-        let t131 = s_left_bar_along_x * t130;
-        let t133 = t122 * t125 - t81 * t131;
-        let t134 = minus_gleft_bar_vz_along_x * t92;
-        let t137 = t134 * t125 - t94 * t131;
-        let t138 = minus_gleft_bar_vz_along_x * t102;
-        let t141 = t138 * t125 - t104 * t131;
-        let t143 = minus_rate_left_bar_along_x * t123;
-        let t144 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t146 = t143 + t144 + t143;
-        let t148 = c_left_bar_along_x * t130 - s_left_bar_along_x * t146;
-        let t150 = t124 * t124;
-        let t151 = t26 - t150;
-        let t152 = t151 - t150;
-        let t154 = t81 * t148 + t122 * t152;
-        let t157 = t94 * t148 + t134 * t152;
-        let t160 = t104 * t148 + t138 * t152;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
-        let t163 = t125 - minus_rate_dot_left_bar_along_x;
-        let t167 = s_left_bar_along_x * t163 + c_left_bar_along_x * (t25 - t151);
-        let t169 = t122 * t128 - t81 * t167;
-        let t172 = t134 * t128 - t94 * t167;
-        let t175 = t138 * t128 - t104 * t167;
-        let t176 = t85 - t133;
-        let t177 = t95 - t137;
-        let t178 = t105 - t141;
-        let t179 = 3.225806451612903 * acceleration[2];
-        let t182 = t81 * t179 + t122 * t144;
-        let t185 = t94 * t179 + t134 * t144;
-        let t188 = t104 * t179 + t138 * t144;
-        let t189 = t122 * minus_rate_dot_left_bar_along_x;
-        let t190 = t134 * minus_rate_dot_left_bar_along_x;
-        let t191 = t138 * minus_rate_dot_left_bar_along_x;
-        let t198 = c_left_bar_along_x * t109;
-        let t203 = s_left_bar_along_x * t117 + 9.81 * c_left_bar_along_x;
-        let t205 = minus_c_foot_along_x * t146 - (t5 * (t150 + t25) + t15 * t163)
-            + t81 * t198 + t122 * t203;
-        let t208 = t94 * t198 + t134 * t203;
-        let t211 = t104 * t198 + t138 * t203;
-        let t219 = s_left_bar_along_x * t109;
-        let t224 = c_left_bar_along_x * t117 - 9.81 * s_left_bar_along_x;
-        let t226 = t5 * (t125 + minus_rate_dot_left_bar_along_x) + t15 * (t151 + t25)
-            + minus_c_foot_along_x * t130 - t81 * t219 + t122 * t224;
-        let t229 = t134 * t224 - t94 * t219;
-        let t232 = t138 * t224 - t104 * t219;
-        let t235 = t109 + 0.31 * t146;
-        let t236 = 0.31 * t144 + t235;
-        let t239 = minus_rate_foot_along_x * t21;
-        let t255 = 0.31 * c_left_bar_along_x * t235;
-        let t260 = 0.31 * (0.31 * t163 - t203);
-        let t262 = acceleration[0] + t81 * t255 - t122 * t260;
-        let t265 = t94 * t255 - t134 * t260;
-        let t268 = t104 * t255 - t138 * t260;
-        let t269 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t269;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t273 = 0.31 * s_left_bar_along_y;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t53;
-        let t275 = s_foot_along_y * s_left_bar_along_y;
+        let t54 = minus_c_foot_along_y * c_left_bar_along_y;
+        let t55 = 0.31 * t54;
+        let t56 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t56, 1.0, "along_y")?;
+        let t57 = 1.0 / t56;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t57;
+        let t60 = 1.0 / c_left_bar_along_y;
         let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (t275 * t269 * minus_gdrive_vz_along_y);
+            * (minus_c_foot_along_y * s_left_bar_along_y * t60);
+        let t64 = s_foot_along_y * s_left_bar_along_y;
+        let minus_gdrive_vx_along_y = t55 * minus_gfoot_vx_along_y + t64 * t60;
+        let minus_gdrive_vz_along_y = t54 * t57;
+        let t72 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t73 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t73, 1.0, "along_z")?;
+        let t74 = 1.0 / t73;
+        let minus_gdrive_vx_along_z = t72 * t74;
+        let t77 = minus_gdrive_vx_along_y
+            + minus_gdrive_vz_along_y * minus_gdrive_vx_along_z;
+        let t78 = 0.31 * t72;
+        let minus_gfoot_vx_along_z = 3.225806451612903 * t74;
+        let t81 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (minus_c_foot_along_z * s_left_bar_along_z * t81);
+        let t85 = s_foot_along_z * s_left_bar_along_z;
+        let minus_gdrive_vy_along_z = t78 * minus_gfoot_vy_along_z + t85 * t81;
+        let t89 = 1.0 - minus_gdrive_vz_along_y * minus_gdrive_vy_along_z;
+        let t93 = minus_gdrive_vx_along_y * minus_gdrive_vy_along_z
+            + minus_gdrive_vx_along_z;
+        let t95 = t89 - minus_gdrive_vy_along_x * t77 - minus_gdrive_vz_along_x * t93;
+        ::overact::guard::platform(t95, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t95, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t95, 1.0, "kept actuators")?;
+        let t96 = 1.0 / t95;
+        let t97 = t77 * t96;
+        let t99 = t93 * t96;
+        let t101 = minus_gfoot_vy_along_x * t97 + minus_gfoot_vz_along_x * t99;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t36
+            + minus_gfoot_vz_along_x * t42;
+        let t105 = t101 * minus_rate_dot_foot_along_x;
+        let t108 = (1.0 - minus_gdrive_vz_along_x * minus_gdrive_vx_along_z) * t96;
+        let t112 = (minus_gdrive_vy_along_z
+            + minus_gdrive_vy_along_x * minus_gdrive_vx_along_z) * t96;
+        let t114 = minus_gfoot_vy_along_x * t108 + minus_gfoot_vz_along_x * t112;
+        let t115 = t114 * minus_rate_dot_foot_along_x;
+        let t118 = (minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x * minus_gdrive_vx_along_y) * t96;
+        let t122 = (1.0 - minus_gdrive_vy_along_x * minus_gdrive_vx_along_y) * t96;
+        let t124 = minus_gfoot_vy_along_x * t118 + minus_gfoot_vz_along_x * t122;
+        let t125 = t124 * minus_rate_dot_foot_along_x;
+        let t128 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t26;
+        let t129 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t137 = s_foot_along_x * rate_dot_drive_along_x;
+        let t139 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t26 + t101 * t137;
+        let t140 = t114 * t137;
+        let t141 = t124 * t137;
+        let t142 = minus_gleft_bar_vz_along_x * t99;
+        let t143 = 3.225806451612903 * t21;
+        let t144 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t145 = t143 * t144;
+        let t147 = minus_rate_left_bar_along_x * t144;
+        let t148 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t150 = t147 + t147 - t148;
+        let t151 = s_left_bar_along_x * t150;
+        let t153 = t142 * t145 - t101 * t151;
+        let t154 = minus_gleft_bar_vz_along_x * t112;
+        let t157 = t154 * t145 - t114 * t151;
+        let t158 = minus_gleft_bar_vz_along_x * t122;
+        let t161 = t158 * t145 - t124 * t151;
+        let t163 = minus_rate_left_bar_along_x * t143;
+        let t164 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t166 = t163 + t164 + t163;
+        let t168 = c_left_bar_along_x * t150 - s_left_bar_along_x * t166;
+        let t170 = t144 * t144;
+        let t171 = t26 - t170;
+        let t172 = t171 - t170;
+        let t174 = t101 * t168 + t142 * t172;
+        let t177 = t114 * t168 + t154 * t172;
+        let t180 = t124 * t168 + t158 * t172;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t42;
+        let t183 = t145 - minus_rate_dot_left_bar_along_x;
+        let t187 = s_left_bar_along_x * t183 + c_left_bar_along_x * (t25 - t171);
+        let t189 = t142 * t148 - t101 * t187;
+        let t192 = t154 * t148 - t114 * t187;
+        let t195 = t158 * t148 - t124 * t187;
+        let t196 = t105 - t153;
+        let t197 = t115 - t157;
+        let t198 = t125 - t161;
+        let t199 = 3.225806451612903 * acceleration[2];
+        let t202 = t101 * t199 + t142 * t164;
+        let t205 = t114 * t199 + t154 * t164;
+        let t208 = t124 * t199 + t158 * t164;
+        let t209 = t142 * minus_rate_dot_left_bar_along_x;
+        let t210 = t154 * minus_rate_dot_left_bar_along_x;
+        let t211 = t158 * minus_rate_dot_left_bar_along_x;
+        let t218 = c_left_bar_along_x * t129;
+        let t223 = s_left_bar_along_x * t137 + 9.81 * c_left_bar_along_x;
+        let t225 = minus_c_foot_along_x * t166 - (t5 * (t170 + t25) + t15 * t183)
+            + t101 * t218 + t142 * t223;
+        let t228 = t114 * t218 + t154 * t223;
+        let t231 = t124 * t218 + t158 * t223;
+        let t239 = s_left_bar_along_x * t129;
+        let t244 = c_left_bar_along_x * t137 - 9.81 * s_left_bar_along_x;
+        let t246 = t5 * (t145 + minus_rate_dot_left_bar_along_x) + t15 * (t171 + t25)
+            + minus_c_foot_along_x * t150 - t101 * t239 + t142 * t244;
+        let t249 = t154 * t244 - t114 * t239;
+        let t252 = t158 * t244 - t124 * t239;
+        let t255 = t129 + 0.31 * t166;
+        let t256 = 0.31 * t164 + t255;
+        let t259 = minus_rate_foot_along_x * t21;
+        let t275 = 0.31 * c_left_bar_along_x * t255;
+        let t280 = 0.31 * (0.31 * t183 - t223);
+        let t282 = acceleration[0] + t101 * t275 - t142 * t280;
+        let t285 = t114 * t275 - t154 * t280;
+        let t288 = t124 * t275 - t158 * t280;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t60;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
+        let t292 = 0.31 * s_left_bar_along_y;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t282 = t273 * minus_rate_foot_along_y;
-        let t283 = s_foot_along_y * minus_rate_left_bar_along_y * t282;
-        let t284 = minus_gdrive_vz_along_y * t283;
-        let t286 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t287 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t289 = 0.31 * t52 * (t286 + t287);
-        let t294 = acceleration[0] - t273 * t287;
-        let t300 = acceleration[2] - (minus_gdrive_vz_along_y * t289 + t283 + t283);
-        let rate_dot_drive_along_y = acceleration[1] - (t284 - t289 + t284)
-            - minus_gdrive_vx_along_y * t294 - minus_gdrive_vz_along_y * t300;
+        let t296 = t292 * minus_rate_foot_along_y;
+        let t297 = s_foot_along_y * minus_rate_left_bar_along_y * t296;
+        let t298 = minus_gdrive_vz_along_y * t297;
+        let t300 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t301 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t302 = t300 + t301;
+        let t308 = acceleration[0] - t292 * t301;
+        let t314 = acceleration[2] - (t55 * t302 + t297 + t297);
+        let rate_dot_drive_along_y = acceleration[1] - (t298 - 0.31 * t56 * t302 + t298)
+            - minus_gdrive_vx_along_y * t308 - minus_gdrive_vz_along_y * t314;
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let t308 = t69 * t76;
-        let t311 = minus_gfoot_vx_along_y * t308 + minus_gfoot_vz_along_y * t79;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t294
-            + minus_gfoot_vz_along_y * t300;
-        let t315 = t311 * minus_rate_dot_foot_along_y;
-        let t318 = (minus_gdrive_vy_along_x
-            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t76;
-        let t321 = minus_gfoot_vx_along_y * t318 + minus_gfoot_vz_along_y * t92;
-        let t322 = t321 * minus_rate_dot_foot_along_y;
-        let t325 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
-            + minus_gdrive_vz_along_x) * t76;
-        let t328 = minus_gfoot_vx_along_y * t325 + minus_gfoot_vz_along_y * t102;
-        let t329 = t328 * minus_rate_dot_foot_along_y;
-        let t332 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
-        let t336 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t286;
-        let t342 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t343 = t311 * t342;
-        let t348 = s_foot_along_y * minus_rate_dot_foot_along_y
-            + minus_c_foot_along_y * t286 + t321 * t342;
-        let t349 = t328 * t342;
-        let t350 = minus_gleft_bar_vx_along_y * t308;
-        let t351 = 3.225806451612903 * t282;
-        let t352 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t353 = t351 * t352;
-        let t355 = minus_rate_left_bar_along_y * t352;
-        let t356 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t358 = t355 + t355 - t356;
-        let t359 = s_left_bar_along_y * t358;
-        let t361 = t350 * t353 - t311 * t359;
-        let t362 = minus_gleft_bar_vx_along_y * t318;
-        let t365 = t362 * t353 - t321 * t359;
-        let t366 = minus_gleft_bar_vx_along_y * t325;
-        let t369 = t366 * t353 - t328 * t359;
-        let t371 = minus_rate_left_bar_along_y * t351;
-        let t372 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t374 = t371 + t372 + t371;
-        let t376 = c_left_bar_along_y * t358 - s_left_bar_along_y * t374;
-        let t378 = t352 * t352;
-        let t379 = t286 - t378;
-        let t380 = t379 - t378;
-        let t382 = t311 * t376 + t350 * t380;
-        let t385 = t321 * t376 + t362 * t380;
-        let t388 = t328 * t376 + t366 * t380;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t294;
-        let t391 = t353 - minus_rate_dot_left_bar_along_y;
-        let t395 = s_left_bar_along_y * t391 + c_left_bar_along_y * (t287 - t379);
-        let t397 = t350 * t356 - t311 * t395;
-        let t400 = t362 * t356 - t321 * t395;
-        let t403 = t366 * t356 - t328 * t395;
-        let t404 = t315 - t361;
-        let t405 = t322 - t365;
-        let t406 = t329 - t369;
-        let t407 = 3.225806451612903 * acceleration[0];
-        let t410 = t311 * t407 + t350 * t372;
-        let t413 = t321 * t407 + t362 * t372;
-        let t416 = t328 * t407 + t366 * t372;
-        let t417 = t350 * minus_rate_dot_left_bar_along_y;
-        let t418 = t362 * minus_rate_dot_left_bar_along_y;
-        let t419 = t366 * minus_rate_dot_left_bar_along_y;
-        let t420 = c_left_bar_along_y * t332;
-        let t422 = s_left_bar_along_y * t342;
-        let t424 = t311 * t420 + t350 * t422;
-        let t434 = minus_c_foot_along_y * t374 - (t52 * (t378 + t287) + t275 * t391)
-            + t321 * t420 + t362 * t422;
-        let t437 = t328 * t420 + t366 * t422;
-        let t438 = c_left_bar_along_y * t342;
-        let t440 = s_left_bar_along_y * t332;
-        let t442 = t350 * t438 - t311 * t440;
-        let t453 = t52 * (t353 + minus_rate_dot_left_bar_along_y) + t275 * (t379 + t287)
-            + minus_c_foot_along_y * t358 - t321 * t440 + t362 * t438;
-        let t456 = t366 * t438 - t328 * t440;
-        let t460 = 0.31 * t372 + t332 + 0.31 * t374;
-        let t462 = minus_rate_foot_along_y * t282;
-        let t478 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t478;
+        let t322 = t89 * t96;
+        let t325 = minus_gfoot_vx_along_y * t322 + minus_gfoot_vz_along_y * t99;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t308
+            + minus_gfoot_vz_along_y * t314;
+        let t329 = t325 * minus_rate_dot_foot_along_y;
+        let t332 = (minus_gdrive_vy_along_x
+            + minus_gdrive_vz_along_x * minus_gdrive_vy_along_z) * t96;
+        let t335 = minus_gfoot_vx_along_y * t332 + minus_gfoot_vz_along_y * t112;
+        let t336 = t335 * minus_rate_dot_foot_along_y;
+        let t339 = (minus_gdrive_vy_along_x * minus_gdrive_vz_along_y
+            + minus_gdrive_vz_along_x) * t96;
+        let t342 = minus_gfoot_vx_along_y * t339 + minus_gfoot_vz_along_y * t122;
+        let t343 = t342 * minus_rate_dot_foot_along_y;
+        let t346 = 9.81 * s_foot_along_y + minus_c_foot_along_y * rate_dot_drive_along_y;
+        let t350 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t300;
+        let t356 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t357 = t325 * t356;
+        let t362 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t300 + t335 * t356;
+        let t363 = t342 * t356;
+        let t364 = minus_gleft_bar_vx_along_y * t322;
+        let t365 = 3.225806451612903 * t296;
+        let t366 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t367 = t365 * t366;
+        let t369 = minus_rate_left_bar_along_y * t366;
+        let t370 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t372 = t369 + t369 - t370;
+        let t373 = s_left_bar_along_y * t372;
+        let t375 = t364 * t367 - t325 * t373;
+        let t376 = minus_gleft_bar_vx_along_y * t332;
+        let t379 = t376 * t367 - t335 * t373;
+        let t380 = minus_gleft_bar_vx_along_y * t339;
+        let t383 = t380 * t367 - t342 * t373;
+        let t385 = minus_rate_left_bar_along_y * t365;
+        let t386 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t388 = t385 + t386 + t385;
+        let t390 = c_left_bar_along_y * t372 - s_left_bar_along_y * t388;
+        let t392 = t366 * t366;
+        let t393 = t300 - t392;
+        let t394 = t393 - t392;
+        let t396 = t325 * t390 + t364 * t394;
+        let t399 = t335 * t390 + t376 * t394;
+        let t402 = t342 * t390 + t380 * t394;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t308;
+        let t405 = t367 - minus_rate_dot_left_bar_along_y;
+        let t409 = s_left_bar_along_y * t405 + c_left_bar_along_y * (t301 - t393);
+        let t411 = t364 * t370 - t325 * t409;
+        let t414 = t376 * t370 - t335 * t409;
+        let t417 = t380 * t370 - t342 * t409;
+        let t418 = t329 - t375;
+        let t419 = t336 - t379;
+        let t420 = t343 - t383;
+        let t421 = 3.225806451612903 * acceleration[0];
+        let t424 = t325 * t421 + t364 * t386;
+        let t427 = t335 * t421 + t376 * t386;
+        let t430 = t342 * t421 + t380 * t386;
+        let t431 = t364 * minus_rate_dot_left_bar_along_y;
+        let t432 = t376 * minus_rate_dot_left_bar_along_y;
+        let t433 = t380 * minus_rate_dot_left_bar_along_y;
+        let t434 = c_left_bar_along_y * t346;
+        let t436 = s_left_bar_along_y * t356;
+        let t438 = t325 * t434 + t364 * t436;
+        let t448 = minus_c_foot_along_y * t388 - (t56 * (t392 + t301) + t64 * t405)
+            + t335 * t434 + t376 * t436;
+        let t451 = t342 * t434 + t380 * t436;
+        let t452 = c_left_bar_along_y * t356;
+        let t454 = s_left_bar_along_y * t346;
+        let t456 = t364 * t452 - t325 * t454;
+        let t467 = t56 * (t367 + minus_rate_dot_left_bar_along_y) + t64 * (t393 + t301)
+            + minus_c_foot_along_y * t372 - t335 * t454 + t376 * t452;
+        let t470 = t380 * t452 - t342 * t454;
+        let t474 = 0.31 * t386 + t346 + 0.31 * t388;
+        let t476 = minus_rate_foot_along_y * t296;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t81;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t481 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 * t63;
-        let t485 = s_foot_along_z * s_left_bar_along_z;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (minus_gdrive_vx_along_z * (t485 * t478));
+        let t494 = s_foot_along_z * minus_rate_left_bar_along_z;
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t491 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
-        let t492 = t481 * t491;
-        let t493 = minus_gdrive_vx_along_z * t492;
-        let t495 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t496 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t498 = 0.31 * t62 * (t495 + t496);
-        let t505 = acceleration[0] - (minus_gdrive_vx_along_z * t498 + t492 + t492);
-        let t507 = minus_gdrive_vy_along_z * twist[1];
-        let t509 = acceleration[1] - t481 * t507;
-        let rate_dot_drive_along_z = acceleration[2] - (t493 - t498 + t493)
-            - (minus_gdrive_vx_along_z * t505 + minus_gdrive_vy_along_z * t509);
-        let t513 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t507);
-        let t520 = minus_gfoot_vx_along_z * t308 + minus_gfoot_vy_along_z * t77;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t505
-            + minus_gfoot_vy_along_z * t509;
-        let t524 = t520 * minus_rate_dot_foot_along_z;
-        let t527 = minus_gfoot_vx_along_z * t318 + minus_gfoot_vy_along_z * t88;
-        let t528 = t527 * minus_rate_dot_foot_along_z;
-        let t531 = minus_gfoot_vx_along_z * t325 + minus_gfoot_vy_along_z * t98;
-        let t532 = t531 * minus_rate_dot_foot_along_z;
-        let t533 = minus_c_foot_along_z * t513;
-        let t538 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t495;
-        let t541 = s_foot_along_z * t513;
-        let t542 = t520 * t541;
-        let t543 = t527 * t541;
-        let t548 = s_foot_along_z * minus_rate_dot_foot_along_z
-            + minus_c_foot_along_z * t495 + t531 * t541;
-        let t549 = minus_gleft_bar_vy_along_z * t77;
-        let t550 = 3.225806451612903 * t491;
-        let t551 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t552 = t550 * t551;
-        let t554 = minus_rate_left_bar_along_z * t551;
-        let t555 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t557 = t554 + t554 - t555;
-        let t558 = s_left_bar_along_z * t557;
-        let t560 = t549 * t552 - t520 * t558;
-        let t561 = minus_gleft_bar_vy_along_z * t88;
-        let t564 = t561 * t552 - t527 * t558;
-        let t565 = minus_gleft_bar_vy_along_z * t98;
-        let t568 = t565 * t552 - t531 * t558;
-        let t570 = minus_rate_left_bar_along_z * t550;
-        let t571 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t573 = t570 + t571 + t570;
-        let t575 = c_left_bar_along_z * t557 - s_left_bar_along_z * t573;
-        let t577 = t551 * t551;
-        let t578 = t495 - t577;
-        let t579 = t578 - t577;
-        let t581 = t520 * t575 + t549 * t579;
-        let t584 = t527 * t575 + t561 * t579;
-        let t587 = t531 * t575 + t565 * t579;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t509;
-        let t590 = t552 - minus_rate_dot_left_bar_along_z;
-        let t594 = s_left_bar_along_z * t590 + c_left_bar_along_z * (t496 - t578);
-        let t596 = t549 * t555 - t520 * t594;
-        let t599 = t561 * t555 - t527 * t594;
-        let t602 = t565 * t555 - t531 * t594;
-        let t603 = t524 - t560;
-        let t604 = t528 - t564;
-        let t605 = t532 - t568;
-        let t606 = 3.225806451612903 * acceleration[1];
-        let t609 = t520 * t606 + t549 * t571;
-        let t612 = t527 * t606 + t561 * t571;
-        let t615 = t531 * t606 + t565 * t571;
-        let t616 = t549 * minus_rate_dot_left_bar_along_z;
-        let t617 = t561 * minus_rate_dot_left_bar_along_z;
-        let t618 = t565 * minus_rate_dot_left_bar_along_z;
-        let t619 = c_left_bar_along_z * t533;
-        let t621 = s_left_bar_along_z * t541;
-        let t623 = t520 * t619 + t549 * t621;
-        let t626 = t527 * t619 + t561 * t621;
-        let t636 = minus_c_foot_along_z * t573 - (t62 * (t577 + t496) + t485 * t590)
-            + t531 * t619 + t565 * t621;
-        let t637 = c_left_bar_along_z * t541;
-        let t639 = s_left_bar_along_z * t533;
-        let t641 = t549 * t637 - t520 * t639;
-        let t644 = t561 * t637 - t527 * t639;
-        let t655 = t62 * (t552 + minus_rate_dot_left_bar_along_z) + t485 * (t578 + t496)
-            + minus_c_foot_along_z * t557 - t531 * t639 + t565 * t637;
-        let t659 = 0.31 * t571 + t533 + 0.31 * t573;
-        let t661 = minus_rate_foot_along_z * t491;
+        let t499 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
+        let t500 = t494 * t499;
+        let t501 = minus_gdrive_vx_along_z * t500;
+        let t503 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t504 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t505 = t503 + t504;
+        let t513 = acceleration[0] - (t78 * t505 + t500 + t500);
+        let t515 = minus_gdrive_vy_along_z * twist[1];
+        let t517 = acceleration[1] - t494 * t515;
+        let rate_dot_drive_along_z = acceleration[2] - (t501 - 0.31 * t73 * t505 + t501)
+            - (minus_gdrive_vx_along_z * t513 + minus_gdrive_vy_along_z * t517);
+        let t521 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t515);
+        let t528 = minus_gfoot_vx_along_z * t322 + minus_gfoot_vy_along_z * t97;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t513
+            + minus_gfoot_vy_along_z * t517;
+        let t532 = t528 * minus_rate_dot_foot_along_z;
+        let t535 = minus_gfoot_vx_along_z * t332 + minus_gfoot_vy_along_z * t108;
+        let t536 = t535 * minus_rate_dot_foot_along_z;
+        let t539 = minus_gfoot_vx_along_z * t339 + minus_gfoot_vy_along_z * t118;
+        let t540 = t539 * minus_rate_dot_foot_along_z;
+        let t541 = minus_c_foot_along_z * t521;
+        let t546 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t503;
+        let t549 = s_foot_along_z * t521;
+        let t550 = t528 * t549;
+        let t551 = t535 * t549;
+        let t556 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t503 + t539 * t549;
+        let t557 = minus_gleft_bar_vy_along_z * t97;
+        let t558 = 3.225806451612903 * t499;
+        let t559 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t560 = t558 * t559;
+        let t562 = minus_rate_left_bar_along_z * t559;
+        let t563 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t565 = t562 + t562 - t563;
+        let t566 = s_left_bar_along_z * t565;
+        let t568 = t557 * t560 - t528 * t566;
+        let t569 = minus_gleft_bar_vy_along_z * t108;
+        let t572 = t569 * t560 - t535 * t566;
+        let t573 = minus_gleft_bar_vy_along_z * t118;
+        let t576 = t573 * t560 - t539 * t566;
+        let t578 = minus_rate_left_bar_along_z * t558;
+        let t579 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t581 = t578 + t579 + t578;
+        let t583 = c_left_bar_along_z * t565 - s_left_bar_along_z * t581;
+        let t585 = t559 * t559;
+        let t586 = t503 - t585;
+        let t587 = t586 - t585;
+        let t589 = t528 * t583 + t557 * t587;
+        let t592 = t535 * t583 + t569 * t587;
+        let t595 = t539 * t583 + t573 * t587;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t517;
+        let t598 = t560 - minus_rate_dot_left_bar_along_z;
+        let t602 = s_left_bar_along_z * t598 + c_left_bar_along_z * (t504 - t586);
+        let t604 = t557 * t563 - t528 * t602;
+        let t607 = t569 * t563 - t535 * t602;
+        let t610 = t573 * t563 - t539 * t602;
+        let t611 = t532 - t568;
+        let t612 = t536 - t572;
+        let t613 = t540 - t576;
+        let t614 = 3.225806451612903 * acceleration[1];
+        let t617 = t528 * t614 + t557 * t579;
+        let t620 = t535 * t614 + t569 * t579;
+        let t623 = t539 * t614 + t573 * t579;
+        let t624 = t557 * minus_rate_dot_left_bar_along_z;
+        let t625 = t569 * minus_rate_dot_left_bar_along_z;
+        let t626 = t573 * minus_rate_dot_left_bar_along_z;
+        let t627 = c_left_bar_along_z * t541;
+        let t629 = s_left_bar_along_z * t549;
+        let t631 = t528 * t627 + t557 * t629;
+        let t634 = t535 * t627 + t569 * t629;
+        let t644 = minus_c_foot_along_z * t581 - (t73 * (t585 + t504) + t85 * t598)
+            + t539 * t627 + t573 * t629;
+        let t645 = c_left_bar_along_z * t549;
+        let t647 = s_left_bar_along_z * t541;
+        let t649 = t557 * t645 - t528 * t647;
+        let t652 = t569 * t645 - t535 * t647;
+        let t663 = t73 * (t560 + minus_rate_dot_left_bar_along_z) + t85 * (t586 + t504)
+            + minus_c_foot_along_z * t565 - t539 * t647 + t573 * t645;
+        let t667 = 0.31 * t579 + t541 + 0.31 * t581;
+        let t669 = minus_rate_foot_along_z * t499;
         Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
-                ::overact::math::sign(rate_drive_along_x), 1.0, t85, t108 + t81 * t109, t119,
-                rate_dot_drive_along_x, t133, -t154, t169, t176, t182, t189, t205, t226, -t119,
-                rate_dot_drive_along_x, t133, -t154, t169, t176, t182, t189, t205, t226, -t119,
-                rate_dot_drive_along_x, t85, t108 + t81 * t236 - t122 * t239, -(t119 + 0.31 * t169),
-                t262, 0.0, 0.0, 0.0, 0.0, 0.0, t315, t311 * t332, t343, 0.0, t361, -t382, t397,
-                t404, t410, t417, t424, t442, -t343, 0.0, t361, -t382, t397, t404, t410, t417, t424,
-                t442, -t343, 0.0, t315, t311 * t460 - t350 * t462, -(t343 + 0.31 * t397), t262, 0.0,
-                0.0, 0.0, 0.0, 0.0, t524, t520 * t533, t542, 0.0, t560, -t581, t596, t603, t609,
-                t616, t623, t641, -t542, 0.0, t560, -t581, t596, t603, t609, t616, t623, t641,
-                -t542, 0.0, t524, t520 * t659 - t549 * t661, -(t542 + 0.31 * t596), t262, t262,
+                ::overact::math::sign(rate_drive_along_x), 1.0, t105, t128 + t101 * t129, t139,
+                rate_dot_drive_along_x, t153, -t174, t189, t196, t202, t209, t225, t246, -t139,
+                rate_dot_drive_along_x, t153, -t174, t189, t196, t202, t209, t225, t246, -t139,
+                rate_dot_drive_along_x, t105, t128 + t101 * t256 - t142 * t259,
+                -(t139 + 0.31 * t189), t282, 0.0, 0.0, 0.0, 0.0, 0.0, t329, t325 * t346, t357, 0.0,
+                t375, -t396, t411, t418, t424, t431, t438, t456, -t357, 0.0, t375, -t396, t411,
+                t418, t424, t431, t438, t456, -t357, 0.0, t329, t325 * t474 - t364 * t476,
+                -(t357 + 0.31 * t411), t282, 0.0, 0.0, 0.0, 0.0, 0.0, t532, t528 * t541, t550, 0.0,
+                t568, -t589, t604, t611, t617, t624, t631, t649, -t550, 0.0, t568, -t589, t604,
+                t611, t617, t624, t631, t649, -t550, 0.0, t532, t528 * t667 - t557 * t669,
+                -(t550 + 0.31 * t604), t282, t282,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t95, t94 * t109, t120, 0.0, t137, -t157, t172, t177, t185,
-                t190, t208, t229, -t120, 0.0, t137, -t157, t172, t177, t185, t190, t208, t229,
-                -t120, 0.0, t95, t94 * t236 - t134 * t239, -(t120 + 0.31 * t172), t265,
+                0.0, 0.0, 0.0, 0.0, 0.0, t115, t114 * t129, t140, 0.0, t157, -t177, t192, t197,
+                t205, t210, t228, t249, -t140, 0.0, t157, -t177, t192, t197, t205, t210, t228, t249,
+                -t140, 0.0, t115, t114 * t256 - t154 * t259, -(t140 + 0.31 * t192), t285,
                 rate_dot_drive_along_y, rate_dot_drive_along_y, rate_drive_along_y,
-                ::overact::math::sign(rate_drive_along_y), 1.0, t322, t336 + t321 * t332, t348,
-                rate_dot_drive_along_y, t365, -t385, t400, t405, t413, t418, t434, t453, -t348,
-                rate_dot_drive_along_y, t365, -t385, t400, t405, t413, t418, t434, t453, -t348,
-                rate_dot_drive_along_y, t322, t336 + t321 * t460 - t362 * t462,
-                -(t348 + 0.31 * t400), t265, 0.0, 0.0, 0.0, 0.0, 0.0, t528, t527 * t533, t543, 0.0,
-                t564, -t584, t599, t604, t612, t617, t626, t644, -t543, 0.0, t564, -t584, t599,
-                t604, t612, t617, t626, t644, -t543, 0.0, t528, t527 * t659 - t561 * t661,
-                -(t543 + 0.31 * t599), t265, t265,
+                ::overact::math::sign(rate_drive_along_y), 1.0, t336, t350 + t335 * t346, t362,
+                rate_dot_drive_along_y, t379, -t399, t414, t419, t427, t432, t448, t467, -t362,
+                rate_dot_drive_along_y, t379, -t399, t414, t419, t427, t432, t448, t467, -t362,
+                rate_dot_drive_along_y, t336, t350 + t335 * t474 - t376 * t476,
+                -(t362 + 0.31 * t414), t285, 0.0, 0.0, 0.0, 0.0, 0.0, t536, t535 * t541, t551, 0.0,
+                t572, -t592, t607, t612, t620, t625, t634, t652, -t551, 0.0, t572, -t592, t607,
+                t612, t620, t625, t634, t652, -t551, 0.0, t536, t535 * t667 - t569 * t669,
+                -(t551 + 0.31 * t607), t285, t285,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t105, t104 * t109, t121, 0.0, t141, -t160, t175, t178,
-                t188, t191, t211, t232, -t121, 0.0, t141, -t160, t175, t178, t188, t191, t211, t232,
-                -t121, 0.0, t105, t104 * t236 - t138 * t239, -(t121 + 0.31 * t175), t268, 0.0, 0.0,
-                0.0, 0.0, 0.0, t329, t328 * t332, t349, 0.0, t369, -t388, t403, t406, t416, t419,
-                t437, t456, -t349, 0.0, t369, -t388, t403, t406, t416, t419, t437, t456, -t349, 0.0,
-                t329, t328 * t460 - t366 * t462, -(t349 + 0.31 * t403), t268, t513,
+                0.0, 0.0, 0.0, 0.0, 0.0, t125, t124 * t129, t141, 0.0, t161, -t180, t195, t198,
+                t208, t211, t231, t252, -t141, 0.0, t161, -t180, t195, t198, t208, t211, t231, t252,
+                -t141, 0.0, t125, t124 * t256 - t158 * t259, -(t141 + 0.31 * t195), t288, 0.0, 0.0,
+                0.0, 0.0, 0.0, t343, t342 * t346, t363, 0.0, t383, -t402, t417, t420, t430, t433,
+                t451, t470, -t363, 0.0, t383, -t402, t417, t420, t430, t433, t451, t470, -t363, 0.0,
+                t343, t342 * t474 - t380 * t476, -(t363 + 0.31 * t417), t288, t521,
                 rate_dot_drive_along_z, rate_drive_along_z,
-                ::overact::math::sign(rate_drive_along_z), 1.0, t532, t538 + t531 * t533, t548,
-                t513, t568, -t587, t602, t605, t615, t618, t636, t655, -t548, t513, t568, -t587,
-                t602, t605, t615, t618, t636, t655, -t548, t513, t532,
-                t538 + t531 * t659 - t565 * t661, -(t548 + 0.31 * t602), t268, t268,
+                ::overact::math::sign(rate_drive_along_z), 1.0, t540, t546 + t539 * t541, t556,
+                t521, t576, -t595, t610, t613, t623, t626, t644, t663, -t556, t521, t576, -t595,
+                t610, t613, t623, t626, t644, t663, -t556, t521, t540,
+                t546 + t539 * t667 - t573 * t669, -(t556 + 0.31 * t610), t288, t288,
             ],
         ])
     }
@@ -3125,7 +3254,7 @@ impl Orthoglide {
     /// Output: 3 x 100.
     /// Columns: `PARAMETERS`.
     ///
-    /// 737 operations (265 additions, 462 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 622 intermediates.
+    /// 746 operations (265 additions, 469 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 631 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3136,423 +3265,429 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t2 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t2 = 10.40582726326743 * (pose[2] * pose[2]);
         let t3 = 1.0 - t2;
-        ::overact::guard::reach(t3, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t3);
-        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t7 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t8 = t3 * t7;
-        let t9 = 1.0 - t8;
-        ::overact::guard::reach(t9, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t9);
-        let t11 = 0.31 * c_left_bar_along_x;
-        let minus_s_foot_along_x = pose[1] / t11;
-        let t13 = minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t3, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t3);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let t5 = 0.31 * c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] / t5;
+        let t7 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t8 = 1.0 - t7;
+        ::overact::guard::reach(t8, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t10, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
+        let t13 = 10.40582726326743 * (pose[0] * pose[0]);
         let t14 = 1.0 - t13;
-        ::overact::guard::reach(t14, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t14);
-        let t16 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t16, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t16;
-        let t18 = 1.0 - t7;
-        ::overact::guard::reach(t18, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t18);
-        let t20 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t20, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t20;
+        ::overact::guard::reach(t14, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t14);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
+        let minus_s_foot_along_y = pose[2] / (0.31 * c_left_bar_along_y);
+        let t19 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t19, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t21, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t21;
         let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t24 = t9 * t13;
-        let t25 = 1.0 - t24;
-        ::overact::guard::reach(t25, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t25);
+        let t25 = t3 * t7;
+        let t26 = 1.0 - t25;
+        ::overact::guard::reach(t26, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t26);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let t28 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t28;
         let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t30 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t30, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t30);
-        let t32 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t32, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t32;
+        let t32 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t32, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t32);
+        let t34 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t34, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t34;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t36 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let t38 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t39 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t41 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t45 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t47 = t39 - gdrive_vy_along_x * t36 + gdrive_vz_along_x * t45;
-        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t47, 1.0, "kept actuators")?;
-        let t48 = 1.0 / t47;
-        let t49 = t36 * t48;
-        let t51 = gdrive_vy_along_x * gdrive_vz_along_x;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t14 * t51);
-        let t54 = t45 * t48;
-        let t56 = minus_gfoot_vy_along_x * t49 - minus_gfoot_vz_along_x * t54;
-        let t58 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
-        let t62 = gdrive_vx_along_z * gdrive_vy_along_z;
-        let t63 = gdrive_vy_along_x + gdrive_vx_along_y + t62;
-        let t67 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t47 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t49 = t41 - gdrive_vy_along_x * t38 + gdrive_vz_along_x * t47;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
+        let t50 = 1.0 / t49;
+        let t51 = t38 * t50;
+        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
+        let t54 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t55 = 1.0 / c_left_bar_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (gdrive_vy_along_x * (t54 * t55));
+        let t59 = t47 * t50;
+        let t61 = minus_gfoot_vy_along_x * t51 - minus_gfoot_vz_along_x * t59;
+        let t63 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let t68 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t72 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t67, 1.0, "actuators")?;
-        ::overact::guard::platform(t67, 1.0, "actuators")?;
-        let t68 = 1.0 / t67;
-        let t69 = t63 * t68;
-        let t71 = t58 + gdrive_vy_along_z * gdrive_vy_along_z - t63 * t69;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        let t72 = 1.0 / t71;
-        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
-        let t79 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t81 = gdrive_vz_along_x + t79 + gdrive_vx_along_z;
-        let t82 = t81 * t68;
-        let t88 = t51 + gdrive_vz_along_y + gdrive_vy_along_z - t63 * t82;
-        let t89 = t88 * t72;
-        let t91 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t81 * t82 - t88 * t89;
-        ::overact::guard::platform(t91, 1.0, "actuators")?;
-        ::overact::guard::platform(t91, 1.0, "actuators")?;
-        let t92 = 1.0 / t91;
-        let t100 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        ::overact::guard::platform(t72, 1.0, "actuators")?;
+        ::overact::guard::platform(t72, 1.0, "actuators")?;
+        let t73 = 1.0 / t72;
+        let t74 = t68 * t73;
+        let t76 = t63 + gdrive_vy_along_z * gdrive_vy_along_z - t68 * t74;
+        ::overact::guard::platform(t76, 1.0, "actuators")?;
+        ::overact::guard::platform(t76, 1.0, "actuators")?;
+        let t77 = 1.0 / t76;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t55;
+        let t86 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t87 = t86 * t73;
+        let t94 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t68 * t87;
+        let t95 = t94 * t77;
+        let t97 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t86 * t87 - t94 * t95;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        ::overact::guard::platform(t97, 1.0, "actuators")?;
+        let t98 = 1.0 / t97;
+        let t106 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t108 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t100 * t69;
-        let t111 = t92
+        let t114 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t106 * t74;
+        let t117 = t98
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t100 * t82 - t89 * t108);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t111;
-        let t113 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t116 = t72 * t108 - t89 * t111;
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t116
-            + minus_gfoot_vz_along_x * t111;
-        let t120 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t121 = t113 + t120;
-        let t124 = pose[2] * t113;
-        let rate_dot_drive_along_x = t58 * (0.31 * t16 * t121)
-            + gdrive_vz_along_x * t124;
-        let t127 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t18 * t79);
-        let t135 = t100 * t68 - t69 * t116 - t82 * t111;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t135
-            + minus_gfoot_vz_along_y * t111;
-        let t139 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t135;
-        let t141 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t142 = t139 + t141;
-        let t145 = pose[0] * minus_rate_foot_along_y;
-        let t146 = c_foot_along_y * minus_rate_left_bar_along_y * t145;
-        let t148 = pose[2] * t142 + t146 + t146;
-        let t150 = pose[0] * t141;
-        let t152 = gdrive_vz_along_y * t146;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t148
-            - (t152 - 0.31 * t20 * t142 + t152 - gdrive_vx_along_y * t150);
-        let t159 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t30 * t62);
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t135
-            + minus_gfoot_vy_along_z * t116;
-        let t166 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t116;
-        let t168 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t169 = t166 + t168;
-        let t172 = pose[1] * minus_rate_foot_along_z;
-        let t173 = c_foot_along_z * minus_rate_left_bar_along_z * t172;
-        let t175 = pose[0] * t169 + t173 + t173;
-        let t177 = pose[1] * t168;
-        let t180 = gdrive_vx_along_z * t173;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t175 + gdrive_vy_along_z * t177
-            - (t180 - 0.31 * t32 * t169 + t180);
-        let t186 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t192 = t127 + gdrive_vx_along_y * t159 + gdrive_vx_along_z * t186;
-        let t194 = gdrive_vy_along_x * t127 + t159 + gdrive_vy_along_z * t186
-            - t69 * t192;
-        let t204 = t92
-            * (gdrive_vz_along_x * t127 + gdrive_vz_along_y * t159 + t186 - t82 * t192
-                - t89 * t194);
-        let t206 = t72 * t194 - t89 * t204;
-        let t209 = pose[2] * minus_rate_foot_along_x;
-        let t210 = c_foot_along_x * minus_rate_left_bar_along_x * t209;
-        let t215 = t204 + t124;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t206 + pose[1] * t121 + t210 + t210) + minus_gfoot_vz_along_x * t215;
-        let t218 = t56 * minus_rate_dot_foot_along_x;
-        let t221 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t48;
-        let t225 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t48;
-        let t227 = minus_gfoot_vz_along_x * t221 - minus_gfoot_vy_along_x * t225;
-        let t228 = t227 * minus_rate_dot_foot_along_x;
-        let t231 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t48;
-        let t235 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t48;
-        let t237 = minus_gfoot_vy_along_x * t231 - minus_gfoot_vz_along_x * t235;
-        let t238 = t237 * minus_rate_dot_foot_along_x;
-        let t239 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t243 = c_foot_along_x * t120
-            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t250 = c_foot_along_x * actuator_accelerations[0];
-        let t252 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t120 - t56 * t250;
-        let t253 = t227 * t250;
-        let t254 = t237 * t250;
-        let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t256 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t257 = minus_rate_left_bar_along_x * t256;
-        let t258 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t260 = t257 + t258 + t257;
-        let t261 = minus_s_left_bar_along_x * t260;
-        let t263 = minus_gleft_bar_vz_along_x * t54;
-        let t264 = 3.225806451612903 * t209;
-        let t265 = t264 * t256;
-        let t267 = t56 * t261 + t263 * t265;
-        let t268 = minus_gleft_bar_vz_along_x * t221;
-        let t271 = t268 * t265 - t227 * t261;
-        let t273 = minus_gleft_bar_vz_along_x * t235;
-        let t275 = t237 * t261 + t273 * t265;
-        let t277 = minus_rate_left_bar_along_x * t264;
-        let t278 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t280 = t277 + t277 - t278;
-        let t282 = c_left_bar_along_x * t260 - minus_s_left_bar_along_x * t280;
-        let t284 = t8 * t120;
-        let t285 = t113 - t284;
-        let t286 = t120 + t285;
-        let t287 = t284 + t113;
-        let t288 = t287 - t286;
-        let t290 = t56 * t282 - t263 * t288;
-        let t293 = t227 * t282 + t268 * t288;
-        let t296 = t237 * t282 - t273 * t288;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t215;
-        let t298 = t265 + minus_rate_dot_left_bar_along_x;
-        let t301 = minus_s_left_bar_along_x * t298 + c_left_bar_along_x * t285;
-        let t304 = t56 * t301 - t263 * t258;
-        let t307 = t227 * t301 + t268 * t258;
-        let t310 = t237 * t301 - t273 * t258;
-        let t311 = t267 - t218;
-        let t312 = t228 + t271;
-        let t313 = t275 - t238;
-        let t315 = 3.225806451612903 * t204;
-        let t317 = t263 * t278 - t56 * t315;
-        let t320 = t227 * t315 + t268 * t278;
-        let t323 = t273 * t278 - t237 * t315;
-        let t324 = t263 * minus_rate_dot_left_bar_along_x;
-        let t325 = t268 * minus_rate_dot_left_bar_along_x;
-        let t326 = t273 * minus_rate_dot_left_bar_along_x;
-        let t329 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t333 = c_left_bar_along_x * t239;
-        let t338 = minus_s_left_bar_along_x * t250 - 9.81 * c_left_bar_along_x;
-        let t340 = minus_s_foot_along_x * t280 - (t16 * t286 + t329 * t298) + t56 * t333
-            - t263 * t338;
-        let t343 = t227 * t333 + t268 * t338;
-        let t346 = t237 * t333 - t273 * t338;
-        let t353 = minus_s_left_bar_along_x * t239;
-        let t358 = c_left_bar_along_x * t250 + 31.64516129032258 * pose[2];
-        let t360 = t16 * (minus_rate_dot_left_bar_along_x - t265) - t329 * t287
-            - minus_s_foot_along_x * t260 + t56 * t353 + t263 * t358;
-        let t363 = t227 * t353 - t268 * t358;
-        let t366 = t237 * t353 + t273 * t358;
-        let t368 = t239 + 0.31 * t280;
-        let t370 = t368 - 0.31 * t278;
-        let t373 = minus_rate_foot_along_x * t209;
-        let t392 = t68 * t192 - t69 * t206 - t82 * t204;
-        let t393 = t11 * t368;
-        let t398 = 0.31 * (t338 - 0.31 * t298);
-        let t400 = t392 + t56 * t393 - t263 * t398;
-        let t403 = t227 * t393 + t268 * t398;
-        let t406 = t237 * t393 - t273 * t398;
-        let t408 = t39 * t48;
-        let t411 = minus_gfoot_vx_along_y * t408 + minus_gfoot_vz_along_y * t54;
-        let t412 = t392 + t150;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t412
-            + minus_gfoot_vz_along_y * (t204 + t148);
-        let t417 = t411 * minus_rate_dot_foot_along_y;
-        let t420 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t48;
-        let t423 = minus_gfoot_vx_along_y * t420 + minus_gfoot_vz_along_y * t221;
-        let t424 = t423 * minus_rate_dot_foot_along_y;
-        let t427 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t48;
-        let t430 = minus_gfoot_vx_along_y * t427 + minus_gfoot_vz_along_y * t235;
-        let t431 = t430 * minus_rate_dot_foot_along_y;
-        let t434 = minus_s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * c_foot_along_y;
-        let t439 = c_foot_along_y * t139
-            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t444 = 9.81 * minus_s_foot_along_y
-            + c_foot_along_y * actuator_accelerations[1];
-        let t445 = t411 * t444;
-        let t450 = c_foot_along_y * minus_rate_dot_foot_along_y
-            - minus_s_foot_along_y * t139 - t423 * t444;
-        let t451 = t430 * t444;
-        let t452 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t453 = minus_rate_left_bar_along_y * t452;
-        let t454 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t456 = t453 + t454 + t453;
-        let t457 = minus_s_left_bar_along_y * t456;
-        let t459 = minus_gleft_bar_vx_along_y * t408;
-        let t460 = 3.225806451612903 * t145;
-        let t461 = t460 * t452;
-        let t463 = t411 * t457 - t459 * t461;
-        let t464 = minus_gleft_bar_vx_along_y * t420;
-        let t467 = t464 * t461 - t423 * t457;
-        let t469 = minus_gleft_bar_vx_along_y * t427;
-        let t471 = t430 * t457 - t469 * t461;
-        let t473 = minus_rate_left_bar_along_y * t460;
-        let t474 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t476 = t473 + t473 - t474;
-        let t478 = c_left_bar_along_y * t456 - minus_s_left_bar_along_y * t476;
-        let t480 = t2 * t139;
-        let t481 = t452 * t452;
-        let t482 = t480 - t481;
-        let t484 = t411 * t478 + t459 * t482;
-        let t487 = t423 * t478 + t464 * t482;
-        let t490 = t430 * t478 + t469 * t482;
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t412;
-        let t492 = t461 + minus_rate_dot_left_bar_along_y;
-        let t496 = minus_s_left_bar_along_y * t492 + c_left_bar_along_y * (t141 - t480);
-        let t499 = t411 * t496 + t459 * t454;
-        let t502 = t423 * t496 + t464 * t454;
-        let t505 = t430 * t496 + t469 * t454;
-        let t506 = t417 - t463;
-        let t507 = t424 + t467;
-        let t508 = t431 - t471;
-        let t509 = 3.225806451612903 * t392;
-        let t512 = t411 * t509 + t459 * t474;
-        let t515 = t423 * t509 + t464 * t474;
-        let t518 = t430 * t509 + t469 * t474;
-        let t519 = t459 * minus_rate_dot_left_bar_along_y;
-        let t520 = t464 * minus_rate_dot_left_bar_along_y;
-        let t521 = t469 * minus_rate_dot_left_bar_along_y;
-        let t522 = c_left_bar_along_y * t434;
-        let t524 = minus_s_left_bar_along_y * t444;
-        let t526 = t411 * t522 + t459 * t524;
-        let t530 = minus_s_left_bar_along_y * c_foot_along_y;
-        let t537 = minus_s_foot_along_y * t476 - (t20 * (t481 + t141) + t530 * t492)
-            + t423 * t522 + t464 * t524;
-        let t540 = t430 * t522 + t469 * t524;
-        let t541 = c_left_bar_along_y * t444;
-        let t543 = minus_s_left_bar_along_y * t434;
-        let t545 = t459 * t541 - t411 * t543;
-        let t556 = t20 * (minus_rate_dot_left_bar_along_y - t461) - t530 * (t480 + t141)
-            - minus_s_foot_along_y * t456 + t423 * t543 - t464 * t541;
-        let t559 = t469 * t541 - t430 * t543;
-        let t560 = minus_rate_foot_along_y * t145;
-        let t565 = t434 + 0.31 * t476 - 0.31 * t474;
-        let t581 = 9.81 + actuator_accelerations[2];
-        let t585 = minus_gfoot_vy_along_z * t49 - minus_gfoot_vx_along_z * t408;
-        let t588 = t206 + t177;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t392 + t175)
-            + minus_gfoot_vy_along_z * t588;
-        let t591 = t585 * minus_rate_dot_foot_along_z;
-        let t594 = minus_gfoot_vx_along_z * t420 - minus_gfoot_vy_along_z * t225;
-        let t595 = t594 * minus_rate_dot_foot_along_z;
-        let t598 = minus_gfoot_vy_along_z * t231 - minus_gfoot_vx_along_z * t427;
-        let t599 = t598 * minus_rate_dot_foot_along_z;
-        let t600 = minus_s_foot_along_z * t581;
-        let t606 = c_foot_along_z * t166
-            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t608 = c_foot_along_z * t581;
-        let t609 = t585 * t608;
-        let t610 = t594 * t608;
-        let t615 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t166 - t598 * t608;
-        let t616 = minus_gleft_bar_vy_along_z * t49;
-        let t617 = 3.225806451612903 * t172;
-        let t618 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t619 = t617 * t618;
+                - t106 * t87 - t95 * t114);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t117;
+        let t119 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t122 = t77 * t114 - t95 * t117;
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t122
+            + minus_gfoot_vz_along_x * t117;
+        let t126 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t127 = t119 + t126;
+        let t130 = pose[2] * t119;
+        let rate_dot_drive_along_x = t63 * (0.31 * t10 * t127)
+            + gdrive_vz_along_x * t130;
+        let t133 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t136 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t137 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t136 * t137 * gdrive_vz_along_y);
+        let t145 = t106 * t73 - t74 * t122 - t87 * t117;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t145
+            + minus_gfoot_vz_along_y * t117;
+        let t149 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t137;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t145;
+        let t152 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t153 = t149 + t152;
+        let t156 = pose[0] * minus_rate_foot_along_y;
+        let t157 = c_foot_along_y * minus_rate_left_bar_along_y * t156;
+        let t159 = pose[2] * t153 + t157 + t157;
+        let t161 = pose[0] * t152;
+        let t163 = gdrive_vz_along_y * t157;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t159
+            - (t163 - 0.31 * t21 * t153 + t163 - gdrive_vx_along_y * t161);
+        let t170 = actuator_accelerations[1] - rate_dot_drive_along_y;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t622 = minus_rate_left_bar_along_z * t618;
-        let t623 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t625 = t622 + t623 + t622;
-        let t626 = minus_s_left_bar_along_z * t625;
-        let t628 = t616 * t619 - t585 * t626;
-        let t630 = minus_gleft_bar_vy_along_z * t225;
-        let t632 = t594 * t626 + t630 * t619;
-        let t633 = minus_gleft_bar_vy_along_z * t231;
-        let t636 = t633 * t619 - t598 * t626;
-        let t638 = minus_rate_left_bar_along_z * t617;
-        let t639 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t641 = t638 + t638 - t639;
-        let t643 = c_left_bar_along_z * t625 - minus_s_left_bar_along_z * t641;
-        let t645 = t24 * t166;
-        let t646 = t618 * t618;
-        let t647 = t645 - t646;
-        let t649 = t585 * t643 + t616 * t647;
-        let t652 = t594 * t643 - t630 * t647;
-        let t655 = t598 * t643 + t633 * t647;
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t588;
-        let t657 = t619 + minus_rate_dot_left_bar_along_z;
-        let t661 = minus_s_left_bar_along_z * t657 + c_left_bar_along_z * (t168 - t645);
-        let t664 = t585 * t661 + t616 * t623;
-        let t667 = t594 * t661 - t630 * t623;
-        let t670 = t598 * t661 + t633 * t623;
-        let t671 = t591 + t628;
-        let t672 = t632 - t595;
-        let t673 = t599 + t636;
-        let t674 = 3.225806451612903 * t206;
-        let t677 = t585 * t674 + t616 * t639;
-        let t680 = t630 * t639 - t594 * t674;
-        let t683 = t598 * t674 + t633 * t639;
-        let t684 = t616 * minus_rate_dot_left_bar_along_z;
-        let t685 = t630 * minus_rate_dot_left_bar_along_z;
-        let t686 = t633 * minus_rate_dot_left_bar_along_z;
-        let t687 = c_left_bar_along_z * t600;
-        let t689 = minus_s_left_bar_along_z * t608;
-        let t691 = t585 * t687 + t616 * t689;
-        let t694 = t594 * t687 - t630 * t689;
-        let t698 = minus_s_left_bar_along_z * c_foot_along_z;
-        let t705 = minus_s_foot_along_z * t641 - (t32 * (t646 + t168) + t698 * t657)
-            + t598 * t687 + t633 * t689;
-        let t706 = minus_s_left_bar_along_z * t600;
-        let t708 = c_left_bar_along_z * t608;
-        let t710 = t585 * t706 - t616 * t708;
-        let t713 = t594 * t706 + t630 * t708;
-        let t724 = t32 * (minus_rate_dot_left_bar_along_z - t619) - t698 * (t645 + t168)
-            - minus_s_foot_along_z * t625 + t598 * t706 - t633 * t708;
-        let t728 = t600 + 0.31 * t641 - 0.31 * t639;
-        let t730 = minus_rate_foot_along_z * t172;
+        let t174 = minus_s_left_bar_along_z * c_foot_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (gdrive_vx_along_z * (t174 * t28));
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t145
+            + minus_gfoot_vy_along_z * t122;
+        let t180 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t122;
+        let t182 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t183 = t180 + t182;
+        let t186 = pose[1] * minus_rate_foot_along_z;
+        let t187 = c_foot_along_z * minus_rate_left_bar_along_z * t186;
+        let t189 = pose[0] * t183 + t187 + t187;
+        let t191 = pose[1] * t182;
+        let t194 = gdrive_vx_along_z * t187;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t189 + gdrive_vy_along_z * t191
+            - (t194 - 0.31 * t34 * t183 + t194);
+        let t200 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t206 = t133 + gdrive_vx_along_y * t170 + gdrive_vx_along_z * t200;
+        let t208 = gdrive_vy_along_x * t133 + t170 + gdrive_vy_along_z * t200
+            - t74 * t206;
+        let t218 = t98
+            * (gdrive_vz_along_x * t133 + gdrive_vz_along_y * t170 + t200 - t87 * t206
+                - t95 * t208);
+        let t220 = t77 * t208 - t95 * t218;
+        let t223 = pose[2] * minus_rate_foot_along_x;
+        let t224 = c_foot_along_x * minus_rate_left_bar_along_x * t223;
+        let t229 = t218 + t130;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t220 + pose[1] * t127 + t224 + t224) + minus_gfoot_vz_along_x * t229;
+        let t232 = t61 * minus_rate_dot_foot_along_x;
+        let t235 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t50;
+        let t239 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t50;
+        let t241 = minus_gfoot_vz_along_x * t235 - minus_gfoot_vy_along_x * t239;
+        let t242 = t241 * minus_rate_dot_foot_along_x;
+        let t245 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t50;
+        let t249 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t50;
+        let t251 = minus_gfoot_vy_along_x * t245 - minus_gfoot_vz_along_x * t249;
+        let t252 = t251 * minus_rate_dot_foot_along_x;
+        let t253 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t257 = c_foot_along_x * t126
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t264 = c_foot_along_x * actuator_accelerations[0];
+        let t266 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t126 - t61 * t264;
+        let t267 = t241 * t264;
+        let t268 = t251 * t264;
+        let t269 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t270 = minus_rate_left_bar_along_x * t269;
+        let t271 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t273 = t270 + t271 + t270;
+        let t274 = minus_s_left_bar_along_x * t273;
+        let t276 = minus_gleft_bar_vz_along_x * t59;
+        let t277 = 3.225806451612903 * t223;
+        let t278 = t277 * t269;
+        let t280 = t61 * t274 + t276 * t278;
+        let t281 = minus_gleft_bar_vz_along_x * t235;
+        let t284 = t281 * t278 - t241 * t274;
+        let t286 = minus_gleft_bar_vz_along_x * t249;
+        let t288 = t251 * t274 + t286 * t278;
+        let t290 = minus_rate_left_bar_along_x * t277;
+        let t291 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t293 = t290 + t290 - t291;
+        let t295 = c_left_bar_along_x * t273 - minus_s_left_bar_along_x * t293;
+        let t297 = t2 * t126;
+        let t298 = t119 - t297;
+        let t299 = t126 + t298;
+        let t300 = t297 + t119;
+        let t301 = t300 - t299;
+        let t303 = t61 * t295 - t276 * t301;
+        let t306 = t241 * t295 + t281 * t301;
+        let t309 = t251 * t295 - t286 * t301;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t229;
+        let t311 = t278 + minus_rate_dot_left_bar_along_x;
+        let t314 = minus_s_left_bar_along_x * t311 + c_left_bar_along_x * t298;
+        let t317 = t61 * t314 - t276 * t271;
+        let t320 = t241 * t314 + t281 * t271;
+        let t323 = t251 * t314 - t286 * t271;
+        let t324 = t280 - t232;
+        let t325 = t242 + t284;
+        let t326 = t288 - t252;
+        let t328 = 3.225806451612903 * t218;
+        let t330 = t276 * t291 - t61 * t328;
+        let t333 = t241 * t328 + t281 * t291;
+        let t336 = t286 * t291 - t251 * t328;
+        let t337 = t276 * minus_rate_dot_left_bar_along_x;
+        let t338 = t281 * minus_rate_dot_left_bar_along_x;
+        let t339 = t286 * minus_rate_dot_left_bar_along_x;
+        let t345 = c_left_bar_along_x * t253;
+        let t350 = minus_s_left_bar_along_x * t264 - 9.81 * c_left_bar_along_x;
+        let t352 = minus_s_foot_along_x * t293 - (t10 * t299 + t54 * t311) + t61 * t345
+            - t276 * t350;
+        let t355 = t241 * t345 + t281 * t350;
+        let t358 = t251 * t345 - t286 * t350;
+        let t365 = minus_s_left_bar_along_x * t253;
+        let t370 = c_left_bar_along_x * t264 + 31.64516129032258 * pose[2];
+        let t372 = t10 * (minus_rate_dot_left_bar_along_x - t278) - t54 * t300
+            - minus_s_foot_along_x * t273 + t61 * t365 + t276 * t370;
+        let t375 = t241 * t365 - t281 * t370;
+        let t378 = t251 * t365 + t286 * t370;
+        let t380 = t253 + 0.31 * t293;
+        let t382 = t380 - 0.31 * t291;
+        let t385 = minus_rate_foot_along_x * t223;
+        let t404 = t73 * t206 - t74 * t220 - t87 * t218;
+        let t405 = t5 * t380;
+        let t410 = 0.31 * (t350 - 0.31 * t311);
+        let t412 = t404 + t61 * t405 - t276 * t410;
+        let t415 = t241 * t405 + t281 * t410;
+        let t418 = t251 * t405 - t286 * t410;
+        let t420 = t41 * t50;
+        let t423 = minus_gfoot_vx_along_y * t420 + minus_gfoot_vz_along_y * t59;
+        let t424 = t404 + t161;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t424
+            + minus_gfoot_vz_along_y * (t218 + t159);
+        let t429 = t423 * minus_rate_dot_foot_along_y;
+        let t432 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t50;
+        let t435 = minus_gfoot_vx_along_y * t432 + minus_gfoot_vz_along_y * t235;
+        let t436 = t435 * minus_rate_dot_foot_along_y;
+        let t439 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t50;
+        let t442 = minus_gfoot_vx_along_y * t439 + minus_gfoot_vz_along_y * t249;
+        let t443 = t442 * minus_rate_dot_foot_along_y;
+        let t446 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t451 = c_foot_along_y * t149
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t456 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t457 = t423 * t456;
+        let t462 = c_foot_along_y * minus_rate_dot_foot_along_y
+            - minus_s_foot_along_y * t149 - t435 * t456;
+        let t463 = t442 * t456;
+        let t464 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t465 = minus_rate_left_bar_along_y * t464;
+        let t466 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t468 = t465 + t466 + t465;
+        let t469 = minus_s_left_bar_along_y * t468;
+        let t471 = minus_gleft_bar_vx_along_y * t420;
+        let t472 = 3.225806451612903 * t156;
+        let t473 = t472 * t464;
+        let t475 = t423 * t469 - t471 * t473;
+        let t476 = minus_gleft_bar_vx_along_y * t432;
+        let t479 = t476 * t473 - t435 * t469;
+        let t481 = minus_gleft_bar_vx_along_y * t439;
+        let t483 = t442 * t469 - t481 * t473;
+        let t485 = minus_rate_left_bar_along_y * t472;
+        let t486 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t488 = t485 + t485 - t486;
+        let t490 = c_left_bar_along_y * t468 - minus_s_left_bar_along_y * t488;
+        let t492 = t13 * t149;
+        let t493 = t464 * t464;
+        let t494 = t492 - t493;
+        let t496 = t423 * t490 + t471 * t494;
+        let t499 = t435 * t490 + t476 * t494;
+        let t502 = t442 * t490 + t481 * t494;
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t424;
+        let t504 = t473 + minus_rate_dot_left_bar_along_y;
+        let t508 = minus_s_left_bar_along_y * t504 + c_left_bar_along_y * (t152 - t492);
+        let t511 = t423 * t508 + t471 * t466;
+        let t514 = t435 * t508 + t476 * t466;
+        let t517 = t442 * t508 + t481 * t466;
+        let t518 = t429 - t475;
+        let t519 = t436 + t479;
+        let t520 = t443 - t483;
+        let t521 = 3.225806451612903 * t404;
+        let t524 = t423 * t521 + t471 * t486;
+        let t527 = t435 * t521 + t476 * t486;
+        let t530 = t442 * t521 + t481 * t486;
+        let t531 = t471 * minus_rate_dot_left_bar_along_y;
+        let t532 = t476 * minus_rate_dot_left_bar_along_y;
+        let t533 = t481 * minus_rate_dot_left_bar_along_y;
+        let t534 = c_left_bar_along_y * t446;
+        let t536 = minus_s_left_bar_along_y * t456;
+        let t538 = t423 * t534 + t471 * t536;
+        let t548 = minus_s_foot_along_y * t488 - (t21 * (t493 + t152) + t136 * t504)
+            + t435 * t534 + t476 * t536;
+        let t551 = t442 * t534 + t481 * t536;
+        let t552 = c_left_bar_along_y * t456;
+        let t554 = minus_s_left_bar_along_y * t446;
+        let t556 = t471 * t552 - t423 * t554;
+        let t567 = t21 * (minus_rate_dot_left_bar_along_y - t473) - t136 * (t492 + t152)
+            - minus_s_foot_along_y * t468 + t435 * t554 - t476 * t552;
+        let t570 = t481 * t552 - t442 * t554;
+        let t571 = minus_rate_foot_along_y * t156;
+        let t576 = t446 + 0.31 * t488 - 0.31 * t486;
+        let t592 = 9.81 + actuator_accelerations[2];
+        let t596 = minus_gfoot_vy_along_z * t51 - minus_gfoot_vx_along_z * t420;
+        let t599 = t220 + t191;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t404 + t189)
+            + minus_gfoot_vy_along_z * t599;
+        let t602 = t596 * minus_rate_dot_foot_along_z;
+        let t605 = minus_gfoot_vx_along_z * t432 - minus_gfoot_vy_along_z * t239;
+        let t606 = t605 * minus_rate_dot_foot_along_z;
+        let t609 = minus_gfoot_vy_along_z * t245 - minus_gfoot_vx_along_z * t439;
+        let t610 = t609 * minus_rate_dot_foot_along_z;
+        let t611 = minus_s_foot_along_z * t592;
+        let t617 = c_foot_along_z * t180
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t619 = c_foot_along_z * t592;
+        let t620 = t596 * t619;
+        let t621 = t605 * t619;
+        let t626 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t180 - t609 * t619;
+        let t627 = minus_gleft_bar_vy_along_z * t51;
+        let t628 = 3.225806451612903 * t186;
+        let t629 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t630 = t628 * t629;
+        let t632 = minus_rate_left_bar_along_z * t629;
+        let t633 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t635 = t632 + t633 + t632;
+        let t636 = minus_s_left_bar_along_z * t635;
+        let t638 = t627 * t630 - t596 * t636;
+        let t640 = minus_gleft_bar_vy_along_z * t239;
+        let t642 = t605 * t636 + t640 * t630;
+        let t643 = minus_gleft_bar_vy_along_z * t245;
+        let t646 = t643 * t630 - t609 * t636;
+        let t648 = minus_rate_left_bar_along_z * t628;
+        let t649 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t651 = t648 + t648 - t649;
+        let t653 = c_left_bar_along_z * t635 - minus_s_left_bar_along_z * t651;
+        let t655 = t25 * t180;
+        let t656 = t629 * t629;
+        let t657 = t655 - t656;
+        let t659 = t596 * t653 + t627 * t657;
+        let t662 = t605 * t653 - t640 * t657;
+        let t665 = t609 * t653 + t643 * t657;
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t599;
+        let t667 = t630 + minus_rate_dot_left_bar_along_z;
+        let t671 = minus_s_left_bar_along_z * t667 + c_left_bar_along_z * (t182 - t655);
+        let t674 = t596 * t671 + t627 * t633;
+        let t677 = t605 * t671 - t640 * t633;
+        let t680 = t609 * t671 + t643 * t633;
+        let t681 = t602 + t638;
+        let t682 = t642 - t606;
+        let t683 = t610 + t646;
+        let t684 = 3.225806451612903 * t220;
+        let t687 = t596 * t684 + t627 * t649;
+        let t690 = t640 * t649 - t605 * t684;
+        let t693 = t609 * t684 + t643 * t649;
+        let t694 = t627 * minus_rate_dot_left_bar_along_z;
+        let t695 = t640 * minus_rate_dot_left_bar_along_z;
+        let t696 = t643 * minus_rate_dot_left_bar_along_z;
+        let t697 = c_left_bar_along_z * t611;
+        let t699 = minus_s_left_bar_along_z * t619;
+        let t701 = t596 * t697 + t627 * t699;
+        let t704 = t605 * t697 - t640 * t699;
+        let t714 = minus_s_foot_along_z * t651 - (t34 * (t656 + t182) + t174 * t667)
+            + t609 * t697 + t643 * t699;
+        let t715 = minus_s_left_bar_along_z * t611;
+        let t717 = c_left_bar_along_z * t619;
+        let t719 = t596 * t715 - t627 * t717;
+        let t722 = t605 * t715 + t640 * t717;
+        let t733 = t34 * (minus_rate_dot_left_bar_along_z - t630) - t174 * (t655 + t182)
+            - minus_s_foot_along_z * t635 + t609 * t715 - t643 * t717;
+        let t737 = t611 + 0.31 * t651 - 0.31 * t649;
+        let t739 = minus_rate_foot_along_z * t186;
         Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
-                ::overact::math::sign(actuator_velocities[0]), 1.0, -t218, t56 * t239 - t243, t252,
-                actuator_accelerations[0], -t267, t290, t304, t311, t317, t324, t340, t360, -t252,
-                actuator_accelerations[0], -t267, t290, t304, t311, t317, t324, t340, t360, -t252,
-                actuator_accelerations[0], -t218, t56 * t370 - t243 + t263 * t373,
-                -(t252 + 0.31 * t304), t400, 0.0, 0.0, 0.0, 0.0, 0.0, t417, -(t411 * t434), t445,
-                0.0, t463, -t484, -t499, t506, t512, t519, -t526, t545, -t445, 0.0, t463, -t484,
-                -t499, t506, t512, t519, -t526, t545, -t445, 0.0, t417, t459 * t560 - t411 * t565,
-                -(t445 - 0.31 * t499), t400, 0.0, 0.0, 0.0, 0.0, 0.0, -t591, t585 * t600, -t609,
-                0.0, t628, t649, t664, -t671, -t677, -t684, t691, t710, t609, 0.0, t628, t649, t664,
-                -t671, -t677, -t684, t691, t710, t609, 0.0, -t591, t585 * t728 - t616 * t730,
-                -(0.31 * t664 - t609), t400, t400,
+                ::overact::math::sign(actuator_velocities[0]), 1.0, -t232, t61 * t253 - t257, t266,
+                actuator_accelerations[0], -t280, t303, t317, t324, t330, t337, t352, t372, -t266,
+                actuator_accelerations[0], -t280, t303, t317, t324, t330, t337, t352, t372, -t266,
+                actuator_accelerations[0], -t232, t61 * t382 - t257 + t276 * t385,
+                -(t266 + 0.31 * t317), t412, 0.0, 0.0, 0.0, 0.0, 0.0, t429, -(t423 * t446), t457,
+                0.0, t475, -t496, -t511, t518, t524, t531, -t538, t556, -t457, 0.0, t475, -t496,
+                -t511, t518, t524, t531, -t538, t556, -t457, 0.0, t429, t471 * t571 - t423 * t576,
+                -(t457 - 0.31 * t511), t412, 0.0, 0.0, 0.0, 0.0, 0.0, -t602, t596 * t611, -t620,
+                0.0, t638, t659, t674, -t681, -t687, -t694, t701, t719, t620, 0.0, t638, t659, t674,
+                -t681, -t687, -t694, t701, t719, t620, 0.0, -t602, t596 * t737 - t627 * t739,
+                -(0.31 * t674 - t620), t412, t412,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t228, t227 * t239, -t253, 0.0, t271, t293, t307, -t312,
-                -t320, -t325, t343, t363, t253, 0.0, t271, t293, t307, -t312, -t320, -t325, t343,
-                t363, t253, 0.0, -t228, t227 * t370 - t268 * t373, -(0.31 * t307 - t253), t403,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t242, t241 * t253, -t267, 0.0, t284, t306, t320, -t325,
+                -t333, -t338, t355, t375, t267, 0.0, t284, t306, t320, -t325, -t333, -t338, t355,
+                t375, t267, 0.0, -t242, t241 * t382 - t281 * t385, -(0.31 * t320 - t267), t415,
                 actuator_accelerations[1], actuator_accelerations[1], actuator_velocities[1],
-                ::overact::math::sign(actuator_velocities[1]), 1.0, -t424, t423 * t434 - t439, t450,
-                actuator_accelerations[1], t467, t487, t502, -t507, -t515, -t520, t537, t556, -t450,
-                actuator_accelerations[1], t467, t487, t502, -t507, -t515, -t520, t537, t556, -t450,
-                actuator_accelerations[1], -t424, t423 * t565 - t439 - t464 * t560,
-                -(t450 + 0.31 * t502), t403, 0.0, 0.0, 0.0, 0.0, 0.0, -t595, t594 * t600, -t610,
-                0.0, -t632, t652, t667, t672, t680, t685, t694, t713, t610, 0.0, -t632, t652, t667,
-                t672, t680, t685, t694, t713, t610, 0.0, -t595, t594 * t728 + t630 * t730,
-                -(0.31 * t667 - t610), t403, t403,
+                ::overact::math::sign(actuator_velocities[1]), 1.0, -t436, t435 * t446 - t451, t462,
+                actuator_accelerations[1], t479, t499, t514, -t519, -t527, -t532, t548, t567, -t462,
+                actuator_accelerations[1], t479, t499, t514, -t519, -t527, -t532, t548, t567, -t462,
+                actuator_accelerations[1], -t436, t435 * t576 - t451 - t476 * t571,
+                -(t462 + 0.31 * t514), t415, 0.0, 0.0, 0.0, 0.0, 0.0, -t606, t605 * t611, -t621,
+                0.0, -t642, t662, t677, t682, t690, t695, t704, t722, t621, 0.0, -t642, t662, t677,
+                t682, t690, t695, t704, t722, t621, 0.0, -t606, t605 * t737 + t640 * t739,
+                -(0.31 * t677 - t621), t415, t415,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t238, t237 * t239, -t254, 0.0, -t275, t296, t310, t313,
-                t323, t326, t346, t366, t254, 0.0, -t275, t296, t310, t313, t323, t326, t346, t366,
-                t254, 0.0, -t238, t237 * t370 + t273 * t373, -(0.31 * t310 - t254), t406, 0.0, 0.0,
-                0.0, 0.0, 0.0, t431, -(t430 * t434), t451, 0.0, t471, -t490, -t505, t508, t518,
-                t521, -t540, t559, -t451, 0.0, t471, -t490, -t505, t508, t518, t521, -t540, t559,
-                -t451, 0.0, t431, t469 * t560 - t430 * t565, -(t451 - 0.31 * t505), t406, t581,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t252, t251 * t253, -t268, 0.0, -t288, t309, t323, t326,
+                t336, t339, t358, t378, t268, 0.0, -t288, t309, t323, t326, t336, t339, t358, t378,
+                t268, 0.0, -t252, t251 * t382 + t286 * t385, -(0.31 * t323 - t268), t418, 0.0, 0.0,
+                0.0, 0.0, 0.0, t443, -(t442 * t446), t463, 0.0, t483, -t502, -t517, t520, t530,
+                t533, -t551, t570, -t463, 0.0, t483, -t502, -t517, t520, t530, t533, -t551, t570,
+                -t463, 0.0, t443, t481 * t571 - t442 * t576, -(t463 - 0.31 * t517), t418, t592,
                 actuator_accelerations[2], actuator_velocities[2],
-                ::overact::math::sign(actuator_velocities[2]), 1.0, -t599, t598 * t600 - t606, t615,
-                t581, t636, t655, t670, -t673, -t683, -t686, t705, t724, -t615, t581, t636, t655,
-                t670, -t673, -t683, -t686, t705, t724, -t615, t581, -t599,
-                t598 * t728 - t606 - t633 * t730, -(t615 + 0.31 * t670), t406, t406,
+                ::overact::math::sign(actuator_velocities[2]), 1.0, -t610, t609 * t611 - t617, t626,
+                t592, t646, t665, t680, -t683, -t693, -t696, t714, t733, -t626, t592, t646, t665,
+                t680, -t683, -t693, -t696, t714, t733, -t626, t592, -t610,
+                t609 * t737 - t617 - t643 * t739, -(t626 + 0.31 * t680), t418, t418,
             ],
         ])
     }
@@ -3566,7 +3701,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 402 operations (134 additions, 256 multiplications, 12 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 316 intermediates.
+    /// 412 operations (134 additions, 272 multiplications, 6 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 326 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3576,229 +3711,232 @@ impl Orthoglide {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t2 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
-        let t3 = 1.0 - t2;
+        let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t3, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t3);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
-        let t8 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t8);
-        let t10 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t10, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t10;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t5 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t5;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let t9 = minus_s_foot_along_x * minus_s_foot_along_x;
+        let t10 = 1.0 - t9;
+        ::overact::guard::reach(t10, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t10);
+        let t12 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t12, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t12;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
-        let t16 = minus_s_foot_along_x * minus_gleft_bar_vz_along_x;
-        let minus_gfoot_vz_along_x = gdrive_vz_along_x * t16;
+        let minus_gfoot_vz_along_x = gdrive_vz_along_x
+            * (minus_s_foot_along_x * minus_gleft_bar_vz_along_x);
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t20 = gdrive_vz_along_x * twist[2];
-        let t22 = t8 * (minus_rate_foot_along_x * t20);
-        let t23 = gdrive_vy_along_x * t22;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t26 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t27 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t28 = t26 + t27;
-        let t36 = acceleration[1] + pose[1] * t28 + t22 + t22;
-        let t40 = acceleration[2] + pose[2] * t26;
-        let rate_dot_drive_along_x = acceleration[0] - (t23 - 0.31 * t10 * t28 + t23)
+        let t20 = pose[2] * minus_rate_foot_along_x;
+        let t21 = minus_rate_left_bar_along_x * t20;
+        let t22 = minus_s_foot_along_x * t21;
+        let t24 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t25 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t26 = t24 + t25;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t33 = c_foot_along_x * t21;
+        let t36 = acceleration[1] + pose[1] * t26 + t33 + t33;
+        let t40 = acceleration[2] + pose[2] * t24;
+        let rate_dot_drive_along_x = acceleration[0] - (t22 - 0.31 * t12 * t26 + t22)
             + gdrive_vy_along_x * t36 + gdrive_vz_along_x * t40;
-        let t44 = gdrive_vz_along_x * rate_dot_drive_along_x;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t46 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        let t47 = 1.0 - t46;
+        let t47 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t47, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t47);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
+        let t49 = 1.0 / c_left_bar_along_y;
+        let minus_s_foot_along_y = minus_s_left_bar_along_x * t49;
         let t52 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
         ::overact::guard::reach(t52, "along_y")?;
         let c_foot_along_y = ::overact::math::sqrt(t52);
         let t54 = c_left_bar_along_y * c_foot_along_y;
         ::overact::guard::leg(t54, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t54;
+        let t55 = 1.0 / t54;
+        let minus_gfoot_vz_along_y = 3.225806451612903 * t55;
         let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t49;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t58 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t60 = acceleration[0] + pose[0] * t58;
+        let t60 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t62 = acceleration[0] + pose[0] * t60;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t63 = gdrive_vx_along_y * twist[0];
-        let t64 = pose[0] * minus_gleft_bar_vx_along_y;
-        let t65 = minus_s_foot_along_y * t64;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t65;
+        let t65 = gdrive_vx_along_y * twist[0];
+        let t66 = minus_s_left_bar_along_y * t49;
+        let t67 = minus_s_foot_along_y * t66;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t67;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t71 = t63 * (t52 * minus_rate_foot_along_y);
-        let t72 = gdrive_vz_along_y * t71;
-        let t74 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t75 = t74 * t74;
+        let t73 = t65 * (t52 * minus_rate_foot_along_y);
+        let t74 = gdrive_vz_along_y * t73;
         let t76 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t77 = t46 * t76;
-        let t78 = t77 + t58;
-        let t79 = t75 + t78;
-        let t88 = acceleration[2] + pose[2] * t79 + t71 + t71;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t60 + acceleration[1]
-            - (t72 - 0.31 * t54 * t79 + t72) + gdrive_vz_along_y * t88;
-        let t92 = gdrive_vz_along_y * rate_dot_drive_along_y;
-        let t94 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
-        ::overact::guard::reach(t94, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t94);
+        let t77 = t76 + t60;
+        let t86 = acceleration[2] + pose[2] * t77 + t73 + t73;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t62 + acceleration[1]
+            - (t74 - 0.31 * t54 * t77 + t74) + gdrive_vz_along_y * t86;
+        let t90 = gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t92 = 1.0 - t3 * t9;
+        ::overact::guard::reach(t92, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t92);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let t94 = 1.0 / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t94;
         let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t99 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
-        ::overact::guard::reach(t99, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t99);
-        let t101 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t101, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t101;
+        let t98 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
+        ::overact::guard::reach(t98, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t98);
+        let t100 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t100, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t100;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t106 = minus_s_foot_along_z * minus_gleft_bar_vy_along_z;
-        let minus_gfoot_vy_along_z = gdrive_vy_along_z * t106;
+        let minus_gfoot_vy_along_z = gdrive_vy_along_z
+            * (minus_s_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t110 = minus_s_left_bar_along_z * minus_rate_foot_along_z;
-        let t111 = t110 * t110;
+        let t109 = minus_rate_foot_along_z * minus_rate_foot_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t113 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t114 = t111 + t113;
-        let t115 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t116 = t115 * t115;
-        let t117 = t114 + t116;
-        let t119 = gdrive_vy_along_z * twist[1];
-        let t121 = t119 * (t99 * minus_rate_foot_along_z);
-        let t124 = acceleration[0] + pose[0] * t117 + t121 + t121;
-        let t127 = acceleration[1] + pose[1] * t113;
-        let t130 = gdrive_vx_along_z * t121;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t124 + gdrive_vy_along_z * t127
-            + acceleration[2] - (t130 - 0.31 * t101 * t117 + t130);
-        let t137 = 9.81 + rate_dot_drive_along_z;
-        let t139 = gdrive_vy_along_z * t137;
-        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1] + t20;
-        let rate_drive_along_y = t63 + twist[1] + gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t119 + twist[2];
+        let t111 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t112 = t109 + t111;
+        let t114 = c_foot_along_z * minus_rate_left_bar_along_z;
+        let t115 = pose[1] * minus_rate_foot_along_z;
+        let t116 = t114 * t115;
+        let t119 = acceleration[0] + pose[0] * t112 + t116 + t116;
+        let t121 = gdrive_vy_along_z * twist[1];
+        let t123 = acceleration[1] + t114 * t121;
+        let t126 = gdrive_vx_along_z * t116;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t119 + gdrive_vy_along_z * t123
+            + acceleration[2] - (t126 - 0.31 * t100 * t112 + t126);
+        let t133 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
+            + gdrive_vz_along_x * twist[2];
+        let rate_drive_along_y = t65 + twist[1] + gdrive_vz_along_y * twist[2];
+        let rate_drive_along_z = gdrive_vx_along_z * twist[0] + t121 + twist[2];
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t36
             + minus_gfoot_vz_along_x * t40;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t60
-            + minus_gfoot_vz_along_y * t88;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t124
-            + minus_gfoot_vy_along_z * t127;
-        let t183 = c_foot_along_x * t27
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t62
+            + minus_gfoot_vz_along_y * t86;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t119
+            + minus_gfoot_vy_along_z * t123;
+        let t180 = c_foot_along_x * t25
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t184 = minus_gleft_bar_vz_along_x * rate_dot_drive_along_x;
-        let t188 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t189 = minus_gfoot_vz_along_x * t188;
-        let t193 = c_foot_along_y * t76
+        let t181 = c_foot_along_x * rate_dot_drive_along_x;
+        let t182 = minus_gfoot_vy_along_x * t181;
+        let t186 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t191 = c_foot_along_y * t76
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t196 = minus_gleft_bar_vx_along_y * (9.81 - t92);
-        let t201 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t204 = c_foot_along_z * t201
+        let t194 = c_foot_along_y * (9.81 - t90);
+        let t198 = minus_gfoot_vz_along_y * t194;
+        let t202 = c_foot_along_z * t109
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t205 = minus_gleft_bar_vy_along_z * t137;
-        let t209 = minus_s_foot_along_z * t137;
-        let t210 = minus_gfoot_vy_along_z * t209;
-        let t214 = c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_s_foot_along_x * t27;
-        let t218 = t44 * t16;
-        let t223 = c_foot_along_y * minus_rate_dot_foot_along_y
+        let t203 = c_foot_along_z * t133;
+        let t204 = minus_gfoot_vx_along_z * t203;
+        let t208 = minus_s_foot_along_z * t133;
+        let t213 = c_foot_along_x * minus_rate_dot_foot_along_x
+            - minus_s_foot_along_x * t25;
+        let t221 = c_foot_along_y * minus_rate_dot_foot_along_y
             - minus_s_foot_along_y * t76;
-        let t225 = 9.81 * minus_s_foot_along_y;
-        let t227 = t225 + c_foot_along_y * rate_dot_drive_along_y;
-        let t235 = c_foot_along_z * minus_rate_dot_foot_along_z
-            - minus_s_foot_along_z * t201;
-        let t239 = t139 * t106;
-        let t242 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t243 = minus_rate_left_bar_along_x * t242;
-        let t244 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t246 = t243 + t244 + t243;
-        let t247 = minus_s_left_bar_along_x * t246;
-        let t251 = minus_s_left_bar_along_x * minus_rate_foot_along_x * t242;
-        let t254 = minus_rate_left_bar_along_y * t74;
-        let t255 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t257 = t254 + t255 + t254;
-        let t258 = c_left_bar_along_y * t257;
-        let t259 = t258 * t64;
-        let t261 = t75 * t64;
-        let t265 = minus_rate_left_bar_along_z * t115;
+        let t225 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t233 = c_foot_along_z * minus_rate_dot_foot_along_z
+            - minus_s_foot_along_z * t109;
+        let t239 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t240 = minus_rate_left_bar_along_x * t239;
+        let t241 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t243 = t240 + t241 + t240;
+        let t244 = minus_s_left_bar_along_x * t243;
+        let t248 = 3.225806451612903 * t20 * t239;
+        let t249 = minus_gleft_bar_vz_along_x * t248;
+        let t251 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t252 = minus_rate_left_bar_along_y * t251;
+        let t253 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t255 = t252 + t253 + t252;
+        let t256 = minus_s_left_bar_along_y * t255;
+        let t258 = t251 * t251;
+        let t259 = t258 * t66;
+        let t260 = minus_gleft_bar_vx_along_y * t259;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t264 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t265 = minus_rate_left_bar_along_z * t264;
         let t266 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
         let t268 = t265 + t266 + t265;
         let t269 = minus_s_left_bar_along_z * t268;
-        let t272 = t110 * t115;
-        let t277 = (minus_rate_dot_foot_along_x - t247) / c_left_bar_along_x;
-        let t279 = c_left_bar_along_x * t246 + minus_s_left_bar_along_x * t277;
-        let t282 = t2 * t27;
-        let t288 = (minus_rate_dot_foot_along_y - t259) / c_left_bar_along_y;
-        let t290 = t258 + minus_s_left_bar_along_y * t288;
-        let t298 = (minus_rate_dot_foot_along_z - t269) / c_left_bar_along_z;
-        let t300 = c_left_bar_along_z * t268 + minus_s_left_bar_along_z * t298;
+        let t273 = 3.225806451612903 * t115 * t264;
+        let t274 = minus_gleft_bar_vy_along_z * t273;
+        let t278 = t5 * (minus_rate_dot_foot_along_x - t244);
+        let t280 = c_left_bar_along_x * t243 + minus_s_left_bar_along_x * t278;
+        let t283 = pose[2] * t249;
+        let t290 = t49 * (minus_rate_dot_foot_along_y - t256);
+        let t292 = c_left_bar_along_y * t255 + minus_s_left_bar_along_y * t290;
+        let t294 = pose[0] * t260;
+        let t301 = t94 * (minus_rate_dot_foot_along_z - t269);
+        let t303 = c_left_bar_along_z * t268 + minus_s_left_bar_along_z * t301;
+        let t306 = pose[1] * t274;
         let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t40;
-        let t311 = minus_s_left_bar_along_x * (t251 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t26 - t282);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t60;
-        let t321 = minus_s_left_bar_along_y * (t261 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t58 - t77);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t127;
-        let t331 = minus_s_left_bar_along_z * (t272 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t113 - t111);
-        let t336 = 3.225806451612903 * acceleration[2];
-        let t342 = 10.40582726326743 * (acceleration[0] / t54);
-        let t346 = 3.225806451612903 * acceleration[1];
-        let t361 = t10 * (minus_rate_dot_left_bar_along_x - t251)
-            - minus_s_left_bar_along_x * c_foot_along_x * (t282 + t26)
-            - minus_s_foot_along_x * t246;
-        let t379 = t54 * (minus_rate_dot_left_bar_along_y - t261)
-            - minus_s_left_bar_along_y * c_foot_along_y * t78
-            - minus_s_foot_along_y * t257;
-        let t381 = minus_s_left_bar_along_y * t196;
-        let t394 = t101 * (minus_rate_dot_left_bar_along_z - t272)
-            - minus_s_left_bar_along_z * c_foot_along_z * t114
+        let t316 = minus_s_left_bar_along_x * (t248 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t24 - t283);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t62;
+        let t326 = minus_s_left_bar_along_y * (t259 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t60 - t294);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t123;
+        let t336 = minus_s_left_bar_along_z * (t273 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t111 - t306);
+        let t341 = 3.225806451612903 * acceleration[2];
+        let t347 = 10.40582726326743 * (t55 * acceleration[0]);
+        let t351 = 3.225806451612903 * acceleration[1];
+        let t366 = t12 * (minus_rate_dot_left_bar_along_x - t248)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t283 + t24)
+            - minus_s_foot_along_x * t243;
+        let t368 = minus_s_left_bar_along_x * t186;
+        let t386 = t54 * (minus_rate_dot_left_bar_along_y - t259)
+            - minus_s_left_bar_along_y * c_foot_along_y * (t294 + t60)
+            - minus_s_foot_along_y * t255;
+        let t388 = minus_s_left_bar_along_y * t198;
+        let t402 = t100 * (minus_rate_dot_left_bar_along_z - t273)
+            - minus_s_left_bar_along_z * c_foot_along_z * (t306 + t111)
             - minus_s_foot_along_z * t268;
-        let t404 = t188 - 0.31 * t277;
-        let t409 = t196 + t288 / t54;
-        let t413 = t209 - 0.31 * t298;
+        let t404 = minus_s_left_bar_along_z * t208;
+        let t413 = t186 - 0.31 * t278;
+        let t418 = t194 + 0.31 * t290;
+        let t423 = t208 - 0.31 * t301;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x, gdrive_vx_along_y * rate_dot_drive_along_y,
-                gdrive_vx_along_z * t137, gdrive_vx_along_z * rate_dot_drive_along_z,
+                gdrive_vx_along_z * t133, gdrive_vx_along_z * rate_dot_drive_along_z,
                 rate_drive_along_x, gdrive_vx_along_y * rate_drive_along_y,
                 gdrive_vx_along_z * rate_drive_along_z, ::overact::math::sign(rate_drive_along_x),
                 ::overact::math::signed(gdrive_vx_along_y, rate_drive_along_y),
                 ::overact::math::signed(gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t183,
-                -(gdrive_vx_along_y * t193 - t65 * t196), -(gdrive_vx_along_z * (t204 + t205)),
-                t214, gdrive_vx_along_y * t223 + minus_gfoot_vx_along_y * t227,
-                gdrive_vx_along_z * t235 + t205, 0.0,
-                minus_gfoot_vx_along_y * t259 - minus_gleft_bar_vx_along_y * t261,
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t180,
+                -(gdrive_vx_along_y * t191 - minus_gfoot_vx_along_y * t194),
+                -(gdrive_vx_along_z * (t202 + t204)), t213,
+                gdrive_vx_along_y * t221 + minus_gfoot_vx_along_y * t225,
+                gdrive_vx_along_z * t233 + t204, 0.0, minus_gfoot_vx_along_y * t256 - t260,
                 minus_gfoot_vx_along_z * t269, 0.0,
-                -(minus_gfoot_vx_along_y * t290
-                    + minus_gleft_bar_vx_along_y * (t77 - t75)),
-                -(minus_gfoot_vx_along_z * t300),
+                -(minus_gfoot_vx_along_y * t292
+                    + minus_gleft_bar_vx_along_y * (t294 - t258)),
+                -(minus_gfoot_vx_along_z * t303),
                 0.0,
-                -(minus_gfoot_vx_along_y * t321 + minus_gleft_bar_vx_along_y * t255),
-                -(minus_gfoot_vx_along_z * t331),
+                -(minus_gfoot_vx_along_y * t326 + minus_gleft_bar_vx_along_y * t253),
+                -(minus_gfoot_vx_along_z * t336),
                 0.0,
-                t65 * t342 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t346,
+                t67 * t347 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t351,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t361,
-                gdrive_vx_along_y * t379 + t65 * t381 + 3.225806451612903 * t227,
-                gdrive_vx_along_z * t394 - c_left_bar_along_z * t239,
-                -t183,
-                t65 * t409,
-                -(minus_gfoot_vx_along_z * t413 - t235),
+                t366,
+                gdrive_vx_along_y * t386 + t67 * t388 + 3.225806451612903 * t225,
+                gdrive_vx_along_z * t402 - minus_gfoot_vx_along_z * t404,
+                -t180,
+                minus_gfoot_vx_along_y * t418,
+                -(minus_gfoot_vx_along_z * t423 - t233),
             ],
             [
                 acceleration[1], gdrive_vy_along_x * rate_dot_drive_along_x, rate_dot_drive_along_y,
-                t139, gdrive_vy_along_z * rate_dot_drive_along_z,
+                gdrive_vy_along_z * t133, gdrive_vy_along_z * rate_dot_drive_along_z,
                 gdrive_vy_along_x * rate_drive_along_x, rate_drive_along_y,
                 gdrive_vy_along_z * rate_drive_along_z,
                 ::overact::math::signed(gdrive_vy_along_x, rate_drive_along_x),
@@ -3806,65 +3944,68 @@ impl Orthoglide {
                 ::overact::math::signed(gdrive_vy_along_z, rate_drive_along_z), gdrive_vy_along_x,
                 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
                 minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
-                -(gdrive_vy_along_x * (t183 + t184)), -t193, -(gdrive_vy_along_z * t204 + t210),
-                gdrive_vy_along_x * t214 + t184, t223,
-                gdrive_vy_along_z * t235 + c_foot_along_z * t239, minus_gfoot_vy_along_x * t247,
-                0.0, minus_gfoot_vy_along_z * t269 - minus_gleft_bar_vy_along_z * t272,
-                -(minus_gfoot_vy_along_x * t279), 0.0,
-                -(minus_gfoot_vy_along_z * t300
-                    + minus_gleft_bar_vy_along_z * (t111 - t116)),
-                -(minus_gfoot_vy_along_x * t311),
+                -(gdrive_vy_along_x * (t180 + t182)), -t191,
+                -(gdrive_vy_along_z * t202 + minus_gfoot_vy_along_z * t208),
+                gdrive_vy_along_x * t213 + t182, t221,
+                gdrive_vy_along_z * t233 + minus_gfoot_vy_along_z * t203,
+                minus_gfoot_vy_along_x * t244, 0.0, minus_gfoot_vy_along_z * t269 - t274,
+                -(minus_gfoot_vy_along_x * t280), 0.0,
+                -(minus_gfoot_vy_along_z * t303
+                    + minus_gleft_bar_vy_along_z * (t306 - t264 * t264)),
+                -(minus_gfoot_vy_along_x * t316),
                 0.0,
-                -(minus_gfoot_vy_along_z * t331 + minus_gleft_bar_vy_along_z * t266),
-                minus_gfoot_vy_along_x * t336,
+                -(minus_gfoot_vy_along_z * t336 + minus_gleft_bar_vy_along_z * t266),
+                minus_gfoot_vy_along_x * t341,
                 0.0,
-                minus_gfoot_vy_along_z * t346
+                minus_gfoot_vy_along_z * t351
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t361 - c_left_bar_along_x * t218,
-                t379,
-                gdrive_vy_along_z * t394 - minus_s_left_bar_along_z * t210 + t101 * t205,
-                -(minus_gfoot_vy_along_x * t404 - t214),
-                -t193,
-                -(minus_gfoot_vy_along_z * t413),
+                gdrive_vy_along_x * t366 - minus_gfoot_vy_along_x * t368,
+                t386,
+                gdrive_vy_along_z * t402 - minus_gfoot_vy_along_z * t404
+                    + 3.225806451612903 * t203,
+                -(minus_gfoot_vy_along_x * t413 - t213),
+                -t191,
+                -(minus_gfoot_vy_along_z * t423),
             ],
             [
-                -(-9.81 - acceleration[2]), t44, t92, t137, rate_dot_drive_along_z,
-                gdrive_vz_along_x * rate_drive_along_x, gdrive_vz_along_y * rate_drive_along_y,
-                rate_drive_along_z, ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
+                -(-9.81 - acceleration[2]), gdrive_vz_along_x * rate_dot_drive_along_x, t90, t133,
+                rate_dot_drive_along_z, gdrive_vz_along_x * rate_drive_along_x,
+                gdrive_vz_along_y * rate_drive_along_y, rate_drive_along_z,
+                ::overact::math::signed(gdrive_vz_along_x, rate_drive_along_x),
                 ::overact::math::signed(gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(gdrive_vz_along_x * t183 + t189), -(gdrive_vz_along_y * t193 - t196), -t204,
-                gdrive_vz_along_x * t214 + c_foot_along_x * t218,
-                gdrive_vz_along_y * t223 + minus_gfoot_vz_along_y * t227, t235,
-                minus_gfoot_vz_along_x * t247 - minus_gleft_bar_vz_along_x * t251,
-                minus_gfoot_vz_along_y * t259, 0.0,
-                -(minus_gfoot_vz_along_x * t279
-                    + minus_gleft_bar_vz_along_x * (t282 - t242 * t242)),
-                -(minus_gfoot_vz_along_y * t290),
+                -(gdrive_vz_along_x * t180 + minus_gfoot_vz_along_x * t186),
+                -(gdrive_vz_along_y * t191 - t198), -t202,
+                gdrive_vz_along_x * t213 + minus_gfoot_vz_along_x * t181,
+                gdrive_vz_along_y * t221 + minus_gfoot_vz_along_y * t225, t233,
+                minus_gfoot_vz_along_x * t244 - t249, minus_gfoot_vz_along_y * t256, 0.0,
+                -(minus_gfoot_vz_along_x * t280
+                    + minus_gleft_bar_vz_along_x * (t283 - t239 * t239)),
+                -(minus_gfoot_vz_along_y * t292),
                 0.0,
-                -(minus_gfoot_vz_along_x * t311 + minus_gleft_bar_vz_along_x * t244),
-                -(minus_gfoot_vz_along_y * t321),
+                -(minus_gfoot_vz_along_x * t316 + minus_gleft_bar_vz_along_x * t241),
+                -(minus_gfoot_vz_along_y * t326),
                 0.0,
-                minus_gfoot_vz_along_x * t336
+                minus_gfoot_vz_along_x * t341
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t342,
+                t347,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t361 - minus_s_left_bar_along_x * t189
+                gdrive_vz_along_x * t366 - minus_gfoot_vz_along_x * t368
                     + minus_gleft_bar_vz_along_x
-                        * (t10 * rate_dot_drive_along_x + c_left_bar_along_y * t225),
-                gdrive_vz_along_y * t379 + t381,
-                t394,
-                -(minus_gfoot_vz_along_x * t404),
-                t223 + t409,
-                -t204,
+                        * (c_left_bar_along_x * t181 + 31.64516129032258 * pose[2]),
+                gdrive_vz_along_y * t386 + t388,
+                t402,
+                -(minus_gfoot_vz_along_x * t413),
+                t221 + minus_gfoot_vz_along_y * t418,
+                -t202,
             ],
         ])
     }
@@ -3879,7 +4020,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 393 operations (129 additions, 248 multiplications, 16 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 313 intermediates.
+    /// 398 operations (131 additions, 255 multiplications, 12 divisions), 0 square roots, 6 trigonometric pairs, 9 signs, 318 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3896,174 +4037,175 @@ impl Orthoglide {
         ] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[6], joints[5], joints[9], joints[10],
         ]);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t5 = s_foot_along_x * c_left_bar_along_x;
         ::overact::guard::leg(t5, 1.0, "along_x")?;
-        let t6 = c_left_bar_along_x / t5;
-        let minus_gdrive_vy_along_x = minus_c_foot_along_x * t6;
-        let minus_gdrive_vz_along_x = s_left_bar_along_x / t5;
-        let t9 = minus_gdrive_vz_along_x * twist[2];
         let minus_gfoot_vy_along_x = 3.225806451612903 / t5;
-        let t12 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t12;
-        let minus_gfoot_vz_along_x = minus_gdrive_vz_along_x
-            * (minus_c_foot_along_x * minus_gleft_bar_vz_along_x);
+        let minus_gleft_bar_vz_along_x = s_foot_along_x * minus_gfoot_vy_along_x;
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
+        let minus_gdrive_vz_along_x = s_left_bar_along_x / t5;
+        let t11 = minus_c_foot_along_x * minus_gleft_bar_vz_along_x;
+        let minus_gfoot_vz_along_x = minus_gdrive_vz_along_x * t11;
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t18 = s_foot_along_x * minus_rate_foot_along_x;
-        let t20 = s_foot_along_x * (t9 * t18);
-        let t21 = minus_gdrive_vy_along_x * t20;
-        let t22 = s_left_bar_along_x * minus_rate_foot_along_x;
-        let t23 = t22 * t22;
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
-        let t25 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t26 = t23 + t25;
-        let t27 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t28 = t27 * t27;
-        let t31 = t5 * (0.31 * (t26 + t28));
-        let t38 = acceleration[1] - (t31 * minus_gdrive_vy_along_x + t20 + t20);
-        let t43 = acceleration[2] - 0.31 * s_left_bar_along_x * t25;
-        let rate_dot_drive_along_x = acceleration[0] - (t21 - t31 + t21)
-            - minus_gdrive_vy_along_x * t38 - minus_gdrive_vz_along_x * t43;
-        let t52 = s_foot_along_y * c_left_bar_along_y;
-        ::overact::guard::leg(t52, 1.0, "along_y")?;
-        let minus_gdrive_vx_along_y = s_left_bar_along_y / t52;
-        let t54 = c_left_bar_along_y / t52;
-        let minus_gdrive_vz_along_y = minus_c_foot_along_y * t54;
-        let t56 = s_foot_along_y * s_left_bar_along_y;
-        let t57 = t56 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_gfoot_vz_along_y = minus_gleft_bar_vx_along_y * t54;
-        let t60 = t57 * minus_gdrive_vz_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t60;
+        let t15 = s_left_bar_along_x * minus_rate_foot_along_x;
+        let t16 = minus_rate_left_bar_along_x * t15;
+        let t17 = 0.31 * t16;
+        let t18 = minus_c_foot_along_x * t17;
+        let t19 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t20 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t23 = t5 * (0.31 * (t19 + t20));
+        let minus_gdrive_vy_along_x = minus_c_foot_along_x * c_left_bar_along_x / t5;
+        let t30 = s_foot_along_x * t17;
+        let t33 = acceleration[1] - (t23 * minus_gdrive_vy_along_x + t30 + t30);
+        let t36 = 0.31 * s_left_bar_along_x;
+        let t38 = acceleration[2] - t36 * t19;
+        let rate_dot_drive_along_x = acceleration[0] - (t18 - t23 + t18)
+            - minus_gdrive_vy_along_x * t33 - minus_gdrive_vz_along_x * t38;
+        let t42 = minus_gdrive_vz_along_x * rate_dot_drive_along_x;
+        let t47 = s_foot_along_y * c_left_bar_along_y;
+        ::overact::guard::leg(t47, 1.0, "along_y")?;
+        let minus_gdrive_vx_along_y = s_left_bar_along_y / t47;
+        let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y / t47;
+        let t51 = s_foot_along_y * s_left_bar_along_y;
+        let t52 = t51 / c_left_bar_along_y;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t47;
+        let t54 = t52 * minus_gdrive_vz_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t54;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t65 = twist[0] * minus_rate_foot_along_y;
-        let t66 = t57 * t65;
-        let t67 = minus_gdrive_vz_along_y * t66;
-        let t69 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t60 = t52 * (twist[0] * minus_rate_foot_along_y);
+        let t61 = minus_gdrive_vz_along_y * t60;
+        let t63 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t71 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t73 = 0.31 * t52 * (t69 + t71);
-        let t77 = 0.31 * s_left_bar_along_y;
-        let t79 = acceleration[0] - t77 * t71;
-        let t85 = acceleration[2] - (t73 * minus_gdrive_vz_along_y + t66 + t66);
-        let rate_dot_drive_along_y = acceleration[1] - (t67 - t73 + t67)
-            - minus_gdrive_vx_along_y * t79 - minus_gdrive_vz_along_y * t85;
-        let t89 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
-        let t95 = s_foot_along_z * c_left_bar_along_z;
-        ::overact::guard::leg(t95, 1.0, "along_z")?;
-        let minus_gdrive_vx_along_z = minus_c_foot_along_z * c_left_bar_along_z / t95;
-        let t97 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t97;
+        let t66 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t68 = 0.31 * t47 * (t63 + t66);
+        let t72 = 0.31 * s_left_bar_along_y;
+        let t74 = acceleration[0] - t72 * t66;
+        let t80 = acceleration[2] - (t68 * minus_gdrive_vz_along_y + t60 + t60);
+        let rate_dot_drive_along_y = acceleration[1] - (t61 - t68 + t61)
+            - minus_gdrive_vx_along_y * t74 - minus_gdrive_vz_along_y * t80;
+        let t84 = minus_gdrive_vz_along_y * rate_dot_drive_along_y;
+        let t89 = minus_c_foot_along_z * c_left_bar_along_z;
+        let t90 = s_foot_along_z * c_left_bar_along_z;
+        ::overact::guard::leg(t90, 1.0, "along_z")?;
+        let minus_gdrive_vx_along_z = t89 / t90;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t90;
+        let minus_gleft_bar_vy_along_z = s_foot_along_z * minus_gfoot_vx_along_z;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t100 = s_foot_along_z * minus_rate_left_bar_along_z;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t95;
-        let minus_gdrive_vy_along_z = s_left_bar_along_z / t95;
+        let t96 = 0.31 * s_left_bar_along_z;
+        let minus_gdrive_vy_along_z = t96 * minus_gfoot_vx_along_z;
         let minus_gfoot_vy_along_z = minus_gdrive_vy_along_z
             * (minus_c_foot_along_z * minus_gleft_bar_vy_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t109 = 0.31 * s_left_bar_along_z * minus_rate_foot_along_z;
-        let t110 = t100 * t109;
-        let t111 = minus_gdrive_vx_along_z * t110;
-        let t112 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t113 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t116 = t95 * (0.31 * (t112 + t113));
-        let t123 = acceleration[0] - (minus_gdrive_vx_along_z * t116 + t110 + t110);
-        let t125 = minus_gdrive_vy_along_z * twist[1];
-        let t127 = acceleration[1] - t100 * t125;
-        let rate_dot_drive_along_z = acceleration[2] - (t111 - t116 + t111)
-            - (minus_gdrive_vx_along_z * t123 + minus_gdrive_vy_along_z * t127);
-        let t131 = 9.81 + rate_dot_drive_along_z;
-        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1] - t9;
+        let t102 = s_left_bar_along_z * minus_rate_foot_along_z;
+        let t103 = minus_rate_left_bar_along_z * t102;
+        let t105 = t103 * (0.31 * s_foot_along_z);
+        let t106 = minus_gdrive_vx_along_z * t105;
+        let t107 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t108 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t110 = 0.31 * (t107 + t108);
+        let t118 = acceleration[0] - (t89 * t110 + t105 + t105);
+        let t121 = acceleration[1] - t96 * t108;
+        let rate_dot_drive_along_z = acceleration[2] - (t106 - t90 * t110 + t106)
+            - (minus_gdrive_vx_along_z * t118 + minus_gdrive_vy_along_z * t121);
+        let t125 = 9.81 + rate_dot_drive_along_z;
+        let rate_drive_along_x = twist[0] - minus_gdrive_vy_along_x * twist[1]
+            - minus_gdrive_vz_along_x * twist[2];
         let rate_drive_along_y = twist[1] - minus_gdrive_vx_along_y * twist[0]
             - minus_gdrive_vz_along_y * twist[2];
-        let rate_drive_along_z = twist[2] - (minus_gdrive_vx_along_z * twist[0] + t125);
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t38
-            + minus_gfoot_vz_along_x * t43;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t79
-            + minus_gfoot_vz_along_y * t85;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t123
-            + minus_gfoot_vy_along_z * t127;
-        let t178 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
-            - minus_rate_foot_along_x * t18;
-        let t179 = minus_c_foot_along_x * rate_dot_drive_along_x;
-        let t180 = minus_gfoot_vy_along_x * t179;
-        let t181 = minus_gdrive_vy_along_x * t178;
-        let t183 = minus_gfoot_vz_along_x * t179;
-        let t187 = minus_gleft_bar_vx_along_y * (9.81 + t89);
-        let t191 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
-            - s_foot_along_y * t69;
-        let t194 = minus_gdrive_vz_along_y * t191;
-        let t196 = minus_c_foot_along_z * t131;
-        let t197 = minus_gfoot_vx_along_z * t196;
-        let t200 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
-            - s_foot_along_z * t112;
-        let t201 = minus_gdrive_vx_along_z * t200;
-        let t203 = minus_gfoot_vy_along_z * t196;
-        let t207 = minus_rate_dot_foot_along_x * t6 - t181;
-        let t208 = s_foot_along_x * rate_dot_drive_along_x;
-        let t217 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
-        let t220 = minus_rate_dot_foot_along_y * t54 - t194;
-        let t226 = s_foot_along_z * t131;
-        let t230 = c_left_bar_along_z * minus_rate_dot_foot_along_z / t95 - t201;
-        let t236 = minus_rate_left_bar_along_x * t27;
-        let t237 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t239 = t236 + t236 - t237;
-        let t240 = s_left_bar_along_x * t239;
-        let t242 = t22 * t27;
-        let t247 = t69 * (c_left_bar_along_y * s_left_bar_along_y);
-        let t248 = minus_gleft_bar_vx_along_y * t247;
-        let t249 = 3.225806451612903 * t65;
-        let t250 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t252 = t249 + t249 - t250;
-        let t253 = s_left_bar_along_y * t252;
-        let t257 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t258 = minus_rate_left_bar_along_z * t257;
-        let t259 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t261 = t258 + t258 - t259;
-        let t262 = s_left_bar_along_z * t261;
-        let t264 = 3.225806451612903 * t109;
-        let t265 = t264 * t257;
-        let t271 = t12 * (minus_rate_dot_foot_along_x + t240);
-        let t273 = c_left_bar_along_x * t239 - s_left_bar_along_x * t271;
-        let t281 = (minus_rate_dot_foot_along_y + t253) / c_left_bar_along_y;
-        let t283 = c_left_bar_along_y * t252 - s_left_bar_along_y * t281;
-        let t285 = t77 * t248;
-        let t293 = t97 * (minus_rate_dot_foot_along_z + t262);
-        let t295 = c_left_bar_along_z * t261 - s_left_bar_along_z * t293;
-        let t298 = t264 * t264;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t43;
-        let t308 = s_left_bar_along_x * (t242 - minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t25 - t23);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t79;
-        let t319 = s_left_bar_along_y * (t247 - minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t71 - t285);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t127;
-        let t328 = s_left_bar_along_z * (t265 - minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t113 - t298);
-        let t333 = 3.225806451612903 * acceleration[2];
-        let t339 = 10.40582726326743 * (acceleration[0] / t52);
-        let t343 = 3.225806451612903 * acceleration[1];
-        let t357 = t5 * (t242 + minus_rate_dot_left_bar_along_x)
-            + s_foot_along_x * s_left_bar_along_x * t26 + minus_c_foot_along_x * t239;
-        let t376 = t52 * (t247 + minus_rate_dot_left_bar_along_y) + t56 * (t285 + t71)
-            + minus_c_foot_along_y * t252;
-        let t378 = s_left_bar_along_y * t187;
-        let t391 = t95 * (t265 + minus_rate_dot_left_bar_along_z)
-            + s_foot_along_z * s_left_bar_along_z * (t298 + t113)
-            + minus_c_foot_along_z * t261;
-        let t401 = t179 + 0.31 * t271;
-        let t406 = t187 + t281 / t52;
-        let t410 = t196 + 0.31 * t293;
+        let rate_drive_along_z = twist[2]
+            - (minus_gdrive_vx_along_z * twist[0] + minus_gdrive_vy_along_z * twist[1]);
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t33
+            + minus_gfoot_vz_along_x * t38;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t74
+            + minus_gfoot_vz_along_y * t80;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t118
+            + minus_gfoot_vy_along_z * t121;
+        let t174 = minus_c_foot_along_x * minus_rate_dot_foot_along_x
+            - s_foot_along_x * t20;
+        let t175 = minus_gleft_bar_vz_along_x * rate_dot_drive_along_x;
+        let t178 = minus_c_foot_along_x * rate_dot_drive_along_x;
+        let t179 = minus_gfoot_vz_along_x * t178;
+        let t183 = minus_gleft_bar_vx_along_y * (9.81 + t84);
+        let t187 = minus_c_foot_along_y * minus_rate_dot_foot_along_y
+            - s_foot_along_y * t63;
+        let t194 = minus_c_foot_along_z * minus_rate_dot_foot_along_z
+            - s_foot_along_z * t107;
+        let t195 = s_foot_along_z * t125;
+        let t196 = minus_gfoot_vx_along_z * t195;
+        let t199 = minus_c_foot_along_z * t125;
+        let t205 = s_foot_along_x * minus_rate_dot_foot_along_x
+            + minus_c_foot_along_x * t20;
+        let t208 = t42 * t11;
+        let t214 = s_foot_along_y * rate_dot_drive_along_y - 9.81 * minus_c_foot_along_y;
+        let t218 = s_foot_along_y * minus_rate_dot_foot_along_y
+            + minus_c_foot_along_y * t63;
+        let t226 = s_foot_along_z * minus_rate_dot_foot_along_z
+            + minus_c_foot_along_z * t107;
+        let t232 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t233 = minus_rate_left_bar_along_x * t232;
+        let t234 = s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t236 = t233 + t233 - t234;
+        let t237 = s_left_bar_along_x * t236;
+        let t239 = t15 * t232;
+        let t240 = minus_gleft_bar_vz_along_x * t239;
+        let t243 = s_left_bar_along_y * minus_rate_foot_along_y;
+        let t244 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t245 = t243 * t244;
+        let t246 = minus_gleft_bar_vx_along_y * t245;
+        let t247 = minus_rate_left_bar_along_y * t244;
+        let t248 = s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t250 = t247 + t247 - t248;
+        let t251 = s_left_bar_along_y * t250;
+        let t255 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t256 = minus_rate_left_bar_along_z * t255;
+        let t257 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t259 = t256 + t256 - t257;
+        let t260 = s_left_bar_along_z * t259;
+        let t262 = t102 * t255;
+        let t269 = t16 + c_left_bar_along_x * minus_rate_dot_foot_along_x + t16;
+        let t271 = c_left_bar_along_x * t236 - s_left_bar_along_x * t269;
+        let t274 = t36 * t240;
+        let t280 = minus_rate_left_bar_along_y * t243;
+        let t283 = t280 + c_left_bar_along_y * minus_rate_dot_foot_along_y + t280;
+        let t285 = c_left_bar_along_y * t250 - s_left_bar_along_y * t283;
+        let t287 = t72 * t246;
+        let t296 = t103 + c_left_bar_along_z * minus_rate_dot_foot_along_z + t103;
+        let t298 = c_left_bar_along_z * t259 - s_left_bar_along_z * t296;
+        let t301 = t102 * t102;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t38;
+        let t311 = s_left_bar_along_x * (t239 - minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t19 - t274);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t74;
+        let t322 = s_left_bar_along_y * (t245 - minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t66 - t287);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t121;
+        let t331 = s_left_bar_along_z * (t262 - minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t108 - t301);
+        let t336 = 3.225806451612903 * acceleration[2];
+        let t342 = 10.40582726326743 * (acceleration[0] / t47);
+        let t346 = 3.225806451612903 * acceleration[1];
+        let t361 = t5 * (t239 + minus_rate_dot_left_bar_along_x)
+            + s_foot_along_x * s_left_bar_along_x * (t274 + t19)
+            + minus_c_foot_along_x * t236;
+        let t380 = t47 * (t245 + minus_rate_dot_left_bar_along_y) + t51 * (t287 + t66)
+            + minus_c_foot_along_y * t250;
+        let t382 = s_left_bar_along_y * t183;
+        let t395 = t90 * (t262 + minus_rate_dot_left_bar_along_z)
+            + s_foot_along_z * s_left_bar_along_z * (t301 + t108)
+            + minus_c_foot_along_z * t259;
+        let t397 = s_left_bar_along_z * t199;
+        let t406 = t178 + 0.31 * t269;
+        let t411 = t183 + t283 / t47;
+        let t415 = t199 + 0.31 * t296;
         Ok([
             [
                 acceleration[0], rate_dot_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_dot_drive_along_y),
-                -(minus_gdrive_vx_along_z * t131),
+                -(minus_gdrive_vx_along_z * t125),
                 -(minus_gdrive_vx_along_z * rate_dot_drive_along_z), rate_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_drive_along_y),
                 -(minus_gdrive_vx_along_z * rate_drive_along_z),
@@ -4071,33 +4213,34 @@ impl Orthoglide {
                 -::overact::math::signed(minus_gdrive_vx_along_y, rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vx_along_z, rate_drive_along_z), 1.0,
                 -minus_gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t178,
-                t60 * t187 - minus_gdrive_vx_along_y * t191, t197 - t201, t207,
-                minus_gfoot_vx_along_y * t217 - minus_gdrive_vx_along_y * t220,
-                minus_gfoot_vx_along_z * t226 - minus_gdrive_vx_along_z * t230, 0.0,
-                t248 - minus_gfoot_vx_along_y * t253, -(minus_gfoot_vx_along_z * t262), 0.0,
-                -(minus_gfoot_vx_along_y * t283
-                    + minus_gleft_bar_vx_along_y * (t285 - (t69 - t285))),
-                -(minus_gfoot_vx_along_z * t295),
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, t174,
+                t54 * t183 - minus_gdrive_vx_along_y * t187,
+                -(minus_gdrive_vx_along_z * (t194 - t196)), t205,
+                minus_gfoot_vx_along_y * t214 - minus_gdrive_vx_along_y * t218,
+                t196 - minus_gdrive_vx_along_z * t226, 0.0, t246 - minus_gfoot_vx_along_y * t251,
+                -(minus_gfoot_vx_along_z * t260), 0.0,
+                -(minus_gfoot_vx_along_y * t285
+                    + minus_gleft_bar_vx_along_y * (t287 - t244 * t244)),
+                -(minus_gfoot_vx_along_z * t298),
                 0.0,
-                minus_gleft_bar_vx_along_y * t250 - minus_gfoot_vx_along_y * t319,
-                -(minus_gfoot_vx_along_z * t328),
+                minus_gleft_bar_vx_along_y * t248 - minus_gfoot_vx_along_y * t322,
+                -(minus_gfoot_vx_along_z * t331),
                 0.0,
-                t60 * t339 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t343,
+                t54 * t342 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t346,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t357,
-                3.225806451612903 * t217 - (minus_gdrive_vx_along_y * t376 + t60 * t378),
-                -(minus_gdrive_vx_along_z * t391 + s_left_bar_along_z * t197),
-                t178,
-                t60 * t406,
-                t230 + minus_gfoot_vx_along_z * t410,
+                t361,
+                3.225806451612903 * t214 - (minus_gdrive_vx_along_y * t380 + t54 * t382),
+                -(minus_gdrive_vx_along_z * t395 + minus_gfoot_vx_along_z * t397),
+                t174,
+                t54 * t411,
+                t226 + minus_gfoot_vx_along_z * t415,
             ],
             [
                 acceleration[1], -(minus_gdrive_vy_along_x * rate_dot_drive_along_x),
-                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t131),
+                rate_dot_drive_along_y, -(minus_gdrive_vy_along_z * t125),
                 -(minus_gdrive_vy_along_z * rate_dot_drive_along_z),
                 -(minus_gdrive_vy_along_x * rate_drive_along_x), rate_drive_along_y,
                 -(minus_gdrive_vy_along_z * rate_drive_along_z),
@@ -4105,69 +4248,69 @@ impl Orthoglide {
                 ::overact::math::sign(rate_drive_along_y),
                 -::overact::math::signed(minus_gdrive_vy_along_z, rate_drive_along_z),
                 -minus_gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x,
-                0.0, minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z, t180 - t181, t191,
-                t203 - minus_gdrive_vy_along_z * t200,
-                minus_gfoot_vy_along_x * t208 - minus_gdrive_vy_along_x * t207, t220,
-                minus_gfoot_vy_along_z * t226 - minus_gdrive_vy_along_z * t230,
-                -(minus_gfoot_vy_along_x * t240), 0.0,
-                minus_gleft_bar_vy_along_z * t265 - minus_gfoot_vy_along_z * t262,
-                -(minus_gfoot_vy_along_x * t273), 0.0,
-                -(minus_gfoot_vy_along_z * t295
-                    + minus_gleft_bar_vy_along_z * (t298 - t257 * t257)),
-                -(minus_gfoot_vy_along_x * t308),
+                0.0, minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
+                -(minus_gdrive_vy_along_x * (t174 - t175)), t187,
+                minus_gfoot_vy_along_z * t199 - minus_gdrive_vy_along_z * t194,
+                t175 - minus_gdrive_vy_along_x * t205, t218,
+                minus_gfoot_vy_along_z * t195 - minus_gdrive_vy_along_z * t226,
+                -(minus_gfoot_vy_along_x * t237), 0.0,
+                minus_gleft_bar_vy_along_z * t262 - minus_gfoot_vy_along_z * t260,
+                -(minus_gfoot_vy_along_x * t271), 0.0,
+                -(minus_gfoot_vy_along_z * t298
+                    + minus_gleft_bar_vy_along_z * (t301 - t255 * t255)),
+                -(minus_gfoot_vy_along_x * t311),
                 0.0,
-                minus_gleft_bar_vy_along_z * t259 - minus_gfoot_vy_along_z * t328,
-                minus_gfoot_vy_along_x * t333,
+                minus_gleft_bar_vy_along_z * t257 - minus_gfoot_vy_along_z * t331,
+                minus_gfoot_vy_along_x * t336,
                 0.0,
-                minus_gfoot_vy_along_z * t343
+                minus_gfoot_vy_along_z * t346
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                -(minus_gdrive_vy_along_x * t357 + s_left_bar_along_x * t180),
-                t376,
-                3.225806451612903 * t226
-                    - (minus_gdrive_vy_along_z * t391 + s_left_bar_along_z * t203),
-                t207 + minus_gfoot_vy_along_x * t401,
-                t191,
-                minus_gfoot_vy_along_z * t410,
+                -(minus_gdrive_vy_along_x * t361 + c_left_bar_along_x * t208),
+                t380,
+                3.225806451612903 * t195
+                    - (minus_gdrive_vy_along_z * t395 + minus_gfoot_vy_along_z * t397),
+                t205 + minus_gfoot_vy_along_x * t406,
+                t187,
+                minus_gfoot_vy_along_z * t415,
             ],
             [
-                -(-9.81 - acceleration[2]), -(minus_gdrive_vz_along_x * rate_dot_drive_along_x),
-                -t89, t131, rate_dot_drive_along_z, -(minus_gdrive_vz_along_x * rate_drive_along_x),
+                -(-9.81 - acceleration[2]), -t42, -t84, t125, rate_dot_drive_along_z,
+                -(minus_gdrive_vz_along_x * rate_drive_along_x),
                 -(minus_gdrive_vz_along_y * rate_drive_along_y), rate_drive_along_z,
                 -::overact::math::signed(minus_gdrive_vz_along_x, rate_drive_along_x),
                 -::overact::math::signed(minus_gdrive_vz_along_y, rate_drive_along_y),
                 ::overact::math::sign(rate_drive_along_z), -minus_gdrive_vz_along_x,
                 -minus_gdrive_vz_along_y, minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                t183 - minus_gdrive_vz_along_x * t178, t187 - t194, t200,
-                minus_gfoot_vz_along_x * t208 - minus_gdrive_vz_along_x * t207,
-                minus_gfoot_vz_along_y * t217 - minus_gdrive_vz_along_y * t220, t230,
-                minus_gleft_bar_vz_along_x * t242 - minus_gfoot_vz_along_x * t240,
-                -(minus_gfoot_vz_along_y * t253), 0.0,
-                -(minus_gfoot_vz_along_x * t273
-                    + minus_gleft_bar_vz_along_x * (t23 - t28)),
-                -(minus_gfoot_vz_along_y * t283),
+                t179 - minus_gdrive_vz_along_x * t174, t183 - minus_gdrive_vz_along_y * t187, t194,
+                s_foot_along_x * t208 - minus_gdrive_vz_along_x * t205,
+                minus_gfoot_vz_along_y * t214 - minus_gdrive_vz_along_y * t218, t226,
+                t240 - minus_gfoot_vz_along_x * t237, -(minus_gfoot_vz_along_y * t251), 0.0,
+                -(minus_gfoot_vz_along_x * t271
+                    + minus_gleft_bar_vz_along_x * (t274 - t232 * t232)),
+                -(minus_gfoot_vz_along_y * t285),
                 0.0,
-                minus_gleft_bar_vz_along_x * t237 - minus_gfoot_vz_along_x * t308,
-                -(minus_gfoot_vz_along_y * t319),
+                minus_gleft_bar_vz_along_x * t234 - minus_gfoot_vz_along_x * t311,
+                -(minus_gfoot_vz_along_y * t322),
                 0.0,
-                minus_gfoot_vz_along_x * t333
+                minus_gfoot_vz_along_x * t336
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t339,
+                t342,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
                 minus_gleft_bar_vz_along_x
-                    * (c_left_bar_along_x * t208 - 9.81 * s_left_bar_along_x)
-                    - (minus_gdrive_vz_along_x * t357 + s_left_bar_along_x * t183),
-                -(minus_gdrive_vz_along_y * t376 + t378),
-                t391,
-                minus_gfoot_vz_along_x * t401,
-                t220 + t406,
-                t200,
+                    * (t5 * rate_dot_drive_along_x - 9.81 * s_left_bar_along_x)
+                    - (minus_gdrive_vz_along_x * t361 + s_left_bar_along_x * t179),
+                -(minus_gdrive_vz_along_y * t380 + t382),
+                t395,
+                minus_gfoot_vz_along_x * t406,
+                t218 + t411,
+                t194,
             ],
         ])
     }
@@ -4182,7 +4325,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 472 operations (166 additions, 284 multiplications, 22 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 390 intermediates.
+    /// 473 operations (165 additions, 282 multiplications, 26 divisions), 6 square roots, 0 trigonometric pairs, 9 signs, 391 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4193,47 +4336,48 @@ impl Orthoglide {
         start: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
-        ::overact::guard::reach(t2, "along_y")?;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
+        ::overact::guard::reach(t2, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
+        let t7 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t7, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t7);
+        let t9 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t9, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t9;
+        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
+        let t13 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
+        let t16 = gdrive_vz_along_x * actuator_velocities[0];
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t18 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
+        let t19 = 1.0 - t18;
+        ::overact::guard::reach(t19, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let minus_s_foot_along_y = minus_s_left_bar_along_x / c_left_bar_along_y;
-        let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t8 = 1.0 - t2 * t6;
-        ::overact::guard::reach(t8, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t8);
-        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let minus_s_foot_along_x = minus_s_left_bar_along_z / c_left_bar_along_x;
-        let t13 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t13, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t13);
-        let t15 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t15, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t15;
-        let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let t19 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
-        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
-        let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t23 = gdrive_vz_along_x * actuator_velocities[0];
-        let t24 = 1.0 - t6;
-        ::overact::guard::reach(t24, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t24);
-        let t26 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t26, 1.0, "along_y")?;
-        let t27 = 1.0 / t26;
-        let minus_gfoot_vz_along_y = 3.225806451612903 * t27;
+        let t23 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t23, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t23);
+        let t25 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t25, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t25;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t30 = gdrive_vz_along_y * actuator_velocities[1];
-        let gdrive_vx_along_y = t27 * minus_s_left_bar_along_y;
-        let t34 = gdrive_vx_along_y * actuator_velocities[1];
-        let t37 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
-        ::overact::guard::reach(t37, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t37);
+        let t28 = gdrive_vz_along_y * actuator_velocities[1];
+        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let t32 = gdrive_vx_along_y * actuator_velocities[1];
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t35 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        let t36 = 1.0 - t35;
+        ::overact::guard::reach(t36, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t36);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_s_foot_along_z = minus_s_left_bar_along_y / c_left_bar_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
+        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
         let t41 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
         ::overact::guard::reach(t41, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t41);
@@ -4242,21 +4386,21 @@ impl Orthoglide {
         let minus_gfoot_vx_along_z = 3.225806451612903 / t43;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
         let t46 = gdrive_vx_along_z * actuator_velocities[2];
-        let t47 = actuator_velocities[0] + t34 + t46;
-        let t48 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t50 = gdrive_vz_along_x + t48 + gdrive_vx_along_z;
+        let t47 = actuator_velocities[0] + t32 + t46;
+        let t50 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
         let t54 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
         ::overact::guard::platform(t54, 1.0, "actuators")?;
         ::overact::guard::platform(t54, 1.0, "actuators")?;
         let t55 = t50 / t54;
         let gdrive_vy_along_z = minus_s_left_bar_along_z / t43;
-        let t64 = gdrive_vy_along_x + gdrive_vx_along_y
-            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t63 = gdrive_vx_along_z * gdrive_vy_along_z;
+        let t64 = gdrive_vy_along_x + gdrive_vx_along_y + t63;
         let t66 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
             + gdrive_vy_along_z - t64 * t55;
         let t69 = t64 / t54;
-        let t71 = t19 + gdrive_vy_along_z * gdrive_vy_along_z - t64 * t69;
+        let t71 = t13 + gdrive_vy_along_z * gdrive_vy_along_z - t64 * t69;
         ::overact::guard::platform(t71, 1.0, "actuators")?;
         ::overact::guard::platform(t71, 1.0, "actuators")?;
         let t72 = t66 / t71;
@@ -4267,7 +4411,7 @@ impl Orthoglide {
             + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t50 * t55 - t66 * t72;
         ::overact::guard::platform(t88, 1.0, "actuators")?;
         ::overact::guard::platform(t88, 1.0, "actuators")?;
-        let t89 = (t23 + t30 + actuator_velocities[2] - t47 * t55 - t72 * t78) / t88;
+        let t89 = (t16 + t28 + actuator_velocities[2] - t47 * t55 - t72 * t78) / t88;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t89;
         let t91 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
         let t94 = t78 / t71 - t72 * t89;
@@ -4278,245 +4422,246 @@ impl Orthoglide {
         let t100 = minus_rate_foot_along_x * minus_rate_foot_along_x;
         let t101 = t91 + t100;
         let t104 = pose[2] * t91;
-        let rate_dot_drive_along_x = t19 * (0.31 * t15 * t101)
-            + gdrive_vz_along_x * t104;
+        let rate_dot_drive_along_x = t13 * (0.31 * t9 * t101) + gdrive_vz_along_x * t104;
         let t107 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let t108 = t24 * t48;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t108;
-        let t114 = t47 / t54 - t69 * t94 - t55 * t89;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t114
+        let t108 = minus_s_left_bar_along_y / c_left_bar_along_y;
+        let t109 = minus_s_foot_along_y * t108;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * t109;
+        let t115 = t47 / t54 - t69 * t94 - t55 * t89;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t115
             + minus_gfoot_vz_along_y * t89;
-        let t118 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t119 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t120 = t119 * t119;
+        let t121 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t122 = t18 * t121;
         let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t114;
-        let t121 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t122 = t118 + t121;
-        let t125 = pose[0] * minus_rate_foot_along_y;
-        let t126 = c_foot_along_y * minus_rate_left_bar_along_y * t125;
-        let t128 = pose[2] * t122 + t126 + t126;
-        let t130 = pose[0] * t121;
-        let t132 = gdrive_vz_along_y * t126;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t128
-            - (t132 - 0.31 * t26 * t122 + t132 - gdrive_vx_along_y * t130);
-        let t139 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
-        let minus_gfoot_vy_along_z = minus_gleft_bar_vy_along_z
-            * (minus_s_foot_along_z * gdrive_vy_along_z);
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t114
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t115;
+        let t125 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t126 = t122 + t125;
+        let t127 = t120 + t126;
+        let t131 = c_foot_along_y * minus_rate_left_bar_along_y
+            * (pose[0] * minus_rate_foot_along_y);
+        let t133 = pose[2] * t127 + t131 + t131;
+        let t135 = pose[0] * t125;
+        let t137 = gdrive_vz_along_y * t131;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t133
+            - (t137 - 0.31 * t25 * t127 + t137 - gdrive_vx_along_y * t135);
+        let t144 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_gfoot_vy_along_z = minus_gleft_bar_vy_along_z * (c_foot_along_z * t63);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t115
             + minus_gfoot_vy_along_z * t94;
-        let t148 = pose[1] * minus_rate_foot_along_z;
-        let t150 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t151 = 3.225806451612903 * t148 * t150;
-        let t152 = minus_gleft_bar_vy_along_z * t151;
-        let t153 = pose[1] * t152;
+        let t152 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t153 = t35 * t152;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t94;
         let t155 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
         let t156 = t153 + t155;
-        let t157 = t150 * t150;
-        let t158 = t156 + t157;
-        let t161 = c_foot_along_z * minus_rate_left_bar_along_z * t148;
-        let t163 = pose[0] * t158 + t161 + t161;
-        let t165 = pose[1] * t155;
-        let t168 = gdrive_vx_along_z * t161;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t163 + gdrive_vy_along_z * t165
-            - (t168 - 0.31 * t43 * t158 + t168);
-        let t174 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t176 = t107 + gdrive_vx_along_y * t139 + gdrive_vx_along_z * t174;
-        let t183 = gdrive_vy_along_x * t107 + t139 + gdrive_vy_along_z * t174
-            - t69 * t176;
-        let t193 = (gdrive_vz_along_x * t107 + gdrive_vz_along_y * t139 + t174
-            - t55 * t176 - t72 * t183) / t88;
-        let t195 = t183 / t71 - t72 * t193;
-        let t199 = t176 / t54 - t69 * t195 - t55 * t193;
-        let t204 = gdrive_vz_along_y * actuator_accelerations[1];
-        let t205 = 9.81 + actuator_accelerations[2];
-        let t221 = pose[2] * minus_rate_foot_along_x;
-        let t222 = c_foot_along_x * minus_rate_left_bar_along_x * t221;
-        let t227 = t193 + t104;
+        let t157 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t158 = t157 * t157;
+        let t159 = t156 + t158;
+        let t162 = pose[1] * minus_rate_foot_along_z;
+        let t163 = c_foot_along_z * minus_rate_left_bar_along_z * t162;
+        let t165 = pose[0] * t159 + t163 + t163;
+        let t167 = pose[1] * t155;
+        let t170 = gdrive_vx_along_z * t163;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t165 + gdrive_vy_along_z * t167
+            - (t170 - 0.31 * t43 * t159 + t170);
+        let t176 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t178 = t107 + gdrive_vx_along_y * t144 + gdrive_vx_along_z * t176;
+        let t185 = gdrive_vy_along_x * t107 + t144 + gdrive_vy_along_z * t176
+            - t69 * t178;
+        let t195 = (gdrive_vz_along_x * t107 + gdrive_vz_along_y * t144 + t176
+            - t55 * t178 - t72 * t185) / t88;
+        let t197 = t185 / t71 - t72 * t195;
+        let t201 = t178 / t54 - t69 * t197 - t55 * t195;
+        let t206 = gdrive_vz_along_y * actuator_accelerations[1];
+        let t207 = 9.81 + actuator_accelerations[2];
+        let t223 = pose[2] * minus_rate_foot_along_x;
+        let t224 = c_foot_along_x * minus_rate_left_bar_along_x * t223;
+        let t229 = t195 + t104;
         let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t195 + pose[1] * t101 + t222 + t222) + minus_gfoot_vz_along_x * t227;
-        let t232 = t199 + t130;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t232
-            + minus_gfoot_vz_along_y * (t193 + t128);
-        let t241 = t195 + t165;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t199 + t163)
-            + minus_gfoot_vy_along_z * t241;
-        let t248 = c_foot_along_x * t100
+            * (t197 + pose[1] * t101 + t224 + t224) + minus_gfoot_vz_along_x * t229;
+        let t234 = t201 + t135;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t234
+            + minus_gfoot_vz_along_y * (t195 + t133);
+        let t243 = t197 + t167;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t201 + t165)
+            + minus_gfoot_vy_along_z * t243;
+        let t250 = c_foot_along_x * t100
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t249 = gdrive_vy_along_x * t248;
-        let t250 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t251 = minus_gfoot_vy_along_x * t250;
-        let t254 = minus_gfoot_vz_along_x * t250;
-        let t258 = c_foot_along_y * t118
+        let t251 = gdrive_vy_along_x * t250;
+        let t252 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t260 = c_foot_along_y * t121
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t261 = minus_gleft_bar_vx_along_y * (9.81 - t204);
-        let t264 = gdrive_vz_along_y * t258;
-        let t269 = c_foot_along_z * (minus_rate_foot_along_z * minus_rate_foot_along_z)
+        let t263 = c_foot_along_y * (9.81 - t206);
+        let t264 = minus_gfoot_vx_along_y * t263;
+        let t266 = gdrive_vz_along_y * t260;
+        let t267 = minus_gfoot_vz_along_y * t263;
+        let t271 = c_foot_along_z * t152
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t270 = gdrive_vx_along_z * t269;
-        let t271 = minus_s_foot_along_z * t205;
-        let t272 = minus_gfoot_vx_along_z * t271;
-        let t275 = minus_gfoot_vy_along_z * t271;
-        let t279 = c_left_bar_along_x * minus_rate_dot_foot_along_x / t15 - t249;
-        let t281 = c_foot_along_x * actuator_accelerations[0];
-        let t289 = t27 * (c_left_bar_along_y * minus_rate_dot_foot_along_y) - t264;
-        let t293 = 9.81 * minus_s_foot_along_y
+        let t272 = gdrive_vx_along_z * t271;
+        let t273 = minus_s_foot_along_z * t207;
+        let t274 = minus_gfoot_vx_along_z * t273;
+        let t277 = minus_gfoot_vy_along_z * t273;
+        let t281 = c_left_bar_along_x * minus_rate_dot_foot_along_x / t9 - t251;
+        let t283 = c_foot_along_x * actuator_accelerations[0];
+        let t291 = c_left_bar_along_y * minus_rate_dot_foot_along_y / t25 - t266;
+        let t295 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t301 = c_left_bar_along_z * minus_rate_dot_foot_along_z / t43 - t270;
-        let t303 = c_foot_along_z * t205;
-        let t309 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t310 = minus_rate_left_bar_along_x * t309;
-        let t311 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t313 = t310 + t311 + t310;
-        let t314 = minus_s_left_bar_along_x * t313;
-        let t317 = 3.225806451612903 * t221;
-        let t318 = t317 * t309;
-        let t321 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t322 = minus_rate_left_bar_along_y * t321;
-        let t323 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t325 = t322 + t323 + t322;
-        let t326 = minus_s_left_bar_along_y * t325;
-        let t329 = 3.225806451612903 * t125 * t321;
-        let t333 = minus_rate_left_bar_along_z * t150;
+        let t303 = c_left_bar_along_z * minus_rate_dot_foot_along_z / t43 - t272;
+        let t305 = c_foot_along_z * t207;
+        let t311 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t312 = minus_rate_left_bar_along_x * t311;
+        let t313 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t315 = t312 + t313 + t312;
+        let t316 = minus_s_left_bar_along_x * t315;
+        let t319 = 3.225806451612903 * t223;
+        let t320 = t319 * t311;
+        let t323 = minus_rate_left_bar_along_y * t119;
+        let t324 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t326 = t323 + t324 + t323;
+        let t327 = minus_s_left_bar_along_y * t326;
+        let t329 = t120 * t108;
+        let t333 = minus_rate_left_bar_along_z * t157;
         let t334 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
         let t336 = t333 + t334 + t333;
         let t337 = minus_s_left_bar_along_z * t336;
-        let t343 = (minus_rate_dot_foot_along_x - t314) / c_left_bar_along_x;
-        let t345 = c_left_bar_along_x * t313 + minus_s_left_bar_along_x * t343;
-        let t348 = t317 * t317;
-        let t355 = (minus_rate_dot_foot_along_y - t326) / c_left_bar_along_y;
-        let t357 = c_left_bar_along_y * t325 + minus_s_left_bar_along_y * t355;
-        let t359 = t321 * t321;
-        let t360 = t118 - t359;
-        let t367 = (minus_rate_dot_foot_along_z - t337) / c_left_bar_along_z;
-        let t369 = c_left_bar_along_z * t336 + minus_s_left_bar_along_z * t367;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t227;
-        let t380 = minus_s_left_bar_along_x * (t318 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t91 - t348);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t232;
-        let t390 = minus_s_left_bar_along_y * (t329 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t121 - t360);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t241;
-        let t400 = minus_s_left_bar_along_z * (t151 + minus_rate_dot_left_bar_along_z)
+        let t341 = 3.225806451612903 * t162 * t157;
+        let t346 = (minus_rate_dot_foot_along_x - t316) / c_left_bar_along_x;
+        let t348 = c_left_bar_along_x * t315 + minus_s_left_bar_along_x * t346;
+        let t351 = t319 * t319;
+        let t358 = (minus_rate_dot_foot_along_y - t327) / c_left_bar_along_y;
+        let t360 = c_left_bar_along_y * t326 + minus_s_left_bar_along_y * t358;
+        let t368 = (minus_rate_dot_foot_along_z - t337) / c_left_bar_along_z;
+        let t370 = c_left_bar_along_z * t336 + minus_s_left_bar_along_z * t368;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t229;
+        let t381 = minus_s_left_bar_along_x * (t320 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t91 - t351);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t234;
+        let t391 = minus_s_left_bar_along_y * (t329 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t125 - t122);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t243;
+        let t401 = minus_s_left_bar_along_z * (t341 + minus_rate_dot_left_bar_along_z)
             + c_left_bar_along_z * (t155 - t153);
-        let t405 = 3.225806451612903 * t193;
-        let t411 = 10.40582726326743 * (t27 * t199);
-        let t415 = 3.225806451612903 * t195;
-        let t430 = t15 * (minus_rate_dot_left_bar_along_x - t318)
-            - minus_s_left_bar_along_x * c_foot_along_x * (t348 + t91)
-            - minus_s_foot_along_x * t313;
-        let t449 = t26 * (minus_rate_dot_left_bar_along_y - t329)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t360 + t121)
-            - minus_s_foot_along_y * t325;
-        let t451 = minus_s_left_bar_along_y * t261;
-        let t464 = t43 * (minus_rate_dot_left_bar_along_z - t151)
+        let t406 = 3.225806451612903 * t195;
+        let t412 = 10.40582726326743 * (t201 / t25);
+        let t416 = 3.225806451612903 * t197;
+        let t431 = t9 * (minus_rate_dot_left_bar_along_x - t320)
+            - minus_s_left_bar_along_x * c_foot_along_x * (t351 + t91)
+            - minus_s_foot_along_x * t315;
+        let t433 = minus_s_left_bar_along_x * t252;
+        let t450 = t25 * (minus_rate_dot_left_bar_along_y - t329)
+            - minus_s_left_bar_along_y * c_foot_along_y * t126
+            - minus_s_foot_along_y * t326;
+        let t465 = t43 * (minus_rate_dot_left_bar_along_z - t341)
             - minus_s_left_bar_along_z * c_foot_along_z * t156
             - minus_s_foot_along_z * t336;
-        let t474 = t250 - 0.31 * t343;
-        let t479 = t261 + t27 * t355;
-        let t483 = t271 - 0.31 * t367;
+        let t475 = t252 - 0.31 * t346;
+        let t480 = t267 + t358 / t25;
+        let t484 = t273 - 0.31 * t368;
         Ok([
             [
-                t199, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
-                gdrive_vx_along_z * t205, gdrive_vx_along_z * actuator_accelerations[2],
-                actuator_velocities[0], t34, t46, ::overact::math::sign(actuator_velocities[0]),
+                t201, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
+                gdrive_vx_along_z * t207, gdrive_vx_along_z * actuator_accelerations[2],
+                actuator_velocities[0], t32, t46, ::overact::math::sign(actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vx_along_y, actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vx_along_z, actuator_velocities[2]), 1.0,
                 gdrive_vx_along_y, 0.0, minus_gfoot_vx_along_y * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t248,
-                -(gdrive_vx_along_y * t258 - t108 * t261), -(t270 + t272), t279,
-                gdrive_vx_along_y * t289 + minus_gfoot_vx_along_y * t293,
-                gdrive_vx_along_z * t301 + minus_gfoot_vx_along_z * t303, 0.0,
-                minus_gfoot_vx_along_y * t326 - minus_gleft_bar_vx_along_y * t329,
+                minus_gfoot_vx_along_z * minus_rate_dot_foot_along_z, -t250,
+                -(gdrive_vx_along_y * t260 - t264), -(t272 + t274), t281,
+                gdrive_vx_along_y * t291 + minus_gfoot_vx_along_y * t295,
+                gdrive_vx_along_z * t303 + minus_gfoot_vx_along_z * t305, 0.0,
+                minus_gfoot_vx_along_y * t327 - minus_gleft_bar_vx_along_y * t329,
                 minus_gfoot_vx_along_z * t337, 0.0,
-                -(minus_gfoot_vx_along_y * t357
-                    + minus_gleft_bar_vx_along_y * (t360 - t359)),
-                -(minus_gfoot_vx_along_z * t369),
+                -(minus_gfoot_vx_along_y * t360
+                    + minus_gleft_bar_vx_along_y * (t122 - t120)),
+                -(minus_gfoot_vx_along_z * t370),
                 0.0,
-                -(minus_gfoot_vx_along_y * t390 + minus_gleft_bar_vx_along_y * t323),
-                -(minus_gfoot_vx_along_z * t400),
+                -(minus_gfoot_vx_along_y * t391 + minus_gleft_bar_vx_along_y * t324),
+                -(minus_gfoot_vx_along_z * t401),
                 0.0,
-                t108 * t411 + 3.225806451612903 * minus_rate_dot_foot_along_y,
-                minus_gfoot_vx_along_z * t415,
+                t109 * t412 + 3.225806451612903 * minus_rate_dot_foot_along_y,
+                minus_gfoot_vx_along_z * t416,
                 0.0,
                 minus_gleft_bar_vx_along_y * minus_rate_dot_left_bar_along_y,
                 0.0,
-                t430,
-                gdrive_vx_along_y * t449 + t108 * t451 + 3.225806451612903 * t293,
-                gdrive_vx_along_z * t464 - minus_s_left_bar_along_z * t272,
-                -t248,
-                t108 * t479,
-                -(minus_gfoot_vx_along_z * t483 - t301),
+                t431,
+                gdrive_vx_along_y * t450 + minus_s_left_bar_along_y * t264
+                    + 3.225806451612903 * t295,
+                gdrive_vx_along_z * t465 - minus_s_left_bar_along_z * t274,
+                -t250,
+                t109 * t480,
+                -(minus_gfoot_vx_along_z * t484 - t303),
             ],
             [
-                t195, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
-                gdrive_vy_along_z * t205, gdrive_vy_along_z * actuator_accelerations[2], t73,
+                t197, gdrive_vy_along_x * actuator_accelerations[0], actuator_accelerations[1],
+                gdrive_vy_along_z * t207, gdrive_vy_along_z * actuator_accelerations[2], t73,
                 actuator_velocities[1], t75,
                 ::overact::math::signed(gdrive_vy_along_x, actuator_velocities[0]),
                 ::overact::math::sign(actuator_velocities[1]),
                 ::overact::math::signed(gdrive_vy_along_z, actuator_velocities[2]),
                 gdrive_vy_along_x, 1.0, minus_gfoot_vy_along_x * minus_rate_dot_foot_along_x, 0.0,
-                minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z, -(t249 + t251), -t258,
-                -(gdrive_vy_along_z * t269 + t275),
-                gdrive_vy_along_x * t279 + minus_gfoot_vy_along_x * t281, t289,
-                gdrive_vy_along_z * t301 + minus_gfoot_vy_along_z * t303,
-                minus_gfoot_vy_along_x * t314, 0.0, minus_gfoot_vy_along_z * t337 - t152,
-                -(minus_gfoot_vy_along_x * t345), 0.0,
-                -(minus_gfoot_vy_along_z * t369
-                    + minus_gleft_bar_vy_along_z * (t153 - t157)),
-                -(minus_gfoot_vy_along_x * t380),
+                minus_gfoot_vy_along_z * minus_rate_dot_foot_along_z,
+                -(t251 + minus_gfoot_vy_along_x * t252), -t260, -(gdrive_vy_along_z * t271 + t277),
+                gdrive_vy_along_x * t281 + minus_gfoot_vy_along_x * t283, t291,
+                gdrive_vy_along_z * t303 + minus_gfoot_vy_along_z * t305,
+                minus_gfoot_vy_along_x * t316, 0.0,
+                minus_gfoot_vy_along_z * t337 - minus_gleft_bar_vy_along_z * t341,
+                -(minus_gfoot_vy_along_x * t348), 0.0,
+                -(minus_gfoot_vy_along_z * t370
+                    + minus_gleft_bar_vy_along_z * (t153 - t158)),
+                -(minus_gfoot_vy_along_x * t381),
                 0.0,
-                -(minus_gfoot_vy_along_z * t400 + minus_gleft_bar_vy_along_z * t334),
-                minus_gfoot_vy_along_x * t405,
+                -(minus_gfoot_vy_along_z * t401 + minus_gleft_bar_vy_along_z * t334),
+                minus_gfoot_vy_along_x * t406,
                 0.0,
-                minus_gfoot_vy_along_z * t415
+                minus_gfoot_vy_along_z * t416
                     + 3.225806451612903 * minus_rate_dot_foot_along_z,
                 0.0,
                 0.0,
                 minus_gleft_bar_vy_along_z * minus_rate_dot_left_bar_along_z,
-                gdrive_vy_along_x * t430 - minus_s_left_bar_along_x * t251,
-                t449,
-                gdrive_vy_along_z * t464 - minus_s_left_bar_along_z * t275
-                    + 3.225806451612903 * t303,
-                -(minus_gfoot_vy_along_x * t474 - t279),
-                -t258,
-                -(minus_gfoot_vy_along_z * t483),
+                gdrive_vy_along_x * t431 - minus_gfoot_vy_along_x * t433,
+                t450,
+                gdrive_vy_along_z * t465 - minus_s_left_bar_along_z * t277
+                    + 3.225806451612903 * t305,
+                -(minus_gfoot_vy_along_x * t475 - t281),
+                -t260,
+                -(minus_gfoot_vy_along_z * t484),
             ],
             [
-                -(-9.81 - t193), gdrive_vz_along_x * actuator_accelerations[0], t204, t205,
-                actuator_accelerations[2], t23, t30, actuator_velocities[2],
+                -(-9.81 - t195), gdrive_vz_along_x * actuator_accelerations[0], t206, t207,
+                actuator_accelerations[2], t16, t28, actuator_velocities[2],
                 ::overact::math::signed(gdrive_vz_along_x, actuator_velocities[0]),
                 ::overact::math::signed(gdrive_vz_along_y, actuator_velocities[1]),
                 ::overact::math::sign(actuator_velocities[2]), gdrive_vz_along_x, gdrive_vz_along_y,
                 minus_gfoot_vz_along_x * minus_rate_dot_foot_along_x,
                 minus_gfoot_vz_along_y * minus_rate_dot_foot_along_y, 0.0,
-                -(gdrive_vz_along_x * t248 + t254), -(t264 - t261), -t269,
-                gdrive_vz_along_x * t279 + minus_gfoot_vz_along_x * t281,
-                gdrive_vz_along_y * t289 + minus_gfoot_vz_along_y * t293, t301,
-                minus_gfoot_vz_along_x * t314 - minus_gleft_bar_vz_along_x * t318,
-                minus_gfoot_vz_along_y * t326, 0.0,
-                -(minus_gfoot_vz_along_x * t345
-                    + minus_gleft_bar_vz_along_x * (t348 - t309 * t309)),
-                -(minus_gfoot_vz_along_y * t357),
+                -(gdrive_vz_along_x * t250 + minus_gfoot_vz_along_x * t252), -(t266 - t267), -t271,
+                gdrive_vz_along_x * t281 + minus_gfoot_vz_along_x * t283,
+                gdrive_vz_along_y * t291 + minus_gfoot_vz_along_y * t295, t303,
+                minus_gfoot_vz_along_x * t316 - minus_gleft_bar_vz_along_x * t320,
+                minus_gfoot_vz_along_y * t327, 0.0,
+                -(minus_gfoot_vz_along_x * t348
+                    + minus_gleft_bar_vz_along_x * (t351 - t311 * t311)),
+                -(minus_gfoot_vz_along_y * t360),
                 0.0,
-                -(minus_gfoot_vz_along_x * t380 + minus_gleft_bar_vz_along_x * t311),
-                -(minus_gfoot_vz_along_y * t390),
+                -(minus_gfoot_vz_along_x * t381 + minus_gleft_bar_vz_along_x * t313),
+                -(minus_gfoot_vz_along_y * t391),
                 0.0,
-                minus_gfoot_vz_along_x * t405
+                minus_gfoot_vz_along_x * t406
                     + 3.225806451612903 * minus_rate_dot_foot_along_x,
-                t411,
+                t412,
                 0.0,
                 minus_gleft_bar_vz_along_x * minus_rate_dot_left_bar_along_x,
                 0.0,
                 0.0,
-                gdrive_vz_along_x * t430 - minus_s_left_bar_along_x * t254
+                gdrive_vz_along_x * t431 - minus_gfoot_vz_along_x * t433
                     + minus_gleft_bar_vz_along_x
-                        * (c_left_bar_along_x * t281 + minus_s_left_bar_along_x * 9.81),
-                gdrive_vz_along_y * t449 + t451,
-                t464,
-                -(minus_gfoot_vz_along_x * t474),
-                t289 + t479,
-                -t269,
+                        * (c_left_bar_along_x * t283 + minus_s_left_bar_along_x * 9.81),
+                gdrive_vz_along_y * t450 + minus_s_left_bar_along_y * t267,
+                t465,
+                -(minus_gfoot_vz_along_x * t475),
+                t291 + t480,
+                -t271,
             ],
         ])
     }
@@ -4530,7 +4675,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 589 operations (196 additions, 386 multiplications, 7 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 495 intermediates.
+    /// 593 operations (197 additions, 388 multiplications, 8 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 499 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4539,33 +4684,29 @@ impl Orthoglide {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 43]; 3], ::overact::Error> {
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t1 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        let t1 = 10.40582726326743 * (pose[0] * pose[0]);
         let t2 = 1.0 - t1;
-        ::overact::guard::reach(t2, "along_z")?;
-        let c_left_bar_along_z = ::overact::math::sqrt(t2);
-        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let t4 = 1.0 / c_left_bar_along_z;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t4;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
-        let t7 = minus_s_foot_along_z * minus_s_foot_along_z;
-        let t8 = t2 * t7;
-        let t9 = 1.0 - t8;
-        ::overact::guard::reach(t9, "along_y")?;
-        let c_left_bar_along_y = ::overact::math::sqrt(t9);
+        ::overact::guard::reach(t2, "along_y")?;
+        let c_left_bar_along_y = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let t11 = 1.0 / c_left_bar_along_y;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t11;
+        let t4 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t4;
         let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t14 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t15 = 1.0 - t14;
-        ::overact::guard::reach(t15, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t15);
-        let t17 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t17, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t17;
+        let t8 = 1.0 - minus_s_foot_along_y * minus_s_foot_along_y;
+        ::overact::guard::reach(t8, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t8);
+        let t10 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t10, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t10;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t20 = 1.0 - t7;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t14 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
+        let t15 = 1.0 - t14;
+        ::overact::guard::reach(t15, "along_z")?;
+        let c_left_bar_along_z = ::overact::math::sqrt(t15);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
+        let t20 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
         ::overact::guard::reach(t20, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t20);
         let t22 = c_left_bar_along_z * c_foot_along_z;
@@ -4573,299 +4714,301 @@ impl Orthoglide {
         let minus_gfoot_vx_along_z = 3.225806451612903 / t22;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let t26 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t27 = t9 * t14;
-        let t28 = 1.0 - t27;
-        ::overact::guard::reach(t28, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t28);
+        let t28 = 10.40582726326743 * (pose[2] * pose[2]);
+        let t29 = 1.0 - t28;
+        ::overact::guard::reach(t29, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t29);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let t30 = 1.0 / c_left_bar_along_x;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t30;
+        let t31 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t31;
         let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
-        let t34 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t34, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t34);
-        let t36 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t36, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t36;
+        let t35 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t35, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t35);
+        let t37 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t37, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t37;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
-        let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
+        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
+        let t41 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t42 = t41 * t4;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (gdrive_vz_along_y * t42);
+        let gdrive_vx_along_y = pose[2] * minus_gfoot_vx_along_y + t42;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t42 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let t49 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t47 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t49 = t26 - gdrive_vy_along_x * t42 + gdrive_vz_along_x * t47;
-        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t49, 1.0, "kept actuators")?;
-        let t50 = 1.0 / t49;
-        let t51 = t26 * t50;
-        let t53 = t42 * t50;
-        let t56 = t47 * t50;
-        let t57 = -9.81 - acceleration[2];
-        let t62 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t50;
-        let t66 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t50;
-        let t71 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t50;
-        let t76 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t50;
-        let t80 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t50;
-        let t85 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t50;
+        let t54 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t56 = t26 - gdrive_vy_along_x * t49 + gdrive_vz_along_x * t54;
+        ::overact::guard::platform(t56, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t56, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t56, 1.0, "kept actuators")?;
+        let t57 = 1.0 / t56;
+        let t58 = t26 * t57;
+        let t60 = t49 * t57;
+        let t63 = t54 * t57;
+        let t64 = -9.81 - acceleration[2];
+        let t69 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t57;
+        let t73 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t57;
+        let t78 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t57;
+        let t83 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t57;
+        let t87 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t57;
+        let t92 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t57;
         let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * twist[2];
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t92 = minus_s_left_bar_along_x * c_foot_along_x;
+        let t99 = minus_s_left_bar_along_x * c_foot_along_x;
         let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
-            * (gdrive_vy_along_x * (t92 * t30));
+            * (gdrive_vy_along_x * (t99 * t31));
         let minus_rate_foot_along_x = minus_gfoot_vy_along_x * twist[1]
             + minus_gfoot_vz_along_x * twist[2];
-        let t98 = pose[2] * minus_rate_foot_along_x;
-        let t99 = c_foot_along_x * minus_rate_left_bar_along_x * t98;
-        let t100 = gdrive_vy_along_x * t99;
-        let t102 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t103 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t104 = t102 + t103;
-        let t112 = acceleration[1] + pose[1] * t104 + t99 + t99;
-        let t116 = acceleration[2] + pose[2] * t102;
-        let rate_dot_drive_along_x = acceleration[0] - (t100 - 0.31 * t36 * t104 + t100)
-            + gdrive_vy_along_x * t112 + gdrive_vz_along_x * t116;
+        let t105 = pose[2] * minus_rate_foot_along_x;
+        let t106 = c_foot_along_x * minus_rate_left_bar_along_x * t105;
+        let t107 = gdrive_vy_along_x * t106;
+        let t109 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t110 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t111 = t109 + t110;
+        let t119 = acceleration[1] + pose[1] * t111 + t106 + t106;
+        let t123 = acceleration[2] + pose[2] * t109;
+        let rate_dot_drive_along_x = acceleration[0] - (t107 - 0.31 * t37 * t111 + t107)
+            + gdrive_vy_along_x * t119 + gdrive_vz_along_x * t123;
         let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * twist[0];
-        let t120 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t122 = acceleration[0] + pose[0] * t120;
-        let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t125 = minus_s_left_bar_along_y * c_foot_along_y;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
-            * (gdrive_vz_along_y * (t125 * t11));
+        let t127 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t129 = acceleration[0] + pose[0] * t127;
         let minus_rate_foot_along_y = minus_gfoot_vx_along_y * twist[0]
             + minus_gfoot_vz_along_y * twist[2];
-        let t132 = pose[0] * minus_rate_foot_along_y;
-        let t134 = t132 * (c_foot_along_y * minus_rate_left_bar_along_y);
-        let t135 = gdrive_vz_along_y * t134;
-        let t137 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t138 = t137 + t120;
-        let t147 = acceleration[2] + pose[2] * t138 + t134 + t134;
-        let rate_dot_drive_along_y = gdrive_vx_along_y * t122 + acceleration[1]
-            - (t135 - 0.31 * t17 * t138 + t135) + gdrive_vz_along_y * t147;
-        let t151 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t134 = pose[0] * minus_rate_foot_along_y;
+        let t136 = t134 * (c_foot_along_y * minus_rate_left_bar_along_y);
+        let t137 = gdrive_vz_along_y * t136;
+        let t139 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t140 = t139 + t127;
+        let t149 = acceleration[2] + pose[2] * t140 + t136 + t136;
+        let rate_dot_drive_along_y = gdrive_vx_along_y * t129 + acceleration[1]
+            - (t137 - 0.31 * t10 * t140 + t137) + gdrive_vz_along_y * t149;
+        let t153 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t154 = 1.0 / c_left_bar_along_z;
         let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
-            * (t151 * t4 * gdrive_vx_along_z);
+            * (t153 * t154 * gdrive_vx_along_z);
         let minus_rate_foot_along_z = minus_gfoot_vx_along_z * twist[0]
             + minus_gfoot_vy_along_z * twist[1];
-        let t157 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t160 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t154;
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        let t159 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t160 = t157 + t159;
-        let t163 = pose[1] * minus_rate_foot_along_z;
-        let t164 = c_foot_along_z * minus_rate_left_bar_along_z * t163;
-        let t167 = acceleration[0] + pose[0] * t160 + t164 + t164;
-        let t170 = acceleration[1] + pose[1] * t159;
-        let t173 = gdrive_vx_along_z * t164;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t167 + gdrive_vy_along_z * t170
-            + acceleration[2] - (t173 - 0.31 * t22 * t160 + t173);
-        let t180 = 9.81 + rate_dot_drive_along_z;
+        let t163 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t164 = t160 + t163;
+        let t167 = pose[1] * minus_rate_foot_along_z;
+        let t168 = c_foot_along_z * minus_rate_left_bar_along_z * t167;
+        let t171 = acceleration[0] + pose[0] * t164 + t168 + t168;
+        let t174 = acceleration[1] + pose[1] * t163;
+        let t177 = gdrive_vx_along_z * t168;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t171 + gdrive_vy_along_z * t174
+            + acceleration[2] - (t177 - 0.31 * t22 * t164 + t177);
+        let t184 = 9.81 + rate_dot_drive_along_z;
         let rate_drive_along_x = twist[0] + gdrive_vy_along_x * twist[1]
             + gdrive_vz_along_x * twist[2];
         let rate_drive_along_y = gdrive_vx_along_y * twist[0] + twist[1]
             + gdrive_vz_along_y * twist[2];
         let rate_drive_along_z = gdrive_vx_along_z * twist[0]
             + gdrive_vy_along_z * twist[1] + twist[2];
-        let t198 = minus_gfoot_vy_along_x * t53 - minus_gfoot_vz_along_x * t56;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t112
-            + minus_gfoot_vz_along_x * t116;
-        let t205 = minus_gfoot_vz_along_x * t71 - minus_gfoot_vy_along_x * t62;
-        let t209 = minus_gfoot_vy_along_x * t80 - minus_gfoot_vz_along_x * t85;
-        let t213 = minus_gfoot_vx_along_y * t51 + minus_gfoot_vz_along_y * t56;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t122
-            + minus_gfoot_vz_along_y * t147;
-        let t220 = minus_gfoot_vx_along_y * t66 + minus_gfoot_vz_along_y * t71;
-        let t224 = minus_gfoot_vx_along_y * t76 + minus_gfoot_vz_along_y * t85;
-        let t228 = minus_gfoot_vy_along_z * t53 - minus_gfoot_vx_along_z * t51;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t167
-            + minus_gfoot_vy_along_z * t170;
-        let t235 = minus_gfoot_vx_along_z * t66 - minus_gfoot_vy_along_z * t62;
-        let t239 = minus_gfoot_vy_along_z * t80 - minus_gfoot_vx_along_z * t76;
-        let t241 = minus_s_foot_along_x * rate_dot_drive_along_x;
-        let t245 = c_foot_along_x * t103
+        let t202 = minus_gfoot_vy_along_x * t60 - minus_gfoot_vz_along_x * t63;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x * t119
+            + minus_gfoot_vz_along_x * t123;
+        let t209 = minus_gfoot_vz_along_x * t78 - minus_gfoot_vy_along_x * t69;
+        let t213 = minus_gfoot_vy_along_x * t87 - minus_gfoot_vz_along_x * t92;
+        let t217 = minus_gfoot_vx_along_y * t58 + minus_gfoot_vz_along_y * t63;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t129
+            + minus_gfoot_vz_along_y * t149;
+        let t224 = minus_gfoot_vx_along_y * t73 + minus_gfoot_vz_along_y * t78;
+        let t228 = minus_gfoot_vx_along_y * t83 + minus_gfoot_vz_along_y * t92;
+        let t232 = minus_gfoot_vy_along_z * t60 - minus_gfoot_vx_along_z * t58;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t171
+            + minus_gfoot_vy_along_z * t174;
+        let t239 = minus_gfoot_vx_along_z * t73 - minus_gfoot_vy_along_z * t69;
+        let t243 = minus_gfoot_vy_along_z * t87 - minus_gfoot_vx_along_z * t83;
+        let t245 = minus_s_foot_along_x * rate_dot_drive_along_x;
+        let t249 = c_foot_along_x * t110
             + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t251 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
-        let t256 = c_foot_along_y * t137
+        let t255 = minus_s_foot_along_y * rate_dot_drive_along_y - 9.81 * c_foot_along_y;
+        let t260 = c_foot_along_y * t139
             + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t259 = minus_s_foot_along_z * t180;
-        let t265 = c_foot_along_z * t157
+        let t263 = minus_s_foot_along_z * t184;
+        let t269 = c_foot_along_z * t160
             + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t270 = c_foot_along_x * rate_dot_drive_along_x;
-        let t277 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
-        let t285 = c_foot_along_z * t180;
-        let t293 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t294 = minus_rate_left_bar_along_x * t293;
-        let t295 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t297 = t294 + t295 + t294;
-        let t298 = minus_s_left_bar_along_x * t297;
-        let t300 = minus_gleft_bar_vz_along_x * t56;
-        let t301 = 3.225806451612903 * t98;
-        let t302 = t301 * t293;
-        let t305 = minus_gleft_bar_vz_along_x * t71;
-        let t310 = minus_gleft_bar_vz_along_x * t85;
-        let t313 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t314 = minus_rate_left_bar_along_y * t313;
-        let t315 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t317 = t314 + t315 + t314;
-        let t318 = minus_s_left_bar_along_y * t317;
-        let t320 = minus_gleft_bar_vx_along_y * t51;
-        let t321 = 3.225806451612903 * t132;
-        let t322 = t321 * t313;
-        let t325 = minus_gleft_bar_vx_along_y * t66;
-        let t330 = minus_gleft_bar_vx_along_y * t76;
-        let t333 = minus_gleft_bar_vy_along_z * t53;
-        let t334 = 3.225806451612903 * t163;
-        let t335 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t336 = t334 * t335;
-        let t338 = minus_rate_left_bar_along_z * t335;
-        let t339 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t341 = t338 + t339 + t338;
-        let t342 = minus_s_left_bar_along_z * t341;
-        let t346 = minus_gleft_bar_vy_along_z * t62;
-        let t349 = minus_gleft_bar_vy_along_z * t80;
-        let t354 = minus_rate_left_bar_along_x * t301;
-        let t355 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t357 = t354 + t354 - t355;
-        let t359 = c_left_bar_along_x * t297 - minus_s_left_bar_along_x * t357;
-        let t361 = t27 * t103;
-        let t363 = t361 - t293 * t293;
-        let t373 = minus_rate_left_bar_along_y * t321;
-        let t374 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t376 = t373 + t373 - t374;
-        let t378 = c_left_bar_along_y * t317 - minus_s_left_bar_along_y * t376;
-        let t380 = t8 * t137;
-        let t382 = t380 - t313 * t313;
-        let t392 = minus_rate_left_bar_along_z * t334;
-        let t393 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t395 = t392 + t392 - t393;
-        let t397 = c_left_bar_along_z * t341 - minus_s_left_bar_along_z * t395;
-        let t399 = t1 * t157;
-        let t401 = t399 - t335 * t335;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t116;
-        let t415 = minus_s_left_bar_along_x * (t302 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t102 - t361);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t122;
-        let t430 = minus_s_left_bar_along_y * (t322 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t120 - t380);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t170;
-        let t445 = minus_s_left_bar_along_z * (t336 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t159 - t399);
-        let t456 = 3.225806451612903 * acceleration[2];
-        let t465 = 3.225806451612903 * acceleration[0];
-        let t475 = 3.225806451612903 * acceleration[1];
-        let t501 = minus_s_left_bar_along_x * t241;
-        let t506 = c_left_bar_along_x * t270 + 31.64516129032258 * pose[2];
-        let t508 = t36 * (minus_rate_dot_left_bar_along_x - t302) - t92 * (t361 + t102)
-            - minus_s_foot_along_x * t297 + t198 * t501 + t300 * t506;
-        let t515 = c_left_bar_along_y * t277;
-        let t517 = minus_s_left_bar_along_y * t251;
-        let t530 = t17 * (minus_rate_dot_left_bar_along_y - t322) - t125 * (t380 + t120)
-            - minus_s_foot_along_y * t317 + t220 * t517 - t325 * t515;
-        let t534 = minus_s_left_bar_along_z * t259;
-        let t536 = c_left_bar_along_z * t285;
-        let t552 = t22 * (minus_rate_dot_left_bar_along_z - t336) - t151 * (t399 + t159)
-            - minus_s_foot_along_z * t341 + t239 * t534 - t349 * t536;
-        let t556 = t241 + 0.31 * t357 - 0.31 * t355;
-        let t559 = minus_rate_foot_along_x * t98;
-        let t568 = minus_rate_foot_along_y * t132;
-        let t573 = t251 + 0.31 * t376 - 0.31 * t374;
-        let t586 = t259 + 0.31 * t395 - 0.31 * t393;
-        let t588 = minus_rate_foot_along_z * t163;
+        let t274 = c_foot_along_x * rate_dot_drive_along_x;
+        let t281 = 9.81 * minus_s_foot_along_y + c_foot_along_y * rate_dot_drive_along_y;
+        let t289 = c_foot_along_z * t184;
+        let t297 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t298 = minus_rate_left_bar_along_x * t297;
+        let t299 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t301 = t298 + t299 + t298;
+        let t302 = minus_s_left_bar_along_x * t301;
+        let t304 = minus_gleft_bar_vz_along_x * t63;
+        let t305 = 3.225806451612903 * t105;
+        let t306 = t305 * t297;
+        let t309 = minus_gleft_bar_vz_along_x * t78;
+        let t314 = minus_gleft_bar_vz_along_x * t92;
+        let t317 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t318 = minus_rate_left_bar_along_y * t317;
+        let t319 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t321 = t318 + t319 + t318;
+        let t322 = minus_s_left_bar_along_y * t321;
+        let t324 = minus_gleft_bar_vx_along_y * t58;
+        let t325 = 3.225806451612903 * t134;
+        let t326 = t325 * t317;
+        let t329 = minus_gleft_bar_vx_along_y * t73;
+        let t334 = minus_gleft_bar_vx_along_y * t83;
+        let t337 = minus_gleft_bar_vy_along_z * t60;
+        let t338 = 3.225806451612903 * t167;
+        let t339 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t340 = t338 * t339;
+        let t342 = minus_rate_left_bar_along_z * t339;
+        let t343 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t345 = t342 + t343 + t342;
+        let t346 = minus_s_left_bar_along_z * t345;
+        let t350 = minus_gleft_bar_vy_along_z * t69;
+        let t353 = minus_gleft_bar_vy_along_z * t87;
+        let t358 = minus_rate_left_bar_along_x * t305;
+        let t359 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t361 = t358 + t358 - t359;
+        let t363 = c_left_bar_along_x * t301 - minus_s_left_bar_along_x * t361;
+        let t365 = t28 * t110;
+        let t367 = t365 - t297 * t297;
+        let t377 = minus_rate_left_bar_along_y * t325;
+        let t378 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t380 = t377 + t377 - t378;
+        let t382 = c_left_bar_along_y * t321 - minus_s_left_bar_along_y * t380;
+        let t384 = t1 * t139;
+        let t386 = t384 - t317 * t317;
+        let t396 = minus_rate_left_bar_along_z * t338;
+        let t397 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t399 = t396 + t396 - t397;
+        let t401 = c_left_bar_along_z * t345 - minus_s_left_bar_along_z * t399;
+        let t403 = t14 * t160;
+        let t405 = t403 - t339 * t339;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t123;
+        let t419 = minus_s_left_bar_along_x * (t306 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t109 - t365);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t129;
+        let t434 = minus_s_left_bar_along_y * (t326 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t127 - t384);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t174;
+        let t449 = minus_s_left_bar_along_z * (t340 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t163 - t403);
+        let t460 = 3.225806451612903 * acceleration[2];
+        let t469 = 3.225806451612903 * acceleration[0];
+        let t479 = 3.225806451612903 * acceleration[1];
+        let t505 = minus_s_left_bar_along_x * t245;
+        let t510 = c_left_bar_along_x * t274 + 31.64516129032258 * pose[2];
+        let t512 = t37 * (minus_rate_dot_left_bar_along_x - t306) - t99 * (t365 + t109)
+            - minus_s_foot_along_x * t301 + t202 * t505 + t304 * t510;
+        let t519 = c_left_bar_along_y * t281;
+        let t521 = minus_s_left_bar_along_y * t255;
+        let t534 = t10 * (minus_rate_dot_left_bar_along_y - t326) - t41 * (t384 + t127)
+            - minus_s_foot_along_y * t321 + t224 * t521 - t329 * t519;
+        let t538 = minus_s_left_bar_along_z * t263;
+        let t540 = c_left_bar_along_z * t289;
+        let t556 = t22 * (minus_rate_dot_left_bar_along_z - t340) - t153 * (t403 + t163)
+            - minus_s_foot_along_z * t345 + t243 * t538 - t353 * t540;
+        let t560 = t245 + 0.31 * t361 - 0.31 * t359;
+        let t563 = minus_rate_foot_along_x * t105;
+        let t572 = minus_rate_foot_along_y * t134;
+        let t577 = t255 + 0.31 * t380 - 0.31 * t378;
+        let t590 = t263 + 0.31 * t399 - 0.31 * t397;
+        let t592 = minus_rate_foot_along_z * t167;
         Ok([
             [
-                t51 * acceleration[0] - t53 * acceleration[1] - t56 * t57, rate_dot_drive_along_x,
+                t58 * acceleration[0] - t60 * acceleration[1] - t63 * t64, rate_dot_drive_along_x,
                 0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_x), 0.0, 0.0, 1.0, 0.0,
-                -(t198 * minus_rate_dot_foot_along_x), t213 * minus_rate_dot_foot_along_y,
-                -(t228 * minus_rate_dot_foot_along_z), t198 * t241 - t245, -(t213 * t251),
-                t228 * t259,
+                -(t202 * minus_rate_dot_foot_along_x), t217 * minus_rate_dot_foot_along_y,
+                -(t232 * minus_rate_dot_foot_along_z), t202 * t245 - t249, -(t217 * t255),
+                t232 * t263,
                 c_foot_along_x * minus_rate_dot_foot_along_x
-                    - minus_s_foot_along_x * t103 - t198 * t270,
-                t213 * t277,
-                -(t228 * t285),
-                -(t198 * t298 + t300 * t302),
-                t213 * t318 - t320 * t322,
-                t333 * t336 - t228 * t342,
-                t198 * t359 - t300 * t363,
-                -(t213 * t378 + t320 * t382),
-                t228 * t397 + t333 * t401,
-                t198 * t415 - t300 * t295,
-                -(t213 * t430 + t320 * t315),
-                t228 * t445 + t333 * t339,
-                t300 * t355 - t198 * t456,
-                t213 * t465 + t320 * t374,
-                -(t228 * t475 + t333 * t393),
-                t300 * minus_rate_dot_left_bar_along_x,
-                t320 * minus_rate_dot_left_bar_along_y,
-                -(t333 * minus_rate_dot_left_bar_along_z),
-                t508,
-                t320 * t515 - t213 * t517,
-                t228 * t534 - t333 * t536,
-                t198 * t556 - t245 + t300 * t559,
-                t320 * t568 - t213 * t573,
-                t228 * t586 - t333 * t588,
+                    - minus_s_foot_along_x * t110 - t202 * t274,
+                t217 * t281,
+                -(t232 * t289),
+                -(t202 * t302 + t304 * t306),
+                t217 * t322 - t324 * t326,
+                t337 * t340 - t232 * t346,
+                t202 * t363 - t304 * t367,
+                -(t217 * t382 + t324 * t386),
+                t232 * t401 + t337 * t405,
+                t202 * t419 - t304 * t299,
+                -(t217 * t434 + t324 * t319),
+                t232 * t449 + t337 * t343,
+                t304 * t359 - t202 * t460,
+                t217 * t469 + t324 * t378,
+                -(t232 * t479 + t337 * t397),
+                t304 * minus_rate_dot_left_bar_along_x,
+                t324 * minus_rate_dot_left_bar_along_y,
+                -(t337 * minus_rate_dot_left_bar_along_z),
+                t512,
+                t324 * t519 - t217 * t521,
+                t232 * t538 - t337 * t540,
+                t202 * t560 - t249 + t304 * t563,
+                t324 * t572 - t217 * t577,
+                t232 * t590 - t337 * t592,
             ],
             [
-                t62 * acceleration[1] - t66 * acceleration[0] + t71 * t57, 0.0,
+                t69 * acceleration[1] - t73 * acceleration[0] + t78 * t64, 0.0,
                 rate_dot_drive_along_y, 0.0, 0.0, 0.0, rate_drive_along_y, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_y), 0.0, 0.0, 1.0,
-                -(t205 * minus_rate_dot_foot_along_x), -(t220 * minus_rate_dot_foot_along_y),
-                -(t235 * minus_rate_dot_foot_along_z), t205 * t241, t220 * t251 - t256, t235 * t259,
-                -(t205 * t270),
+                -(t209 * minus_rate_dot_foot_along_x), -(t224 * minus_rate_dot_foot_along_y),
+                -(t239 * minus_rate_dot_foot_along_z), t209 * t245, t224 * t255 - t260, t239 * t263,
+                -(t209 * t274),
                 c_foot_along_y * minus_rate_dot_foot_along_y
-                    - minus_s_foot_along_y * t137 - t220 * t277,
-                -(t235 * t285),
-                t305 * t302 - t205 * t298,
-                t325 * t322 - t220 * t318,
-                -(t235 * t342 + t346 * t336),
-                t205 * t359 + t305 * t363,
-                t220 * t378 + t325 * t382,
-                t235 * t397 - t346 * t401,
-                t205 * t415 + t305 * t295,
-                t220 * t430 + t325 * t315,
-                t235 * t445 - t346 * t339,
-                -(t205 * t456 + t305 * t355),
-                -(t220 * t465 + t325 * t374),
-                t346 * t393 - t235 * t475,
-                -(t305 * minus_rate_dot_left_bar_along_x),
-                -(t325 * minus_rate_dot_left_bar_along_y),
-                t346 * minus_rate_dot_left_bar_along_z,
-                t205 * t501 - t305 * t506,
-                t530,
-                t235 * t534 + t346 * t536,
-                t205 * t556 - t305 * t559,
-                t220 * t573 - t256 - t325 * t568,
-                t235 * t586 + t346 * t588,
+                    - minus_s_foot_along_y * t139 - t224 * t281,
+                -(t239 * t289),
+                t309 * t306 - t209 * t302,
+                t329 * t326 - t224 * t322,
+                -(t239 * t346 + t350 * t340),
+                t209 * t363 + t309 * t367,
+                t224 * t382 + t329 * t386,
+                t239 * t401 - t350 * t405,
+                t209 * t419 + t309 * t299,
+                t224 * t434 + t329 * t319,
+                t239 * t449 - t350 * t343,
+                -(t209 * t460 + t309 * t359),
+                -(t224 * t469 + t329 * t378),
+                t350 * t397 - t239 * t479,
+                -(t309 * minus_rate_dot_left_bar_along_x),
+                -(t329 * minus_rate_dot_left_bar_along_y),
+                t350 * minus_rate_dot_left_bar_along_z,
+                t209 * t505 - t309 * t510,
+                t534,
+                t239 * t538 + t350 * t540,
+                t209 * t560 - t309 * t563,
+                t224 * t577 - t260 - t329 * t572,
+                t239 * t590 + t350 * t592,
             ],
             [
-                t76 * acceleration[0] - t80 * acceleration[1] - t85 * t57, 0.0, 0.0, t180,
+                t83 * acceleration[0] - t87 * acceleration[1] - t92 * t64, 0.0, 0.0, t184,
                 rate_dot_drive_along_z, 0.0, 0.0, rate_drive_along_z, 0.0, 0.0,
                 ::overact::math::sign(rate_drive_along_z), 0.0, 0.0,
-                -(t209 * minus_rate_dot_foot_along_x), t224 * minus_rate_dot_foot_along_y,
-                -(t239 * minus_rate_dot_foot_along_z), t209 * t241, -(t224 * t251),
-                t239 * t259 - t265, -(t209 * t270), t224 * t277,
+                -(t213 * minus_rate_dot_foot_along_x), t228 * minus_rate_dot_foot_along_y,
+                -(t243 * minus_rate_dot_foot_along_z), t213 * t245, -(t228 * t255),
+                t243 * t263 - t269, -(t213 * t274), t228 * t281,
                 c_foot_along_z * minus_rate_dot_foot_along_z
-                    - minus_s_foot_along_z * t157 - t239 * t285,
-                -(t209 * t298 + t310 * t302),
-                t224 * t318 - t330 * t322,
-                t349 * t336 - t239 * t342,
-                t209 * t359 - t310 * t363,
-                -(t224 * t378 + t330 * t382),
-                t239 * t397 + t349 * t401,
-                t209 * t415 - t310 * t295,
-                -(t224 * t430 + t330 * t315),
-                t239 * t445 + t349 * t339,
-                t310 * t355 - t209 * t456,
-                t224 * t465 + t330 * t374,
-                -(t239 * t475 + t349 * t393),
-                t310 * minus_rate_dot_left_bar_along_x,
-                t330 * minus_rate_dot_left_bar_along_y,
-                -(t349 * minus_rate_dot_left_bar_along_z),
-                t209 * t501 + t310 * t506,
-                t330 * t515 - t224 * t517,
-                t552,
-                t209 * t556 + t310 * t559,
-                t330 * t568 - t224 * t573,
-                t239 * t586 - t265 - t349 * t588,
+                    - minus_s_foot_along_z * t160 - t243 * t289,
+                -(t213 * t302 + t314 * t306),
+                t228 * t322 - t334 * t326,
+                t353 * t340 - t243 * t346,
+                t213 * t363 - t314 * t367,
+                -(t228 * t382 + t334 * t386),
+                t243 * t401 + t353 * t405,
+                t213 * t419 - t314 * t299,
+                -(t228 * t434 + t334 * t319),
+                t243 * t449 + t353 * t343,
+                t314 * t359 - t213 * t460,
+                t228 * t469 + t334 * t378,
+                -(t243 * t479 + t353 * t397),
+                t314 * minus_rate_dot_left_bar_along_x,
+                t334 * minus_rate_dot_left_bar_along_y,
+                -(t353 * minus_rate_dot_left_bar_along_z),
+                t213 * t505 + t314 * t510,
+                t334 * t519 - t228 * t521,
+                t556,
+                t213 * t560 + t314 * t563,
+                t334 * t572 - t228 * t577,
+                t243 * t590 - t269 - t353 * t592,
             ],
         ])
     }
@@ -5222,7 +5365,7 @@ impl Orthoglide {
     /// Output: 3 x 43.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 656 operations (227 additions, 419 multiplications, 10 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 568 intermediates.
+    /// 663 operations (227 additions, 425 multiplications, 11 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 575 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5239,362 +5382,368 @@ impl Orthoglide {
         ::overact::guard::reach(t2, "along_z")?;
         let c_left_bar_along_z = ::overact::math::sqrt(t2);
         ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
-        let minus_gleft_bar_vy_along_z = 3.225806451612903 / c_left_bar_along_z;
-        let minus_s_foot_along_z = pose[0] * minus_gleft_bar_vy_along_z;
+        let minus_s_foot_along_z = pose[0] / (0.31 * c_left_bar_along_z);
         let t6 = minus_s_foot_along_z * minus_s_foot_along_z;
         let t7 = t2 * t6;
         let t8 = 1.0 - t7;
         ::overact::guard::reach(t8, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t8);
         ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
-        let minus_gleft_bar_vx_along_y = 3.225806451612903 / c_left_bar_along_y;
+        let t10 = 1.0 / c_left_bar_along_y;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t10;
         let minus_s_foot_along_y = pose[2] * minus_gleft_bar_vx_along_y;
-        let t12 = minus_s_foot_along_y * minus_s_foot_along_y;
-        let t13 = 1.0 - t12;
-        ::overact::guard::reach(t13, "along_y")?;
-        let c_foot_along_y = ::overact::math::sqrt(t13);
-        let t15 = c_left_bar_along_y * c_foot_along_y;
-        ::overact::guard::leg(t15, 1.0, "along_y")?;
-        let minus_gfoot_vz_along_y = 3.225806451612903 / t15;
+        let t13 = minus_s_foot_along_y * minus_s_foot_along_y;
+        let t14 = 1.0 - t13;
+        ::overact::guard::reach(t14, "along_y")?;
+        let c_foot_along_y = ::overact::math::sqrt(t14);
+        let t16 = c_left_bar_along_y * c_foot_along_y;
+        ::overact::guard::leg(t16, 1.0, "along_y")?;
+        let minus_gfoot_vz_along_y = 3.225806451612903 / t16;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t18 = 1.0 - t6;
-        ::overact::guard::reach(t18, "along_z")?;
-        let c_foot_along_z = ::overact::math::sqrt(t18);
-        let t20 = c_left_bar_along_z * c_foot_along_z;
-        ::overact::guard::leg(t20, 1.0, "along_z")?;
-        let minus_gfoot_vx_along_z = 3.225806451612903 / t20;
+        let t19 = 1.0 - t6;
+        ::overact::guard::reach(t19, "along_z")?;
+        let c_foot_along_z = ::overact::math::sqrt(t19);
+        let t21 = c_left_bar_along_z * c_foot_along_z;
+        ::overact::guard::leg(t21, 1.0, "along_z")?;
+        let minus_gfoot_vx_along_z = 3.225806451612903 / t21;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t24 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
-        let t25 = t8 * t12;
-        let t26 = 1.0 - t25;
-        ::overact::guard::reach(t26, "along_x")?;
-        let c_left_bar_along_x = ::overact::math::sqrt(t26);
+        let t25 = 1.0 - gdrive_vz_along_y * gdrive_vy_along_z;
+        let t26 = t8 * t13;
+        let t27 = 1.0 - t26;
+        ::overact::guard::reach(t27, "along_x")?;
+        let c_left_bar_along_x = ::overact::math::sqrt(t27);
         ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
-        let minus_gleft_bar_vz_along_x = 3.225806451612903 / c_left_bar_along_x;
+        let t29 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t29;
         let minus_s_foot_along_x = pose[1] * minus_gleft_bar_vz_along_x;
-        let t31 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
-        ::overact::guard::reach(t31, "along_x")?;
-        let c_foot_along_x = ::overact::math::sqrt(t31);
-        let t33 = c_left_bar_along_x * c_foot_along_x;
-        ::overact::guard::leg(t33, 1.0, "along_x")?;
-        let minus_gfoot_vy_along_x = 3.225806451612903 / t33;
+        let t33 = 1.0 - minus_s_foot_along_x * minus_s_foot_along_x;
+        ::overact::guard::reach(t33, "along_x")?;
+        let c_foot_along_x = ::overact::math::sqrt(t33);
+        let t35 = c_left_bar_along_x * c_foot_along_x;
+        ::overact::guard::leg(t35, 1.0, "along_x")?;
+        let minus_gfoot_vy_along_x = 3.225806451612903 / t35;
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
         let gdrive_vx_along_y = pose[0] * minus_gfoot_vz_along_y;
         let gdrive_vx_along_z = pose[0] * minus_gfoot_vx_along_z;
-        let t39 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
+        let t41 = gdrive_vx_along_y - gdrive_vz_along_y * gdrive_vx_along_z;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
-        let t44 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
-        let t46 = t24 - gdrive_vy_along_x * t39 + gdrive_vz_along_x * t44;
-        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
-        ::overact::guard::platform(t46, 1.0, "kept actuators")?;
-        let t47 = 1.0 / t46;
-        let t48 = t24 * t47;
-        let t52 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
+        let t46 = gdrive_vx_along_y * gdrive_vy_along_z - gdrive_vx_along_z;
+        let t48 = t25 - gdrive_vy_along_x * t41 + gdrive_vz_along_x * t46;
+        ::overact::guard::platform(t48, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t48, 1.0, "kept actuators")?;
+        ::overact::guard::platform(t48, 1.0, "kept actuators")?;
+        let t49 = 1.0 / t48;
+        let t50 = t25 * t49;
+        let t54 = 1.0 + gdrive_vx_along_y * gdrive_vx_along_y
             + gdrive_vx_along_z * gdrive_vx_along_z;
-        ::overact::guard::platform(t52, 1.0, "actuators")?;
-        ::overact::guard::platform(t52, 1.0, "actuators")?;
-        let t53 = 1.0 / t52;
-        let t55 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
-        let t61 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t63 = gdrive_vz_along_x + t61 + gdrive_vx_along_z;
-        let t64 = t63 * t53;
-        let t67 = gdrive_vy_along_x * gdrive_vz_along_x;
-        let t71 = gdrive_vx_along_z * gdrive_vy_along_z;
-        let t72 = gdrive_vy_along_x + gdrive_vx_along_y + t71;
-        let t74 = t67 + gdrive_vz_along_y + gdrive_vy_along_z - t72 * t64;
-        let t77 = t72 * t53;
-        let t79 = t55 + gdrive_vy_along_z * gdrive_vy_along_z - t72 * t77;
-        ::overact::guard::platform(t79, 1.0, "actuators")?;
-        ::overact::guard::platform(t79, 1.0, "actuators")?;
-        let t80 = 1.0 / t79;
-        let t81 = t74 * t80;
-        let t83 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t63 * t64 - t74 * t81;
-        ::overact::guard::platform(t83, 1.0, "actuators")?;
-        ::overact::guard::platform(t83, 1.0, "actuators")?;
-        let t84 = 1.0 / t83;
-        let t92 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        ::overact::guard::platform(t54, 1.0, "actuators")?;
+        let t55 = 1.0 / t54;
+        let t57 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
+        let t65 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t66 = t65 * t55;
+        let t74 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
+        let t76 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t74 * t66;
+        let t79 = t74 * t55;
+        let t81 = t57 + gdrive_vy_along_z * gdrive_vy_along_z - t74 * t79;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        let t82 = 1.0 / t81;
+        let t83 = t76 * t82;
+        let t85 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t65 * t66 - t76 * t83;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        ::overact::guard::platform(t85, 1.0, "actuators")?;
+        let t86 = 1.0 / t85;
+        let t94 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t100 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t92 * t77;
-        let t103 = t84
+        let t102 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t94 * t79;
+        let t105 = t86
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t92 * t64 - t81 * t100);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t103;
-        let t105 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t108 = t80 * t100 - t81 * t103;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t31 * t67);
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t108
-            + minus_gfoot_vz_along_x * t103;
-        let t114 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t115 = t105 + t114;
-        let t118 = pose[2] * t105;
-        let rate_dot_drive_along_x = t55 * (0.31 * t33 * t115)
-            + gdrive_vz_along_x * t118;
-        let t121 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t13 * t61);
-        let t128 = t92 * t53 - t77 * t108 - t64 * t103;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t128
-            + minus_gfoot_vz_along_y * t103;
-        let t132 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t128;
-        let t134 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t135 = t132 + t134;
-        let t138 = pose[0] * minus_rate_foot_along_y;
-        let t139 = c_foot_along_y * minus_rate_left_bar_along_y * t138;
-        let t141 = pose[2] * t135 + t139 + t139;
-        let t143 = pose[0] * t134;
-        let t145 = gdrive_vz_along_y * t139;
-        let rate_dot_drive_along_y = gdrive_vz_along_y * t141
-            - (t145 - 0.31 * t15 * t135 + t145 - gdrive_vx_along_y * t143);
-        let t152 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t18 * t71);
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t128
-            + minus_gfoot_vy_along_z * t108;
-        let t160 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t108;
-        let t162 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t163 = t160 + t162;
-        let t166 = pose[1] * minus_rate_foot_along_z;
-        let t167 = c_foot_along_z * minus_rate_left_bar_along_z * t166;
-        let t169 = pose[0] * t163 + t167 + t167;
-        let t171 = pose[1] * t162;
-        let t174 = gdrive_vx_along_z * t167;
-        let rate_dot_drive_along_z = gdrive_vx_along_z * t169 + gdrive_vy_along_z * t171
-            - (t174 - 0.31 * t20 * t163 + t174);
-        let t180 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t182 = t121 + gdrive_vx_along_y * t152 + gdrive_vx_along_z * t180;
-        let t189 = gdrive_vy_along_x * t121 + t152 + gdrive_vy_along_z * t180
-            - t77 * t182;
-        let t199 = t84
-            * (gdrive_vz_along_x * t121 + gdrive_vz_along_y * t152 + t180 - t64 * t182
-                - t81 * t189);
-        let t201 = t80 * t189 - t81 * t199;
-        let t205 = t53 * t182 - t77 * t201 - t64 * t199;
-        let t207 = t39 * t47;
-        let t210 = t44 * t47;
-        let t211 = -9.81 - t199;
-        let t216 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t47;
-        let t220 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t47;
-        let t225 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t47;
-        let t230 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t47;
-        let t234 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t47;
-        let t239 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t47;
-        let t242 = 9.81 + actuator_accelerations[2];
-        let t248 = minus_gfoot_vy_along_x * t207 - minus_gfoot_vz_along_x * t210;
-        let t251 = pose[2] * minus_rate_foot_along_x;
-        let t252 = c_foot_along_x * minus_rate_left_bar_along_x * t251;
-        let t257 = t199 + t118;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t201 + pose[1] * t115 + t252 + t252) + minus_gfoot_vz_along_x * t257;
-        let t263 = minus_gfoot_vz_along_x * t225 - minus_gfoot_vy_along_x * t216;
-        let t267 = minus_gfoot_vy_along_x * t234 - minus_gfoot_vz_along_x * t239;
-        let t271 = minus_gfoot_vx_along_y * t48 + minus_gfoot_vz_along_y * t210;
-        let t272 = t205 + t143;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t272
-            + minus_gfoot_vz_along_y * (t199 + t141);
-        let t280 = minus_gfoot_vx_along_y * t220 + minus_gfoot_vz_along_y * t225;
-        let t284 = minus_gfoot_vx_along_y * t230 + minus_gfoot_vz_along_y * t239;
-        let t288 = minus_gfoot_vy_along_z * t207 - minus_gfoot_vx_along_z * t48;
-        let t291 = t201 + t171;
-        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t205 + t169)
-            + minus_gfoot_vy_along_z * t291;
-        let t297 = minus_gfoot_vx_along_z * t220 - minus_gfoot_vy_along_z * t216;
-        let t301 = minus_gfoot_vy_along_z * t234 - minus_gfoot_vx_along_z * t230;
-        let t303 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t307 = c_foot_along_x * t114
-            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
-        let t313 = minus_s_foot_along_y * actuator_accelerations[1]
-            - 9.81 * c_foot_along_y;
-        let t318 = c_foot_along_y * t132
-            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
-        let t321 = minus_s_foot_along_z * t242;
-        let t327 = c_foot_along_z * t160
-            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
-        let t332 = c_foot_along_x * actuator_accelerations[0];
-        let t339 = 9.81 * minus_s_foot_along_y
-            + c_foot_along_y * actuator_accelerations[1];
-        let t347 = c_foot_along_z * t242;
+                - t94 * t66 - t83 * t102);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t105;
+        let t107 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t110 = t82 * t102 - t83 * t105;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t356 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t357 = minus_rate_left_bar_along_x * t356;
-        let t358 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t360 = t357 + t358 + t357;
-        let t361 = minus_s_left_bar_along_x * t360;
-        let t363 = minus_gleft_bar_vz_along_x * t210;
-        let t364 = 3.225806451612903 * t251;
-        let t365 = t364 * t356;
-        let t368 = minus_gleft_bar_vz_along_x * t225;
-        let t373 = minus_gleft_bar_vz_along_x * t239;
+        let t113 = minus_s_left_bar_along_x * c_foot_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (gdrive_vy_along_x * (t113 * t29));
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t110
+            + minus_gfoot_vz_along_x * t105;
+        let t119 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t120 = t107 + t119;
+        let t123 = pose[2] * t107;
+        let rate_dot_drive_along_x = t57 * (0.31 * t35 * t120)
+            + gdrive_vz_along_x * t123;
+        let t126 = actuator_accelerations[0] - rate_dot_drive_along_x;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
-        let t377 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t378 = minus_rate_left_bar_along_y * t377;
-        let t379 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t381 = t378 + t379 + t378;
-        let t382 = minus_s_left_bar_along_y * t381;
-        let t384 = minus_gleft_bar_vx_along_y * t48;
-        let t385 = 3.225806451612903 * t138;
-        let t386 = t385 * t377;
-        let t389 = minus_gleft_bar_vx_along_y * t220;
-        let t394 = minus_gleft_bar_vx_along_y * t230;
-        let t397 = minus_gleft_bar_vy_along_z * t207;
-        let t398 = 3.225806451612903 * t166;
-        let t399 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t400 = t398 * t399;
-        let t402 = minus_rate_left_bar_along_z * t399;
-        let t403 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t405 = t402 + t403 + t402;
-        let t406 = minus_s_left_bar_along_z * t405;
-        let t410 = minus_gleft_bar_vy_along_z * t216;
-        let t413 = minus_gleft_bar_vy_along_z * t234;
-        let t418 = minus_rate_left_bar_along_x * t364;
-        let t419 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t421 = t418 + t418 - t419;
-        let t423 = c_left_bar_along_x * t360 - minus_s_left_bar_along_x * t421;
-        let t425 = t25 * t114;
-        let t427 = t425 - t356 * t356;
-        let t437 = minus_rate_left_bar_along_y * t385;
-        let t438 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t440 = t437 + t437 - t438;
-        let t442 = c_left_bar_along_y * t381 - minus_s_left_bar_along_y * t440;
-        let t444 = t7 * t132;
-        let t446 = t444 - t377 * t377;
-        let t456 = minus_rate_left_bar_along_z * t398;
-        let t457 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t459 = t456 + t456 - t457;
-        let t461 = c_left_bar_along_z * t405 - minus_s_left_bar_along_z * t459;
-        let t463 = t1 * t160;
-        let t465 = t463 - t399 * t399;
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t257;
-        let t479 = minus_s_left_bar_along_x * (t365 + minus_rate_dot_left_bar_along_x)
-            + c_left_bar_along_x * (t105 - t425);
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t272;
-        let t494 = minus_s_left_bar_along_y * (t386 + minus_rate_dot_left_bar_along_y)
-            + c_left_bar_along_y * (t134 - t444);
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t291;
-        let t509 = minus_s_left_bar_along_z * (t400 + minus_rate_dot_left_bar_along_z)
-            + c_left_bar_along_z * (t162 - t463);
-        let t520 = 3.225806451612903 * t199;
-        let t529 = 3.225806451612903 * t205;
-        let t539 = 3.225806451612903 * t201;
-        let t566 = minus_s_left_bar_along_x * t303;
-        let t568 = t33 * (minus_rate_dot_left_bar_along_x - t365)
-            - minus_s_left_bar_along_x * c_foot_along_x * (t425 + t105)
-            - minus_s_foot_along_x * t360 + t248 * t566;
-        let t571 = c_left_bar_along_x * t332 + 31.64516129032258 * pose[2];
-        let t580 = c_left_bar_along_y * t339;
-        let t582 = minus_s_left_bar_along_y * t313;
-        let t594 = t15 * (minus_rate_dot_left_bar_along_y - t386)
-            - minus_s_left_bar_along_y * c_foot_along_y * (t444 + t134)
-            - minus_s_foot_along_y * t381 + t280 * t582;
-        let t600 = minus_s_left_bar_along_z * t321;
-        let t602 = c_left_bar_along_z * t347;
-        let t617 = t20 * (minus_rate_dot_left_bar_along_z - t400)
-            - minus_s_left_bar_along_z * c_foot_along_z * (t463 + t162)
-            - minus_s_foot_along_z * t405 + t301 * t600;
-        let t623 = t303 + 0.31 * t421 - 0.31 * t419;
-        let t626 = minus_rate_foot_along_x * t251;
-        let t635 = minus_rate_foot_along_y * t138;
-        let t640 = t313 + 0.31 * t440 - 0.31 * t438;
-        let t653 = t321 + 0.31 * t459 - 0.31 * t457;
-        let t655 = minus_rate_foot_along_z * t166;
+        let t128 = minus_s_left_bar_along_y * c_foot_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (gdrive_vz_along_y * (t128 * t10));
+        let t136 = t94 * t55 - t79 * t110 - t66 * t105;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t136
+            + minus_gfoot_vz_along_y * t105;
+        let t140 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t136;
+        let t142 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t143 = t140 + t142;
+        let t146 = pose[0] * minus_rate_foot_along_y;
+        let t147 = c_foot_along_y * minus_rate_left_bar_along_y * t146;
+        let t149 = pose[2] * t143 + t147 + t147;
+        let t151 = pose[0] * t142;
+        let t153 = gdrive_vz_along_y * t147;
+        let rate_dot_drive_along_y = gdrive_vz_along_y * t149
+            - (t153 - 0.31 * t16 * t143 + t153 - gdrive_vx_along_y * t151);
+        let t160 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let t164 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t165 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (t164 * t165 * gdrive_vx_along_z);
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t136
+            + minus_gfoot_vy_along_z * t110;
+        let t171 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t165;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t110;
+        let t174 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t175 = t171 + t174;
+        let t178 = pose[1] * minus_rate_foot_along_z;
+        let t179 = c_foot_along_z * minus_rate_left_bar_along_z * t178;
+        let t181 = pose[0] * t175 + t179 + t179;
+        let t183 = pose[1] * t174;
+        let t186 = gdrive_vx_along_z * t179;
+        let rate_dot_drive_along_z = gdrive_vx_along_z * t181 + gdrive_vy_along_z * t183
+            - (t186 - 0.31 * t21 * t175 + t186);
+        let t192 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t194 = t126 + gdrive_vx_along_y * t160 + gdrive_vx_along_z * t192;
+        let t201 = gdrive_vy_along_x * t126 + t160 + gdrive_vy_along_z * t192
+            - t79 * t194;
+        let t211 = t86
+            * (gdrive_vz_along_x * t126 + gdrive_vz_along_y * t160 + t192 - t66 * t194
+                - t83 * t201);
+        let t213 = t82 * t201 - t83 * t211;
+        let t217 = t55 * t194 - t79 * t213 - t66 * t211;
+        let t219 = t41 * t49;
+        let t222 = t46 * t49;
+        let t223 = -9.81 - t211;
+        let t228 = (1.0 - gdrive_vz_along_x * gdrive_vx_along_z) * t49;
+        let t232 = (gdrive_vy_along_x - gdrive_vz_along_x * gdrive_vy_along_z) * t49;
+        let t237 = (gdrive_vy_along_z - gdrive_vy_along_x * gdrive_vx_along_z) * t49;
+        let t242 = (gdrive_vy_along_x * gdrive_vz_along_y - gdrive_vz_along_x) * t49;
+        let t246 = (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t49;
+        let t251 = (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t49;
+        let t254 = 9.81 + actuator_accelerations[2];
+        let t260 = minus_gfoot_vy_along_x * t219 - minus_gfoot_vz_along_x * t222;
+        let t263 = pose[2] * minus_rate_foot_along_x;
+        let t264 = c_foot_along_x * minus_rate_left_bar_along_x * t263;
+        let t269 = t211 + t123;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t213 + pose[1] * t120 + t264 + t264) + minus_gfoot_vz_along_x * t269;
+        let t275 = minus_gfoot_vz_along_x * t237 - minus_gfoot_vy_along_x * t228;
+        let t279 = minus_gfoot_vy_along_x * t246 - minus_gfoot_vz_along_x * t251;
+        let t283 = minus_gfoot_vx_along_y * t50 + minus_gfoot_vz_along_y * t222;
+        let t284 = t217 + t151;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t284
+            + minus_gfoot_vz_along_y * (t211 + t149);
+        let t292 = minus_gfoot_vx_along_y * t232 + minus_gfoot_vz_along_y * t237;
+        let t296 = minus_gfoot_vx_along_y * t242 + minus_gfoot_vz_along_y * t251;
+        let t300 = minus_gfoot_vy_along_z * t219 - minus_gfoot_vx_along_z * t50;
+        let t303 = t213 + t183;
+        let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * (t217 + t181)
+            + minus_gfoot_vy_along_z * t303;
+        let t309 = minus_gfoot_vx_along_z * t232 - minus_gfoot_vy_along_z * t228;
+        let t313 = minus_gfoot_vy_along_z * t246 - minus_gfoot_vx_along_z * t242;
+        let t315 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t319 = c_foot_along_x * t119
+            + minus_s_foot_along_x * minus_rate_dot_foot_along_x;
+        let t325 = minus_s_foot_along_y * actuator_accelerations[1]
+            - 9.81 * c_foot_along_y;
+        let t330 = c_foot_along_y * t140
+            + minus_s_foot_along_y * minus_rate_dot_foot_along_y;
+        let t333 = minus_s_foot_along_z * t254;
+        let t339 = c_foot_along_z * t171
+            + minus_s_foot_along_z * minus_rate_dot_foot_along_z;
+        let t344 = c_foot_along_x * actuator_accelerations[0];
+        let t351 = 9.81 * minus_s_foot_along_y
+            + c_foot_along_y * actuator_accelerations[1];
+        let t359 = c_foot_along_z * t254;
+        let t367 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t368 = minus_rate_left_bar_along_x * t367;
+        let t369 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t371 = t368 + t369 + t368;
+        let t372 = minus_s_left_bar_along_x * t371;
+        let t374 = minus_gleft_bar_vz_along_x * t222;
+        let t375 = 3.225806451612903 * t263;
+        let t376 = t375 * t367;
+        let t379 = minus_gleft_bar_vz_along_x * t237;
+        let t384 = minus_gleft_bar_vz_along_x * t251;
+        let t387 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t388 = minus_rate_left_bar_along_y * t387;
+        let t389 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t391 = t388 + t389 + t388;
+        let t392 = minus_s_left_bar_along_y * t391;
+        let t394 = minus_gleft_bar_vx_along_y * t50;
+        let t395 = 3.225806451612903 * t146;
+        let t396 = t395 * t387;
+        let t399 = minus_gleft_bar_vx_along_y * t232;
+        let t404 = minus_gleft_bar_vx_along_y * t242;
+        let t407 = minus_gleft_bar_vy_along_z * t219;
+        let t408 = 3.225806451612903 * t178;
+        let t409 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t410 = t408 * t409;
+        let t412 = minus_rate_left_bar_along_z * t409;
+        let t413 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t415 = t412 + t413 + t412;
+        let t416 = minus_s_left_bar_along_z * t415;
+        let t420 = minus_gleft_bar_vy_along_z * t228;
+        let t423 = minus_gleft_bar_vy_along_z * t246;
+        let t428 = minus_rate_left_bar_along_x * t375;
+        let t429 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t431 = t428 + t428 - t429;
+        let t433 = c_left_bar_along_x * t371 - minus_s_left_bar_along_x * t431;
+        let t435 = t26 * t119;
+        let t437 = t435 - t367 * t367;
+        let t447 = minus_rate_left_bar_along_y * t395;
+        let t448 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t450 = t447 + t447 - t448;
+        let t452 = c_left_bar_along_y * t391 - minus_s_left_bar_along_y * t450;
+        let t454 = t7 * t140;
+        let t456 = t454 - t387 * t387;
+        let t466 = minus_rate_left_bar_along_z * t408;
+        let t467 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t469 = t466 + t466 - t467;
+        let t471 = c_left_bar_along_z * t415 - minus_s_left_bar_along_z * t469;
+        let t473 = t1 * t171;
+        let t475 = t473 - t409 * t409;
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t269;
+        let t489 = minus_s_left_bar_along_x * (t376 + minus_rate_dot_left_bar_along_x)
+            + c_left_bar_along_x * (t107 - t435);
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t284;
+        let t504 = minus_s_left_bar_along_y * (t396 + minus_rate_dot_left_bar_along_y)
+            + c_left_bar_along_y * (t142 - t454);
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t303;
+        let t519 = minus_s_left_bar_along_z * (t410 + minus_rate_dot_left_bar_along_z)
+            + c_left_bar_along_z * (t174 - t473);
+        let t530 = 3.225806451612903 * t211;
+        let t539 = 3.225806451612903 * t217;
+        let t549 = 3.225806451612903 * t213;
+        let t575 = minus_s_left_bar_along_x * t315;
+        let t580 = c_left_bar_along_x * t344 + 31.64516129032258 * pose[2];
+        let t582 = t35 * (minus_rate_dot_left_bar_along_x - t376) - t113 * (t435 + t107)
+            - minus_s_foot_along_x * t371 + t260 * t575 + t374 * t580;
+        let t589 = c_left_bar_along_y * t351;
+        let t591 = minus_s_left_bar_along_y * t325;
+        let t604 = t16 * (minus_rate_dot_left_bar_along_y - t396) - t128 * (t454 + t142)
+            - minus_s_foot_along_y * t391 + t292 * t591 - t399 * t589;
+        let t608 = minus_s_left_bar_along_z * t333;
+        let t610 = c_left_bar_along_z * t359;
+        let t626 = t21 * (minus_rate_dot_left_bar_along_z - t410) - t164 * (t473 + t174)
+            - minus_s_foot_along_z * t415 + t313 * t608 - t423 * t610;
+        let t630 = t315 + 0.31 * t431 - 0.31 * t429;
+        let t633 = minus_rate_foot_along_x * t263;
+        let t642 = minus_rate_foot_along_y * t146;
+        let t647 = t325 + 0.31 * t450 - 0.31 * t448;
+        let t660 = t333 + 0.31 * t469 - 0.31 * t467;
+        let t662 = minus_rate_foot_along_z * t178;
         Ok([
             [
-                t48 * t205 - t207 * t201 - t210 * t211, actuator_accelerations[0], 0.0, 0.0, 0.0,
+                t50 * t217 - t219 * t213 - t222 * t223, actuator_accelerations[0], 0.0, 0.0, 0.0,
                 actuator_velocities[0], 0.0, 0.0, ::overact::math::sign(actuator_velocities[0]),
-                0.0, 0.0, 1.0, 0.0, -(t248 * minus_rate_dot_foot_along_x),
-                t271 * minus_rate_dot_foot_along_y, -(t288 * minus_rate_dot_foot_along_z),
-                t248 * t303 - t307, -(t271 * t313), t288 * t321,
+                0.0, 0.0, 1.0, 0.0, -(t260 * minus_rate_dot_foot_along_x),
+                t283 * minus_rate_dot_foot_along_y, -(t300 * minus_rate_dot_foot_along_z),
+                t260 * t315 - t319, -(t283 * t325), t300 * t333,
                 c_foot_along_x * minus_rate_dot_foot_along_x
-                    - minus_s_foot_along_x * t114 - t248 * t332,
-                t271 * t339,
-                -(t288 * t347),
-                -(t248 * t361 + t363 * t365),
-                t271 * t382 - t384 * t386,
-                t397 * t400 - t288 * t406,
-                t248 * t423 - t363 * t427,
-                -(t271 * t442 + t384 * t446),
-                t288 * t461 + t397 * t465,
-                t248 * t479 - t363 * t358,
-                -(t271 * t494 + t384 * t379),
-                t288 * t509 + t397 * t403,
-                t363 * t419 - t248 * t520,
-                t271 * t529 + t384 * t438,
-                -(t288 * t539 + t397 * t457),
-                t363 * minus_rate_dot_left_bar_along_x,
-                t384 * minus_rate_dot_left_bar_along_y,
-                -(t397 * minus_rate_dot_left_bar_along_z),
-                t568 + t363 * t571,
-                t384 * t580 - t271 * t582,
-                t288 * t600 - t397 * t602,
-                t248 * t623 - t307 + t363 * t626,
-                t384 * t635 - t271 * t640,
-                t288 * t653 - t397 * t655,
+                    - minus_s_foot_along_x * t119 - t260 * t344,
+                t283 * t351,
+                -(t300 * t359),
+                -(t260 * t372 + t374 * t376),
+                t283 * t392 - t394 * t396,
+                t407 * t410 - t300 * t416,
+                t260 * t433 - t374 * t437,
+                -(t283 * t452 + t394 * t456),
+                t300 * t471 + t407 * t475,
+                t260 * t489 - t374 * t369,
+                -(t283 * t504 + t394 * t389),
+                t300 * t519 + t407 * t413,
+                t374 * t429 - t260 * t530,
+                t283 * t539 + t394 * t448,
+                -(t300 * t549 + t407 * t467),
+                t374 * minus_rate_dot_left_bar_along_x,
+                t394 * minus_rate_dot_left_bar_along_y,
+                -(t407 * minus_rate_dot_left_bar_along_z),
+                t582,
+                t394 * t589 - t283 * t591,
+                t300 * t608 - t407 * t610,
+                t260 * t630 - t319 + t374 * t633,
+                t394 * t642 - t283 * t647,
+                t300 * t660 - t407 * t662,
             ],
             [
-                t216 * t201 - t220 * t205 + t225 * t211, 0.0, actuator_accelerations[1], 0.0, 0.0,
+                t228 * t213 - t232 * t217 + t237 * t223, 0.0, actuator_accelerations[1], 0.0, 0.0,
                 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0,
-                -(t263 * minus_rate_dot_foot_along_x), -(t280 * minus_rate_dot_foot_along_y),
-                -(t297 * minus_rate_dot_foot_along_z), t263 * t303, t280 * t313 - t318, t297 * t321,
-                -(t263 * t332),
+                -(t275 * minus_rate_dot_foot_along_x), -(t292 * minus_rate_dot_foot_along_y),
+                -(t309 * minus_rate_dot_foot_along_z), t275 * t315, t292 * t325 - t330, t309 * t333,
+                -(t275 * t344),
                 c_foot_along_y * minus_rate_dot_foot_along_y
-                    - minus_s_foot_along_y * t132 - t280 * t339,
-                -(t297 * t347),
-                t368 * t365 - t263 * t361,
-                t389 * t386 - t280 * t382,
-                -(t297 * t406 + t410 * t400),
-                t263 * t423 + t368 * t427,
-                t280 * t442 + t389 * t446,
-                t297 * t461 - t410 * t465,
-                t263 * t479 + t368 * t358,
-                t280 * t494 + t389 * t379,
-                t297 * t509 - t410 * t403,
-                -(t263 * t520 + t368 * t419),
-                -(t280 * t529 + t389 * t438),
-                t410 * t457 - t297 * t539,
-                -(t368 * minus_rate_dot_left_bar_along_x),
-                -(t389 * minus_rate_dot_left_bar_along_y),
-                t410 * minus_rate_dot_left_bar_along_z,
-                t263 * t566 - t368 * t571,
-                t594 - t389 * t580,
-                t297 * t600 + t410 * t602,
-                t263 * t623 - t368 * t626,
-                t280 * t640 - t318 - t389 * t635,
-                t297 * t653 + t410 * t655,
+                    - minus_s_foot_along_y * t140 - t292 * t351,
+                -(t309 * t359),
+                t379 * t376 - t275 * t372,
+                t399 * t396 - t292 * t392,
+                -(t309 * t416 + t420 * t410),
+                t275 * t433 + t379 * t437,
+                t292 * t452 + t399 * t456,
+                t309 * t471 - t420 * t475,
+                t275 * t489 + t379 * t369,
+                t292 * t504 + t399 * t389,
+                t309 * t519 - t420 * t413,
+                -(t275 * t530 + t379 * t429),
+                -(t292 * t539 + t399 * t448),
+                t420 * t467 - t309 * t549,
+                -(t379 * minus_rate_dot_left_bar_along_x),
+                -(t399 * minus_rate_dot_left_bar_along_y),
+                t420 * minus_rate_dot_left_bar_along_z,
+                t275 * t575 - t379 * t580,
+                t604,
+                t309 * t608 + t420 * t610,
+                t275 * t630 - t379 * t633,
+                t292 * t647 - t330 - t399 * t642,
+                t309 * t660 + t420 * t662,
             ],
             [
-                t230 * t205 - t234 * t201 - t239 * t211, 0.0, 0.0, t242, actuator_accelerations[2],
+                t242 * t217 - t246 * t213 - t251 * t223, 0.0, 0.0, t254, actuator_accelerations[2],
                 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0,
-                -(t267 * minus_rate_dot_foot_along_x), t284 * minus_rate_dot_foot_along_y,
-                -(t301 * minus_rate_dot_foot_along_z), t267 * t303, -(t284 * t313),
-                t301 * t321 - t327, -(t267 * t332), t284 * t339,
+                -(t279 * minus_rate_dot_foot_along_x), t296 * minus_rate_dot_foot_along_y,
+                -(t313 * minus_rate_dot_foot_along_z), t279 * t315, -(t296 * t325),
+                t313 * t333 - t339, -(t279 * t344), t296 * t351,
                 c_foot_along_z * minus_rate_dot_foot_along_z
-                    - minus_s_foot_along_z * t160 - t301 * t347,
-                -(t267 * t361 + t373 * t365),
-                t284 * t382 - t394 * t386,
-                t413 * t400 - t301 * t406,
-                t267 * t423 - t373 * t427,
-                -(t284 * t442 + t394 * t446),
-                t301 * t461 + t413 * t465,
-                t267 * t479 - t373 * t358,
-                -(t284 * t494 + t394 * t379),
-                t301 * t509 + t413 * t403,
-                t373 * t419 - t267 * t520,
-                t284 * t529 + t394 * t438,
-                -(t301 * t539 + t413 * t457),
-                t373 * minus_rate_dot_left_bar_along_x,
-                t394 * minus_rate_dot_left_bar_along_y,
-                -(t413 * minus_rate_dot_left_bar_along_z),
-                t267 * t566 + t373 * t571,
-                t394 * t580 - t284 * t582,
-                t617 - t413 * t602,
-                t267 * t623 + t373 * t626,
-                t394 * t635 - t284 * t640,
-                t301 * t653 - t327 - t413 * t655,
+                    - minus_s_foot_along_z * t171 - t313 * t359,
+                -(t279 * t372 + t384 * t376),
+                t296 * t392 - t404 * t396,
+                t423 * t410 - t313 * t416,
+                t279 * t433 - t384 * t437,
+                -(t296 * t452 + t404 * t456),
+                t313 * t471 + t423 * t475,
+                t279 * t489 - t384 * t369,
+                -(t296 * t504 + t404 * t389),
+                t313 * t519 + t423 * t413,
+                t384 * t429 - t279 * t530,
+                t296 * t539 + t404 * t448,
+                -(t313 * t549 + t423 * t467),
+                t384 * minus_rate_dot_left_bar_along_x,
+                t404 * minus_rate_dot_left_bar_along_y,
+                -(t423 * minus_rate_dot_left_bar_along_z),
+                t279 * t575 + t384 * t580,
+                t404 * t589 - t296 * t591,
+                t626,
+                t279 * t630 + t384 * t633,
+                t404 * t642 - t296 * t647,
+                t313 * t660 - t339 - t423 * t662,
             ],
         ])
     }
@@ -6418,7 +6567,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 974 operations (429 additions, 536 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 986 intermediates.
+    /// 974 operations (428 additions, 537 multiplications, 9 divisions), 0 square roots, 6 trigonometric pairs, 3 signs, 986 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6697,7 +6846,7 @@ impl Orthoglide {
         let t562 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
         let t565 = c_left_bar_along_z * t539;
         let t569 = t554 - minus_rate_dot_left_bar_along_z;
-        let t571 = t502 - t558;
+        let t571 = t552 * t552;
         let t572 = t571 + t503;
         let t575 = s_left_bar_along_z * minus_rate_dot_foot_along_z;
         let t578 = s_left_bar_along_z * t539;
@@ -6863,7 +7012,7 @@ impl Orthoglide {
     ///
     /// Output: 3.
     ///
-    /// 1000 operations (439 additions, 550 multiplications, 11 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1006 intermediates.
+    /// 1006 operations (439 additions, 553 multiplications, 14 divisions), 6 square roots, 0 trigonometric pairs, 3 signs, 1012 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6880,6 +7029,7 @@ impl Orthoglide {
         let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_y")?;
         let c_left_bar_along_y = ::overact::math::sqrt(t2);
+        ::overact::guard::leg(c_left_bar_along_y, 1.0, "along_y")?;
         let t4 = 0.31 * c_left_bar_along_y;
         let minus_s_foot_along_y = pose[2] / t4;
         let t6 = minus_s_foot_along_y * minus_s_foot_along_y;
@@ -6894,6 +7044,7 @@ impl Orthoglide {
         let t15 = 1.0 - t14;
         ::overact::guard::reach(t15, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t15);
+        ::overact::guard::leg(c_left_bar_along_x, 1.0, "along_x")?;
         let t17 = 0.31 * c_left_bar_along_x;
         let minus_s_foot_along_x = pose[1] / t17;
         let t19 = minus_s_foot_along_x * minus_s_foot_along_x;
@@ -6901,6 +7052,7 @@ impl Orthoglide {
         let t21 = 1.0 - t20;
         ::overact::guard::reach(t21, "along_z")?;
         let c_left_bar_along_z = ::overact::math::sqrt(t21);
+        ::overact::guard::leg(c_left_bar_along_z, 1.0, "along_z")?;
         let t23 = 0.31 * c_left_bar_along_z;
         let minus_s_foot_along_z = pose[0] / t23;
         let t26 = 1.0 - minus_s_foot_along_z * minus_s_foot_along_z;
@@ -6925,408 +7077,414 @@ impl Orthoglide {
         let gdrive_vy_along_x = pose[1] * minus_gfoot_vy_along_x;
         let t48 = gdrive_vy_along_x * gdrive_vy_along_x + 1.0;
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
-        let t53 = gdrive_vx_along_z * gdrive_vy_along_z;
-        let t54 = gdrive_vy_along_x + gdrive_vx_along_y + t53;
+        let t54 = gdrive_vy_along_x + gdrive_vx_along_y
+            + gdrive_vx_along_z * gdrive_vy_along_z;
         let t55 = t54 * t33;
         let t57 = t48 + gdrive_vy_along_z * gdrive_vy_along_z - t54 * t55;
         ::overact::guard::platform(t57, 1.0, "actuators")?;
         ::overact::guard::platform(t57, 1.0, "actuators")?;
         ::overact::guard::platform(t57, 1.0, "actuators")?;
         let t58 = 1.0 / t57;
-        let minus_gleft_bar_vz_along_x = c_foot_along_x * minus_gfoot_vy_along_x;
+        let t60 = 1.0 / c_left_bar_along_x;
+        let minus_gleft_bar_vz_along_x = 3.225806451612903 * t60;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        let t67 = gdrive_vz_along_y * gdrive_vx_along_y;
-        let t69 = gdrive_vz_along_x + t67 + gdrive_vx_along_z;
-        let t70 = t69 * t33;
-        let t73 = gdrive_vy_along_x * gdrive_vz_along_x;
-        let t77 = t73 + gdrive_vz_along_y + gdrive_vy_along_z - t54 * t70;
-        let t78 = t77 * t58;
-        let t80 = gdrive_vz_along_x * gdrive_vz_along_x
-            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t69 * t70 - t77 * t78;
-        ::overact::guard::platform(t80, 1.0, "actuators")?;
-        ::overact::guard::platform(t80, 1.0, "actuators")?;
-        ::overact::guard::platform(t80, 1.0, "actuators")?;
-        let t81 = 1.0 / t80;
-        let t89 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
+        let t70 = gdrive_vz_along_x + gdrive_vz_along_y * gdrive_vx_along_y
+            + gdrive_vx_along_z;
+        let t71 = t70 * t33;
+        let t78 = gdrive_vy_along_x * gdrive_vz_along_x + gdrive_vz_along_y
+            + gdrive_vy_along_z - t54 * t71;
+        let t79 = t78 * t58;
+        let t81 = gdrive_vz_along_x * gdrive_vz_along_x
+            + gdrive_vz_along_y * gdrive_vz_along_y + 1.0 - t70 * t71 - t78 * t79;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        ::overact::guard::platform(t81, 1.0, "actuators")?;
+        let t82 = 1.0 / t81;
+        let t90 = actuator_velocities[0] + gdrive_vx_along_y * actuator_velocities[1]
             + gdrive_vx_along_z * actuator_velocities[2];
-        let t97 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
-            + gdrive_vy_along_z * actuator_velocities[2] - t89 * t55;
-        let t100 = t81
+        let t98 = gdrive_vy_along_x * actuator_velocities[0] + actuator_velocities[1]
+            + gdrive_vy_along_z * actuator_velocities[2] - t90 * t55;
+        let t101 = t82
             * (gdrive_vz_along_x * actuator_velocities[0]
                 + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
-                - t89 * t70 - t78 * t97);
-        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t100;
-        let t102 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
-        let t105 = t58 * t97 - t78 * t100;
-        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x * (t42 * t73);
-        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t105
-            + minus_gfoot_vz_along_x * t100;
-        let t111 = minus_rate_foot_along_x * minus_rate_foot_along_x;
-        let t112 = t102 + t111;
-        let t115 = pose[2] * t102;
-        let rate_dot_drive_along_x = t48 * (0.31 * t44 * t112)
-            + gdrive_vz_along_x * t115;
-        let t118 = actuator_accelerations[0] - rate_dot_drive_along_x;
-        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y * (t7 * t67);
-        let t126 = t89 * t33 - t55 * t105 - t70 * t100;
-        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t126
-            + minus_gfoot_vz_along_y * t100;
-        let t130 = c_left_bar_along_y * minus_rate_foot_along_y;
-        let t131 = t130 * t130;
-        let minus_gleft_bar_vx_along_y = c_foot_along_y * minus_gfoot_vz_along_y;
-        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t126;
-        let t134 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
-        let t135 = t131 + t134;
-        let t136 = 0.31 * t135;
-        let rate_dot_drive_along_y = t136 / t9;
-        let t138 = actuator_accelerations[1] - rate_dot_drive_along_y;
-        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z * (t26 * t53);
-        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t126
-            + minus_gfoot_vy_along_z * t105;
-        let t145 = c_left_bar_along_z * minus_rate_foot_along_z;
-        let t146 = t145 * t145;
-        let minus_gleft_bar_vy_along_z = c_foot_along_z * minus_gfoot_vx_along_z;
-        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t105;
-        let t149 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
-        let t150 = t146 + t149;
-        let t151 = 0.31 * t150;
-        let rate_dot_drive_along_z = t151 / t28;
-        let t153 = actuator_accelerations[2] - rate_dot_drive_along_z;
-        let t159 = t118 + gdrive_vx_along_y * t138 + gdrive_vx_along_z * t153;
-        let t161 = gdrive_vy_along_x * t118 + t138 + gdrive_vy_along_z * t153
-            - t55 * t159;
-        let t171 = t81
-            * (gdrive_vz_along_x * t118 + gdrive_vz_along_y * t138 + t153 - t70 * t159
-                - t78 * t161);
-        let t173 = t58 * t161 - t78 * t171;
-        let t176 = pose[2] * minus_rate_foot_along_x;
-        let t177 = c_foot_along_x * minus_rate_left_bar_along_x * t176;
-        let t182 = t171 + t115;
-        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
-            * (t173 + pose[1] * t112 + t177 + t177) + minus_gfoot_vz_along_x * t182;
-        let t188 = c_foot_along_x * actuator_accelerations[0];
-        let t192 = minus_s_foot_along_x * actuator_accelerations[0];
-        let t199 = c_foot_along_x
-            * (parameters[7] * minus_rate_dot_foot_along_x - t111 * parameters[6]
-                + parameters[8] * t188)
-            + minus_s_foot_along_x
-                * (parameters[8] * t192
-                    - (parameters[6] * minus_rate_dot_foot_along_x
-                        + t111 * parameters[7]));
-        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t182;
-        let t202 = 3.225806451612903 * t176;
-        let t203 = c_left_bar_along_x * minus_rate_foot_along_x;
-        let t204 = t202 * t203;
-        let t205 = minus_rate_dot_left_bar_along_x - t204;
-        let t207 = t44 * rate_dot_drive_along_x;
-        let t208 = 3.225806451612903 * t207;
-        let t211 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t216 = c_left_bar_along_x * t188 + 31.64516129032258 * pose[2];
+                - t90 * t71 - t79 * t98);
+        let minus_rate_left_bar_along_x = minus_gleft_bar_vz_along_x * t101;
+        let t103 = minus_rate_left_bar_along_x * minus_rate_left_bar_along_x;
+        let t106 = t58 * t98 - t79 * t101;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
-        let t221 = minus_s_left_bar_along_x * c_foot_along_x;
-        let t224 = minus_s_left_bar_along_x * t188 - 9.81 * c_left_bar_along_x;
-        let t226 = t204 + minus_rate_dot_left_bar_along_x;
-        let t228 = t14 * t111;
-        let t229 = t228 + t102;
-        let t232 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
-        let t237 = t44
-            * (parameters[16] * t205 - t208 * parameters[15] - parameters[17] * t211
-                + parameters[18] * t216)
-            + t221
-                * (parameters[18] * t224
-                    - (parameters[15] * t226 + t229 * parameters[16]
-                        + parameters[17] * t232));
-        let t238 = minus_rate_left_bar_along_x * t203;
-        let t239 = t232 + t238;
-        let t240 = t238 + t239;
-        let t242 = minus_rate_left_bar_along_x * t202;
-        let t243 = t242 - t211;
-        let t244 = t242 + t243;
-        let t253 = actuator_accelerations[0] * parameters[0]
+        let t109 = minus_s_left_bar_along_x * c_foot_along_x;
+        let minus_gfoot_vz_along_x = minus_gfoot_vy_along_x
+            * (gdrive_vy_along_x * (t109 * t60));
+        let minus_rate_foot_along_x = minus_gfoot_vy_along_x * t106
+            + minus_gfoot_vz_along_x * t101;
+        let t115 = minus_rate_foot_along_x * minus_rate_foot_along_x;
+        let t116 = t103 + t115;
+        let t119 = pose[2] * t103;
+        let rate_dot_drive_along_x = t48 * (0.31 * t44 * t116)
+            + gdrive_vz_along_x * t119;
+        let t122 = actuator_accelerations[0] - rate_dot_drive_along_x;
+        let t124 = minus_s_left_bar_along_y * c_foot_along_y;
+        let t125 = 1.0 / c_left_bar_along_y;
+        let minus_gfoot_vx_along_y = minus_gfoot_vz_along_y
+            * (t124 * t125 * gdrive_vz_along_y);
+        let t133 = t90 * t33 - t55 * t106 - t71 * t101;
+        let minus_rate_foot_along_y = minus_gfoot_vx_along_y * t133
+            + minus_gfoot_vz_along_y * t101;
+        let t137 = c_left_bar_along_y * minus_rate_foot_along_y;
+        let t138 = t137 * t137;
+        let minus_gleft_bar_vx_along_y = 3.225806451612903 * t125;
+        let minus_rate_left_bar_along_y = minus_gleft_bar_vx_along_y * t133;
+        let t141 = minus_rate_left_bar_along_y * minus_rate_left_bar_along_y;
+        let t142 = t138 + t141;
+        let t143 = 0.31 * t142;
+        let rate_dot_drive_along_y = t143 / t9;
+        let t145 = actuator_accelerations[1] - rate_dot_drive_along_y;
+        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
+        let t149 = minus_s_left_bar_along_z * c_foot_along_z;
+        let t150 = 1.0 / c_left_bar_along_z;
+        let minus_gfoot_vy_along_z = minus_gfoot_vx_along_z
+            * (gdrive_vx_along_z * (t149 * t150));
+        let minus_rate_foot_along_z = minus_gfoot_vx_along_z * t133
+            + minus_gfoot_vy_along_z * t106;
+        let t156 = c_left_bar_along_z * minus_rate_foot_along_z;
+        let t157 = t156 * t156;
+        let minus_gleft_bar_vy_along_z = 3.225806451612903 * t150;
+        let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * t106;
+        let t160 = minus_rate_left_bar_along_z * minus_rate_left_bar_along_z;
+        let t161 = t157 + t160;
+        let t162 = 0.31 * t161;
+        let rate_dot_drive_along_z = t162 / t28;
+        let t164 = actuator_accelerations[2] - rate_dot_drive_along_z;
+        let t170 = t122 + gdrive_vx_along_y * t145 + gdrive_vx_along_z * t164;
+        let t172 = gdrive_vy_along_x * t122 + t145 + gdrive_vy_along_z * t164
+            - t55 * t170;
+        let t182 = t82
+            * (gdrive_vz_along_x * t122 + gdrive_vz_along_y * t145 + t164 - t71 * t170
+                - t79 * t172);
+        let t184 = t58 * t172 - t79 * t182;
+        let t187 = pose[2] * minus_rate_foot_along_x;
+        let t188 = c_foot_along_x * minus_rate_left_bar_along_x * t187;
+        let t193 = t182 + t119;
+        let minus_rate_dot_foot_along_x = minus_gfoot_vy_along_x
+            * (t184 + pose[1] * t116 + t188 + t188) + minus_gfoot_vz_along_x * t193;
+        let t199 = c_foot_along_x * actuator_accelerations[0];
+        let t203 = minus_s_foot_along_x * actuator_accelerations[0];
+        let t210 = c_foot_along_x
+            * (parameters[7] * minus_rate_dot_foot_along_x - t115 * parameters[6]
+                + parameters[8] * t199)
+            + minus_s_foot_along_x
+                * (parameters[8] * t203
+                    - (parameters[6] * minus_rate_dot_foot_along_x
+                        + t115 * parameters[7]));
+        let minus_rate_dot_left_bar_along_x = minus_gleft_bar_vz_along_x * t193;
+        let t213 = 3.225806451612903 * t187;
+        let t214 = c_left_bar_along_x * minus_rate_foot_along_x;
+        let t215 = t213 * t214;
+        let t216 = minus_rate_dot_left_bar_along_x - t215;
+        let t218 = t44 * rate_dot_drive_along_x;
+        let t219 = 3.225806451612903 * t218;
+        let t222 = c_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t227 = c_left_bar_along_x * t199 + 31.64516129032258 * pose[2];
+        let t233 = minus_s_left_bar_along_x * t199 - 9.81 * c_left_bar_along_x;
+        let t235 = t215 + minus_rate_dot_left_bar_along_x;
+        let t237 = t14 * t115;
+        let t238 = t237 + t103;
+        let t241 = minus_s_left_bar_along_x * minus_rate_dot_foot_along_x;
+        let t246 = t44
+            * (parameters[16] * t216 - t219 * parameters[15] - parameters[17] * t222
+                + parameters[18] * t227)
+            + t109
+                * (parameters[18] * t233
+                    - (parameters[15] * t235 + t238 * parameters[16]
+                        + parameters[17] * t241));
+        let t247 = minus_rate_left_bar_along_x * t214;
+        let t248 = t241 + t247;
+        let t249 = t247 + t248;
+        let t251 = minus_rate_left_bar_along_x * t213;
+        let t252 = t251 - t222;
+        let t253 = t251 + t252;
+        let t262 = actuator_accelerations[0] * parameters[0]
             + actuator_accelerations[0] * parameters[1]
             + actuator_velocities[0] * parameters[2]
             + ::overact::math::signed(parameters[3], actuator_velocities[0])
-            + parameters[4] + t199 + t237
+            + parameters[4] + t210 + t246
             - minus_s_foot_along_x
-                * (parameters[16] * t240 - parameters[15] * t244 - t111 * parameters[17]
-                    - parameters[18] * t192);
-        let t270 = t44
-            * (parameters[26] * t205 - t208 * parameters[25] - parameters[27] * t211
-                + parameters[28] * t216)
-            + t221
-                * (parameters[28] * t224
-                    - (parameters[25] * t226 + t229 * parameters[26]
-                        + parameters[27] * t232));
-        let t280 = t253 + t270
+                * (parameters[16] * t249 - parameters[15] * t253 - t115 * parameters[17]
+                    - parameters[18] * t203);
+        let t279 = t44
+            * (parameters[26] * t216 - t219 * parameters[25] - parameters[27] * t222
+                + parameters[28] * t227)
+            + t109
+                * (parameters[28] * t233
+                    - (parameters[25] * t235 + t238 * parameters[26]
+                        + parameters[27] * t241));
+        let t289 = t262 + t279
             - minus_s_foot_along_x
-                * (parameters[26] * t240 - parameters[25] * t244 - t111 * parameters[27]
-                    - parameters[28] * t192);
-        let t286 = c_left_bar_along_x * (t216 - t207)
-            + minus_s_left_bar_along_x * (t224 - 0.31 * t226);
-        let t291 = parameters[32] * t286
-            - (t111 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
-        let t297 = t192 + 0.31 * t244;
-        let t299 = parameters[30] * minus_rate_dot_foot_along_x - t111 * parameters[31]
-            - parameters[32] * t297;
-        let t302 = t280 + c_foot_along_x * t291 - minus_s_foot_along_x * t299;
-        let t315 = t33 * t159 - t55 * t173 - t70 * t171;
-        let t317 = t315 + pose[0] * t134;
-        let t319 = minus_rate_foot_along_y * minus_rate_foot_along_y;
-        let t323 = pose[0] * minus_rate_foot_along_y;
-        let t324 = c_foot_along_y * minus_rate_left_bar_along_y * t323;
-        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t317
-            + minus_gfoot_vz_along_y * (t171 + pose[2] * (t319 + t134) + t324 + t324);
-        let t335 = 9.81 * minus_s_foot_along_y
+                * (parameters[26] * t249 - parameters[25] * t253 - t115 * parameters[27]
+                    - parameters[28] * t203);
+        let t295 = c_left_bar_along_x * (t227 - t218)
+            + minus_s_left_bar_along_x * (t233 - 0.31 * t235);
+        let t300 = parameters[32] * t295
+            - (t115 * parameters[30] + parameters[31] * minus_rate_dot_foot_along_x);
+        let t306 = t203 + 0.31 * t253;
+        let t308 = parameters[30] * minus_rate_dot_foot_along_x - t115 * parameters[31]
+            - parameters[32] * t306;
+        let t311 = t289 + c_foot_along_x * t300 - minus_s_foot_along_x * t308;
+        let t324 = t33 * t170 - t55 * t184 - t71 * t182;
+        let t326 = t324 + pose[0] * t141;
+        let t328 = minus_rate_foot_along_y * minus_rate_foot_along_y;
+        let t332 = pose[0] * minus_rate_foot_along_y;
+        let t333 = c_foot_along_y * minus_rate_left_bar_along_y * t332;
+        let minus_rate_dot_foot_along_y = minus_gfoot_vx_along_y * t326
+            + minus_gfoot_vz_along_y * (t182 + pose[2] * (t328 + t141) + t333 + t333);
+        let t344 = 9.81 * minus_s_foot_along_y
             + c_foot_along_y * actuator_accelerations[1];
-        let t341 = minus_s_foot_along_y * actuator_accelerations[1]
+        let t350 = minus_s_foot_along_y * actuator_accelerations[1]
             - 9.81 * c_foot_along_y;
-        let t348 = c_foot_along_y
-            * (parameters[40] * minus_rate_dot_foot_along_y - t319 * parameters[39]
-                + parameters[41] * t335)
+        let t357 = c_foot_along_y
+            * (parameters[40] * minus_rate_dot_foot_along_y - t328 * parameters[39]
+                + parameters[41] * t344)
             + minus_s_foot_along_y
-                * (parameters[41] * t341
+                * (parameters[41] * t350
                     - (parameters[39] * minus_rate_dot_foot_along_y
-                        + t319 * parameters[40]));
-        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t317;
-        let t351 = 3.225806451612903 * t323;
-        let t352 = t351 * t130;
-        let t353 = minus_rate_dot_left_bar_along_y - t352;
-        let t357 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t360 = c_left_bar_along_y * t335;
-        let t364 = minus_s_left_bar_along_y * c_foot_along_y;
-        let t365 = minus_s_left_bar_along_y * t335;
-        let t367 = t352 + minus_rate_dot_left_bar_along_y;
-        let t369 = t1 * t319;
-        let t370 = t369 + t134;
-        let t373 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
-        let t378 = t9
-            * (parameters[49] * t353 - t135 * parameters[48] - parameters[50] * t357
-                + parameters[51] * t360)
-            + t364
-                * (parameters[51] * t365
-                    - (parameters[48] * t367 + t370 * parameters[49]
-                        + parameters[50] * t373));
-        let t379 = minus_rate_left_bar_along_y * t130;
-        let t380 = t373 + t379;
-        let t381 = t379 + t380;
-        let t383 = minus_rate_left_bar_along_y * t351;
-        let t384 = t383 - t357;
-        let t385 = t383 + t384;
-        let t394 = actuator_accelerations[1] * parameters[33]
+                        + t328 * parameters[40]));
+        let minus_rate_dot_left_bar_along_y = minus_gleft_bar_vx_along_y * t326;
+        let t360 = 3.225806451612903 * t332;
+        let t361 = t360 * t137;
+        let t362 = minus_rate_dot_left_bar_along_y - t361;
+        let t366 = c_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t369 = c_left_bar_along_y * t344;
+        let t373 = minus_s_left_bar_along_y * t344;
+        let t375 = t361 + minus_rate_dot_left_bar_along_y;
+        let t377 = t1 * t328;
+        let t378 = t377 + t141;
+        let t381 = minus_s_left_bar_along_y * minus_rate_dot_foot_along_y;
+        let t386 = t9
+            * (parameters[49] * t362 - t142 * parameters[48] - parameters[50] * t366
+                + parameters[51] * t369)
+            + t124
+                * (parameters[51] * t373
+                    - (parameters[48] * t375 + t378 * parameters[49]
+                        + parameters[50] * t381));
+        let t387 = minus_rate_left_bar_along_y * t137;
+        let t388 = t381 + t387;
+        let t389 = t387 + t388;
+        let t391 = minus_rate_left_bar_along_y * t360;
+        let t392 = t391 - t366;
+        let t393 = t391 + t392;
+        let t402 = actuator_accelerations[1] * parameters[33]
             + actuator_accelerations[1] * parameters[34]
             + actuator_velocities[1] * parameters[35]
             + ::overact::math::signed(parameters[36], actuator_velocities[1])
-            + parameters[37] + t348 + t378
+            + parameters[37] + t357 + t386
             - minus_s_foot_along_y
-                * (parameters[49] * t381 - parameters[48] * t385 - t319 * parameters[50]
-                    - parameters[51] * t341);
-        let t411 = t9
-            * (parameters[59] * t353 - t135 * parameters[58] - parameters[60] * t357
-                + parameters[61] * t360)
-            + t364
-                * (parameters[61] * t365
-                    - (parameters[58] * t367 + t370 * parameters[59]
-                        + parameters[60] * t373));
-        let t421 = t394 + t411
+                * (parameters[49] * t389 - parameters[48] * t393 - t328 * parameters[50]
+                    - parameters[51] * t350);
+        let t419 = t9
+            * (parameters[59] * t362 - t142 * parameters[58] - parameters[60] * t366
+                + parameters[61] * t369)
+            + t124
+                * (parameters[61] * t373
+                    - (parameters[58] * t375 + t378 * parameters[59]
+                        + parameters[60] * t381));
+        let t429 = t402 + t419
             - minus_s_foot_along_y
-                * (parameters[59] * t381 - parameters[58] * t385 - t319 * parameters[60]
-                    - parameters[61] * t341);
-        let t427 = c_left_bar_along_y * (t360 - t136)
-            + minus_s_left_bar_along_y * (t365 - 0.31 * t367);
-        let t432 = parameters[65] * t427
-            - (t319 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
-        let t438 = t341 + 0.31 * t385;
-        let t440 = parameters[63] * minus_rate_dot_foot_along_y - t319 * parameters[64]
-            - parameters[65] * t438;
-        let t443 = t421 + c_foot_along_y * t432 - minus_s_foot_along_y * t440;
-        let t453 = t134 - t369;
-        let t461 = parameters[43] * t381 - t383 * parameters[42] + parameters[44] * t453
-            + parameters[45] * t384 - parameters[46] * t353 + t383 * parameters[47];
-        let t474 = t131 - t134;
-        let t478 = parameters[42] * t380 + parameters[43] * t385 - parameters[44] * t367
-            - t379 * parameters[45] + parameters[46] * t474 + t379 * parameters[47];
-        let t484 = c_left_bar_along_y
-            * (t461 + parameters[48] * t341 + parameters[50] * t360)
+                * (parameters[59] * t389 - parameters[58] * t393 - t328 * parameters[60]
+                    - parameters[61] * t350);
+        let t435 = c_left_bar_along_y * (t369 - t143)
+            + minus_s_left_bar_along_y * (t373 - 0.31 * t375);
+        let t440 = parameters[65] * t435
+            - (t328 * parameters[63] + parameters[64] * minus_rate_dot_foot_along_y);
+        let t446 = t350 + 0.31 * t393;
+        let t448 = parameters[63] * minus_rate_dot_foot_along_y - t328 * parameters[64]
+            - parameters[65] * t446;
+        let t451 = t429 + c_foot_along_y * t440 - minus_s_foot_along_y * t448;
+        let t461 = t141 - t377;
+        let t469 = parameters[43] * t389 - t391 * parameters[42] + parameters[44] * t461
+            + parameters[45] * t392 - parameters[46] * t362 + t391 * parameters[47];
+        let t482 = t138 - t141;
+        let t486 = parameters[42] * t388 + parameters[43] * t393 - parameters[44] * t375
+            - t387 * parameters[45] + parameters[46] * t482 + t387 * parameters[47];
+        let t492 = c_left_bar_along_y
+            * (t469 + parameters[48] * t350 + parameters[50] * t369)
             - minus_s_left_bar_along_y
-                * (t478 - parameters[49] * t341 - parameters[50] * t365);
-        let t496 = parameters[53] * t381 - t383 * parameters[52] + parameters[54] * t453
-            + parameters[55] * t384 - parameters[56] * t353 + t383 * parameters[57];
-        let t512 = parameters[52] * t380 + parameters[53] * t385 - parameters[54] * t367
-            - t379 * parameters[55] + parameters[56] * t474 + t379 * parameters[57];
-        let t518 = c_left_bar_along_y
-            * (t496 + parameters[58] * t341 + parameters[60] * t360)
+                * (t486 - parameters[49] * t350 - parameters[50] * t373);
+        let t504 = parameters[53] * t389 - t391 * parameters[52] + parameters[54] * t461
+            + parameters[55] * t392 - parameters[56] * t362 + t391 * parameters[57];
+        let t520 = parameters[52] * t388 + parameters[53] * t393 - parameters[54] * t375
+            - t387 * parameters[55] + parameters[56] * t482 + t387 * parameters[57];
+        let t526 = c_left_bar_along_y
+            * (t504 + parameters[58] * t350 + parameters[60] * t369)
             - minus_s_left_bar_along_y
-                * (t512 - parameters[59] * t341 - parameters[60] * t365);
-        let t527 = parameters[39] * t341 - parameters[38] * minus_rate_dot_foot_along_y
-            - parameters[40] * t335 + t484 + t518 + parameters[63] * t438
-            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t427
-            - t4 * t440;
-        let t531 = t369 - t131;
-        let t541 = t352 * parameters[42] + parameters[43] * t531 + parameters[44] * t373
-            - t352 * parameters[45] - parameters[46] * t357
+                * (t520 - parameters[59] * t350 - parameters[60] * t373);
+        let t535 = parameters[39] * t350 - parameters[38] * minus_rate_dot_foot_along_y
+            - parameters[40] * t344 + t492 + t526 + parameters[63] * t446
+            - parameters[62] * minus_rate_dot_foot_along_y + parameters[64] * t435
+            - t4 * t448;
+        let t539 = t377 - t138;
+        let t549 = t361 * parameters[42] + parameters[43] * t539 + parameters[44] * t381
+            - t361 * parameters[45] - parameters[46] * t366
             - parameters[47] * minus_rate_dot_left_bar_along_y;
-        let t556 = t352 * parameters[52] + parameters[53] * t531 + parameters[54] * t373
-            - t352 * parameters[55] - parameters[56] * t357
+        let t564 = t361 * parameters[52] + parameters[53] * t539 + parameters[54] * t381
+            - t361 * parameters[55] - parameters[56] * t366
             - parameters[57] * minus_rate_dot_left_bar_along_y;
-        let t566 = t541 + parameters[48] * t365 - parameters[49] * t360 + t556
-            + parameters[58] * t365 - parameters[59] * t360 + pose[0] * t432
-            - t4 * (t315 * parameters[65]);
-        let t570 = 9.81 + actuator_accelerations[2];
-        let t579 = minus_rate_foot_along_z * minus_rate_foot_along_z;
-        let t583 = pose[1] * minus_rate_foot_along_z;
-        let t584 = c_foot_along_z * minus_rate_left_bar_along_z * t583;
-        let t590 = t173 + pose[1] * t149;
+        let t574 = t549 + parameters[48] * t373 - parameters[49] * t369 + t564
+            + parameters[58] * t373 - parameters[59] * t369 + pose[0] * t440
+            - t4 * (t324 * parameters[65]);
+        let t578 = 9.81 + actuator_accelerations[2];
+        let t587 = minus_rate_foot_along_z * minus_rate_foot_along_z;
+        let t591 = pose[1] * minus_rate_foot_along_z;
+        let t592 = c_foot_along_z * minus_rate_left_bar_along_z * t591;
+        let t598 = t184 + pose[1] * t160;
         let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z
-            * (t315 + pose[0] * (t579 + t149) + t584 + t584)
-            + minus_gfoot_vy_along_z * t590;
-        let t596 = c_foot_along_z * t570;
-        let t600 = minus_s_foot_along_z * t570;
-        let t607 = c_foot_along_z
-            * (parameters[73] * minus_rate_dot_foot_along_z - t579 * parameters[72]
-                + parameters[74] * t596)
+            * (t324 + pose[0] * (t587 + t160) + t592 + t592)
+            + minus_gfoot_vy_along_z * t598;
+        let t604 = c_foot_along_z * t578;
+        let t608 = minus_s_foot_along_z * t578;
+        let t615 = c_foot_along_z
+            * (parameters[73] * minus_rate_dot_foot_along_z - t587 * parameters[72]
+                + parameters[74] * t604)
             + minus_s_foot_along_z
-                * (parameters[74] * t600
+                * (parameters[74] * t608
                     - (parameters[72] * minus_rate_dot_foot_along_z
-                        + t579 * parameters[73]));
-        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t590;
-        let t610 = 3.225806451612903 * t583;
-        let t611 = t610 * t145;
-        let t612 = minus_rate_dot_left_bar_along_z - t611;
-        let t616 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t619 = c_left_bar_along_z * t596;
-        let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        let t624 = minus_s_left_bar_along_z * c_foot_along_z;
-        let t625 = minus_s_left_bar_along_z * t596;
-        let t627 = t611 + minus_rate_dot_left_bar_along_z;
-        let t629 = t20 * t579;
-        let t630 = t629 + t149;
-        let t633 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
-        let t638 = t28
-            * (parameters[82] * t612 - t150 * parameters[81] - parameters[83] * t616
-                + parameters[84] * t619)
-            + t624
-                * (parameters[84] * t625
-                    - (parameters[81] * t627 + t630 * parameters[82]
-                        + parameters[83] * t633));
-        let t639 = minus_rate_left_bar_along_z * t145;
-        let t640 = t633 + t639;
-        let t641 = t639 + t640;
-        let t643 = minus_rate_left_bar_along_z * t610;
-        let t644 = t643 - t616;
-        let t645 = t643 + t644;
-        let t654 = parameters[66] * t570 + actuator_accelerations[2] * parameters[67]
+                        + t587 * parameters[73]));
+        let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t598;
+        let t618 = 3.225806451612903 * t591;
+        let t619 = t618 * t156;
+        let t620 = minus_rate_dot_left_bar_along_z - t619;
+        let t624 = c_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t627 = c_left_bar_along_z * t604;
+        let t631 = minus_s_left_bar_along_z * t604;
+        let t633 = t619 + minus_rate_dot_left_bar_along_z;
+        let t635 = t20 * t587;
+        let t636 = t635 + t160;
+        let t639 = minus_s_left_bar_along_z * minus_rate_dot_foot_along_z;
+        let t644 = t28
+            * (parameters[82] * t620 - t161 * parameters[81] - parameters[83] * t624
+                + parameters[84] * t627)
+            + t149
+                * (parameters[84] * t631
+                    - (parameters[81] * t633 + t636 * parameters[82]
+                        + parameters[83] * t639));
+        let t645 = minus_rate_left_bar_along_z * t156;
+        let t646 = t639 + t645;
+        let t647 = t645 + t646;
+        let t649 = minus_rate_left_bar_along_z * t618;
+        let t650 = t649 - t624;
+        let t651 = t649 + t650;
+        let t660 = parameters[66] * t578 + actuator_accelerations[2] * parameters[67]
             + actuator_velocities[2] * parameters[68]
             + ::overact::math::signed(parameters[69], actuator_velocities[2])
-            + parameters[70] + t607 + t638
+            + parameters[70] + t615 + t644
             - minus_s_foot_along_z
-                * (parameters[82] * t641 - parameters[81] * t645 - t579 * parameters[83]
-                    - parameters[84] * t600);
-        let t671 = t28
-            * (parameters[92] * t612 - t150 * parameters[91] - parameters[93] * t616
-                + parameters[94] * t619)
-            + t624
-                * (parameters[94] * t625
-                    - (parameters[91] * t627 + t630 * parameters[92]
-                        + parameters[93] * t633));
-        let t681 = t654 + t671
+                * (parameters[82] * t647 - parameters[81] * t651 - t587 * parameters[83]
+                    - parameters[84] * t608);
+        let t677 = t28
+            * (parameters[92] * t620 - t161 * parameters[91] - parameters[93] * t624
+                + parameters[94] * t627)
+            + t149
+                * (parameters[94] * t631
+                    - (parameters[91] * t633 + t636 * parameters[92]
+                        + parameters[93] * t639));
+        let t687 = t660 + t677
             - minus_s_foot_along_z
-                * (parameters[92] * t641 - parameters[91] * t645 - t579 * parameters[93]
-                    - parameters[94] * t600);
-        let t687 = c_left_bar_along_z * (t619 - t151)
-            + minus_s_left_bar_along_z * (t625 - 0.31 * t627);
-        let t692 = parameters[98] * t687
-            - (t579 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
-        let t698 = t600 + 0.31 * t645;
-        let t700 = parameters[96] * minus_rate_dot_foot_along_z - t579 * parameters[97]
-            - parameters[98] * t698;
-        let t703 = t681 + c_foot_along_z * t692 - minus_s_foot_along_z * t700;
-        let t713 = t149 - t629;
-        let t721 = parameters[76] * t641 - t643 * parameters[75] + parameters[77] * t713
-            + parameters[78] * t644 - parameters[79] * t612 + t643 * parameters[80];
-        let t734 = t146 - t149;
-        let t738 = parameters[75] * t640 + parameters[76] * t645 - parameters[77] * t627
-            - t639 * parameters[78] + parameters[79] * t734 + t639 * parameters[80];
-        let t744 = c_left_bar_along_z
-            * (t721 + parameters[81] * t600 + parameters[83] * t619)
+                * (parameters[92] * t647 - parameters[91] * t651 - t587 * parameters[93]
+                    - parameters[94] * t608);
+        let t693 = c_left_bar_along_z * (t627 - t162)
+            + minus_s_left_bar_along_z * (t631 - 0.31 * t633);
+        let t698 = parameters[98] * t693
+            - (t587 * parameters[96] + parameters[97] * minus_rate_dot_foot_along_z);
+        let t704 = t608 + 0.31 * t651;
+        let t706 = parameters[96] * minus_rate_dot_foot_along_z - t587 * parameters[97]
+            - parameters[98] * t704;
+        let t709 = t687 + c_foot_along_z * t698 - minus_s_foot_along_z * t706;
+        let t719 = t160 - t635;
+        let t727 = parameters[76] * t647 - t649 * parameters[75] + parameters[77] * t719
+            + parameters[78] * t650 - parameters[79] * t620 + t649 * parameters[80];
+        let t740 = t157 - t160;
+        let t744 = parameters[75] * t646 + parameters[76] * t651 - parameters[77] * t633
+            - t645 * parameters[78] + parameters[79] * t740 + t645 * parameters[80];
+        let t750 = c_left_bar_along_z
+            * (t727 + parameters[81] * t608 + parameters[83] * t627)
             - minus_s_left_bar_along_z
-                * (t738 - parameters[82] * t600 - parameters[83] * t625);
-        let t756 = parameters[86] * t641 - t643 * parameters[85] + parameters[87] * t713
-            + parameters[88] * t644 - parameters[89] * t612 + t643 * parameters[90];
-        let t772 = parameters[85] * t640 + parameters[86] * t645 - parameters[87] * t627
-            - t639 * parameters[88] + parameters[89] * t734 + t639 * parameters[90];
-        let t778 = c_left_bar_along_z
-            * (t756 + parameters[91] * t600 + parameters[93] * t619)
+                * (t744 - parameters[82] * t608 - parameters[83] * t631);
+        let t762 = parameters[86] * t647 - t649 * parameters[85] + parameters[87] * t719
+            + parameters[88] * t650 - parameters[89] * t620 + t649 * parameters[90];
+        let t778 = parameters[85] * t646 + parameters[86] * t651 - parameters[87] * t633
+            - t645 * parameters[88] + parameters[89] * t740 + t645 * parameters[90];
+        let t784 = c_left_bar_along_z
+            * (t762 + parameters[91] * t608 + parameters[93] * t627)
             - minus_s_left_bar_along_z
-                * (t772 - parameters[92] * t600 - parameters[93] * t625);
-        let t787 = parameters[72] * t600 - parameters[71] * minus_rate_dot_foot_along_z
-            - parameters[73] * t596 + t744 + t778 + parameters[96] * t698
-            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t687
-            - t23 * t700;
-        let t790 = t302 + gdrive_vx_along_y * t443 - minus_gfoot_vx_along_y * t527
-            - minus_gleft_bar_vx_along_y * t566 + gdrive_vx_along_z * t703
-            - minus_gfoot_vx_along_z * t787;
-        let t794 = t790 + t315 * parameters[99] + t315 * parameters[100];
-        let t805 = t102 - t228;
-        let t813 = parameters[10] * t240 - t242 * parameters[9] + parameters[11] * t805
-            + parameters[12] * t243 - parameters[13] * t205 + t242 * parameters[14];
-        let t826 = t203 * t203;
-        let t827 = t826 - t102;
-        let t831 = parameters[9] * t239 + parameters[10] * t244 - parameters[11] * t226
-            - t238 * parameters[12] + parameters[13] * t827 + t238 * parameters[14];
-        let t837 = c_left_bar_along_x
-            * (t813 + parameters[15] * t192 + parameters[17] * t216)
+                * (t778 - parameters[92] * t608 - parameters[93] * t631);
+        let t793 = parameters[72] * t608 - parameters[71] * minus_rate_dot_foot_along_z
+            - parameters[73] * t604 + t750 + t784 + parameters[96] * t704
+            - parameters[95] * minus_rate_dot_foot_along_z + parameters[97] * t693
+            - t23 * t706;
+        let t796 = t311 + gdrive_vx_along_y * t451 - minus_gfoot_vx_along_y * t535
+            - minus_gleft_bar_vx_along_y * t574 + gdrive_vx_along_z * t709
+            - minus_gfoot_vx_along_z * t793;
+        let t800 = t796 + t324 * parameters[99] + t324 * parameters[100];
+        let t811 = t103 - t237;
+        let t819 = parameters[10] * t249 - t251 * parameters[9] + parameters[11] * t811
+            + parameters[12] * t252 - parameters[13] * t216 + t251 * parameters[14];
+        let t832 = t214 * t214;
+        let t833 = t832 - t103;
+        let t837 = parameters[9] * t248 + parameters[10] * t253 - parameters[11] * t235
+            - t247 * parameters[12] + parameters[13] * t833 + t247 * parameters[14];
+        let t843 = c_left_bar_along_x
+            * (t819 + parameters[15] * t203 + parameters[17] * t227)
             - minus_s_left_bar_along_x
-                * (t831 - parameters[16] * t192 - parameters[17] * t224);
-        let t849 = parameters[20] * t240 - t242 * parameters[19] + parameters[21] * t805
-            + parameters[22] * t243 - parameters[23] * t205 + t242 * parameters[24];
-        let t865 = parameters[19] * t239 + parameters[20] * t244 - parameters[21] * t226
-            - t238 * parameters[22] + parameters[23] * t827 + t238 * parameters[24];
-        let t871 = c_left_bar_along_x
-            * (t849 + parameters[25] * t192 + parameters[27] * t216)
+                * (t837 - parameters[16] * t203 - parameters[17] * t233);
+        let t855 = parameters[20] * t249 - t251 * parameters[19] + parameters[21] * t811
+            + parameters[22] * t252 - parameters[23] * t216 + t251 * parameters[24];
+        let t871 = parameters[19] * t248 + parameters[20] * t253 - parameters[21] * t235
+            - t247 * parameters[22] + parameters[23] * t833 + t247 * parameters[24];
+        let t877 = c_left_bar_along_x
+            * (t855 + parameters[25] * t203 + parameters[27] * t227)
             - minus_s_left_bar_along_x
-                * (t865 - parameters[26] * t192 - parameters[27] * t224);
-        let t880 = parameters[6] * t192 - parameters[5] * minus_rate_dot_foot_along_x
-            - parameters[7] * t188 + t837 + t871 + parameters[30] * t297
-            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t286
-            - t17 * t299;
-        let t888 = t629 - t146;
-        let t898 = t611 * parameters[75] + parameters[76] * t888 + parameters[77] * t633
-            - t611 * parameters[78] - parameters[79] * t616
+                * (t871 - parameters[26] * t203 - parameters[27] * t233);
+        let t886 = parameters[6] * t203 - parameters[5] * minus_rate_dot_foot_along_x
+            - parameters[7] * t199 + t843 + t877 + parameters[30] * t306
+            - parameters[29] * minus_rate_dot_foot_along_x + parameters[31] * t295
+            - t17 * t308;
+        let t894 = t635 - t157;
+        let t904 = t619 * parameters[75] + parameters[76] * t894 + parameters[77] * t639
+            - t619 * parameters[78] - parameters[79] * t624
             - parameters[80] * minus_rate_dot_left_bar_along_z;
-        let t913 = t611 * parameters[85] + parameters[86] * t888 + parameters[87] * t633
-            - t611 * parameters[88] - parameters[89] * t616
+        let t919 = t619 * parameters[85] + parameters[86] * t894 + parameters[87] * t639
+            - t619 * parameters[88] - parameters[89] * t624
             - parameters[90] * minus_rate_dot_left_bar_along_z;
-        let t923 = t898 + parameters[81] * t625 - parameters[82] * t619 + t913
-            + parameters[91] * t625 - parameters[92] * t619 + pose[1] * t692
-            - t23 * (t173 * parameters[98]);
-        let t926 = gdrive_vy_along_x * t302 - minus_gfoot_vy_along_x * t880 + t443
-            + gdrive_vy_along_z * t703 - minus_gfoot_vy_along_z * t787
-            - minus_gleft_bar_vy_along_z * t923;
-        let t932 = t926 + t173 * parameters[99] + t173 * parameters[100] - t55 * t794;
-        let t938 = t228 - t826;
-        let t948 = t204 * parameters[9] + parameters[10] * t938 + parameters[11] * t232
-            - t204 * parameters[12] - parameters[13] * t211
+        let t929 = t904 + parameters[81] * t631 - parameters[82] * t627 + t919
+            + parameters[91] * t631 - parameters[92] * t627 + pose[1] * t698
+            - t23 * (t184 * parameters[98]);
+        let t932 = gdrive_vy_along_x * t311 - minus_gfoot_vy_along_x * t886 + t451
+            + gdrive_vy_along_z * t709 - minus_gfoot_vy_along_z * t793
+            - minus_gleft_bar_vy_along_z * t929;
+        let t938 = t932 + t184 * parameters[99] + t184 * parameters[100] - t55 * t800;
+        let t944 = t237 - t832;
+        let t954 = t215 * parameters[9] + parameters[10] * t944 + parameters[11] * t241
+            - t215 * parameters[12] - parameters[13] * t222
             - parameters[14] * minus_rate_dot_left_bar_along_x;
-        let t963 = t204 * parameters[19] + parameters[20] * t938 + parameters[21] * t232
-            - t204 * parameters[22] - parameters[23] * t211
+        let t969 = t215 * parameters[19] + parameters[20] * t944 + parameters[21] * t241
+            - t215 * parameters[22] - parameters[23] * t222
             - parameters[24] * minus_rate_dot_left_bar_along_x;
-        let t970 = -9.81 - t171;
-        let t974 = t948 + parameters[15] * t224 - parameters[16] * t216 + t963
-            + parameters[25] * t224 - parameters[26] * t216 + pose[2] * t291
-            + t17 * (parameters[32] * t970);
-        let t981 = gdrive_vz_along_x * t302 - minus_gfoot_vz_along_x * t880
-            - minus_gleft_bar_vz_along_x * t974 + gdrive_vz_along_y * t443
-            - minus_gfoot_vz_along_y * t527 + t703;
-        let t990 = t81
-            * (t981 - (parameters[99] * t970 + parameters[100] * t970) - t70 * t794
-                - t78 * t932);
-        let t992 = t58 * t932 - t78 * t990;
-        let t996 = t33 * t794 - t55 * t992 - t70 * t990;
+        let t976 = -9.81 - t182;
+        let t980 = t954 + parameters[15] * t233 - parameters[16] * t227 + t969
+            + parameters[25] * t233 - parameters[26] * t227 + pose[2] * t300
+            + t17 * (parameters[32] * t976);
+        let t987 = gdrive_vz_along_x * t311 - minus_gfoot_vz_along_x * t886
+            - minus_gleft_bar_vz_along_x * t980 + gdrive_vz_along_y * t451
+            - minus_gfoot_vz_along_y * t535 + t709;
+        let t996 = t82
+            * (t987 - (parameters[99] * t976 + parameters[100] * t976) - t71 * t800
+                - t79 * t938);
+        let t998 = t58 * t938 - t79 * t996;
+        let t1002 = t33 * t800 - t55 * t998 - t71 * t996;
         Ok([
-            t996 + gdrive_vy_along_x * t992 + gdrive_vz_along_x * t990,
-            gdrive_vx_along_y * t996 + t992 + gdrive_vz_along_y * t990,
-            gdrive_vx_along_z * t996 + gdrive_vy_along_z * t992 + t990,
+            t1002 + gdrive_vy_along_x * t998 + gdrive_vz_along_x * t996,
+            gdrive_vx_along_y * t1002 + t998 + gdrive_vz_along_y * t996,
+            gdrive_vx_along_z * t1002 + gdrive_vy_along_z * t998 + t996,
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.

@@ -637,7 +637,7 @@ impl Planar3Prr {
     ///
     /// Output: 9.
     ///
-    /// 102 operations (44 additions, 55 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 98 intermediates.
+    /// 104 operations (43 additions, 58 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 0 signs, 100 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -653,15 +653,13 @@ impl Planar3Prr {
         let minus_s2_leg1 = ::overact::math::sqrt(t9);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
         let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
-        let t12 = 0.04 * s_phi;
-        let t13 = 0.06928203230275509 * c_phi;
-        let t14 = t12 - t13;
-        let t15 = t14 * twist[2];
-        let t16 = t12 + t13;
-        let t17 = t16 * twist[2];
-        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - (t15 + t17));
+        let t12 = 0.08 * s_phi;
+        let rate_2_leg1 = g2_vy_leg1 * (twist[1] - t12 * twist[2]);
         let minus_rate_1_leg1 = twist[0] - t2 * twist[2] + t6 * rate_2_leg1;
-        let t25 = pose[0] + t14 + 0.25980762113533157;
+        let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
+        let t22 = 0.08 * minus_c23_leg2;
+        let t23 = t12 - t22;
+        let t25 = pose[0] + t23 + 0.25980762113533157;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
         let t30 = 0.08 * minus_s23_leg2;
         let t31 = t2 + t30;
@@ -677,29 +675,29 @@ impl Planar3Prr {
         let t53 = twist[0] + t31 * twist[2];
         let minus_g1_vy_leg2 = (0.8660254037844386 * minus_s2_leg2
             + 1.4705882352941178 * t35) * t50;
-        let t59 = twist[1] + t15;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t53 + minus_g1_vy_leg2 * t59;
+        let t60 = twist[1] + t23 * twist[2];
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t53 + minus_g1_vy_leg2 * t60;
         let minus_g2_vx_leg2 = 2.5471335405424664 * t50;
         let minus_g2_vy_leg2 = 1.4705882352941178 * t50;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t53 + minus_g2_vy_leg2 * t59;
-        let t69 = pose[0] + t16 - 0.25980762113533157;
-        let t72 = pose[1] + t30 + 0.15;
-        let t74 = 0.5 * t69 + 0.8660254037844386 * t72;
-        let t81 = 8.650519031141869 * (t74 * t74 - (t69 * t69 + t72 * t72 - 0.1156));
-        ::overact::guard::reach(t81, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t81);
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t53 + minus_g2_vy_leg2 * t60;
+        let t70 = pose[0] + t22 - 0.25980762113533157;
+        let t73 = pose[1] + t30 + 0.15;
+        let t75 = 0.5 * t70 + 0.8660254037844386 * t73;
+        let t82 = 8.650519031141869 * (t75 * t75 - (t70 * t70 + t73 * t73 - 0.1156));
+        ::overact::guard::reach(t82, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t82);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t86 = 0.8660254037844386 * t69 - 0.5 * t72;
-        let t89 = 1.0 / minus_s2_leg3;
-        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t86)
-            * t89;
-        let t91 = twist[1] + t17;
-        let minus_g1_vx_leg3 = (2.5471335405424664 * t86 - 0.5 * minus_s2_leg3) * t89;
-        let t98 = twist[0] - t30 * twist[2];
-        let rate_1_leg3 = g1_vy_leg3 * t91 - minus_g1_vx_leg3 * t98;
-        let g2_vx_leg3 = 2.5471335405424664 * t89;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t89;
-        let rate_2_leg3 = g2_vx_leg3 * t98 - minus_g2_vy_leg3 * t91;
+        let t87 = 0.8660254037844386 * t70 - 0.5 * t73;
+        let t90 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = (0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t87)
+            * t90;
+        let t93 = twist[1] + t22 * twist[2];
+        let minus_g1_vx_leg3 = (2.5471335405424664 * t87 - 0.5 * minus_s2_leg3) * t90;
+        let t100 = twist[0] - t30 * twist[2];
+        let rate_1_leg3 = g1_vy_leg3 * t93 - minus_g1_vx_leg3 * t100;
+        let g2_vx_leg3 = 2.5471335405424664 * t90;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t90;
+        let rate_2_leg3 = g2_vx_leg3 * t100 - minus_g2_vy_leg3 * t93;
         Ok([
             -minus_rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2,
             -minus_rate_2_leg2, minus_rate_2_leg2 + twist[2], rate_1_leg3, rate_2_leg3,
@@ -1025,7 +1023,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 252 operations (85 additions, 159 multiplications, 8 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 201 intermediates.
+    /// 254 operations (85 additions, 166 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 203 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1044,169 +1042,170 @@ impl Planar3Prr {
         ::overact::guard::reach(t13, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t13);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let t15 = 0.34 / minus_s2_leg1;
-        let g2_vy_leg1 = 8.650519031141869 * t15;
+        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
         let minus_g1_vy_leg1 = t10 * g2_vy_leg1;
-        let t18 = t5 * twist[2];
-        let t21 = twist[2] * t18 + t2 * acceleration[2];
-        let t22 = acceleration[1] - t21;
-        let t23 = minus_g1_vy_leg1 * t22;
-        let t24 = twist[1] - t3;
-        let rate_2_leg1 = g2_vy_leg1 * t24;
-        let t28 = t23 + rate_2_leg1 * rate_2_leg1 * t15;
+        let t17 = t5 * twist[2];
+        let t20 = twist[2] * t17 + t2 * acceleration[2];
+        let t21 = acceleration[1] - t20;
+        let t22 = minus_g1_vy_leg1 * t21;
+        let t23 = twist[1] - t3;
+        let rate_2_leg1 = g2_vy_leg1 * t23;
+        let t28 = t22 + rate_2_leg1 * rate_2_leg1 * (0.1156 * g2_vy_leg1);
         let minus_rate_dot_1_leg1 = acceleration[0] + t7 + t28;
         let t30 = minus_g1_vy_leg1 * minus_rate_dot_1_leg1;
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t5;
         let t33 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let minus_rate_1_leg1 = twist[0] - t18 + minus_g1_vy_leg1 * t24;
-        let t42 = 2.9411764705882355 * t22;
+        let minus_rate_1_leg1 = twist[0] - t17 + minus_g1_vy_leg1 * t23;
+        let t42 = 2.9411764705882355 * t21;
         let t43 = 2.9411764705882355 * t28;
         let t44 = minus_g1_vy_leg1 * t43;
-        let t46 = 2.9411764705882355 * (t42 + t44);
+        let rate_dot_2_leg1 = minus_s2_leg1 * (t42 + t44);
         let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
-        let t53 = minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1);
-        let t62 = twist[2] - rate_2_leg1;
+        let t54 = minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1);
+        let t63 = twist[2] - rate_2_leg1;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t69 = 0.08 * minus_c23_leg2;
-        let t70 = t2 - t69;
+        let t70 = 0.08 * minus_c23_leg2;
+        let t71 = t2 - t70;
         let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t77 = 0.08 * minus_s23_leg2;
-        let t78 = t5 + t77;
-        let t79 = pose[1] + 0.15;
-        let t82 = 0.8660254037844386 * (pose[0] + t70 + 0.25980762113533157)
-            + 0.5 * (t79 - t78);
-        let minus_c2_leg2 = 2.9411764705882355 * t82;
-        let t86 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
-        ::overact::guard::reach(t86, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t86);
+        let t78 = 0.08 * minus_s23_leg2;
+        let t79 = t5 + t78;
+        let t80 = pose[1] + 0.15;
+        let t83 = 0.8660254037844386 * (pose[0] + t71 + 0.25980762113533157)
+            + 0.5 * (t80 - t79);
+        let minus_c2_leg2 = 2.9411764705882355 * t83;
+        let t87 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t87, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t87);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t89 = 2.5471335405424664 * t82 - 0.5 * minus_s2_leg2;
-        let t90 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t89 * t90;
-        let t94 = t70 * twist[2];
-        let t96 = acceleration[0] + t78 * acceleration[2] - twist[2] * t94;
-        let t100 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t82;
-        let t103 = t78 * twist[2];
-        let t105 = acceleration[1] + t70 * acceleration[2] + twist[2] * t103;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t90;
-        let t109 = twist[0] + t103;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t90;
-        let t112 = twist[1] + t94;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t109 + minus_g2_vy_leg2 * t112;
-        let t115 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t117 = t89 * t96 + t100 * t105 + 0.34 * t115;
-        let minus_rate_dot_1_leg2 = t90 * t117;
-        let t119 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t100 * t90;
-        let t121 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let t122 = 2.9411764705882355 * t90;
-        let minus_g2_wz_leg2 = t2 * t122;
-        let minus_g1_wz_leg2 = t82 * minus_g2_wz_leg2 - t5;
-        let t126 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t109 + minus_g1_vy_leg2 * t112;
-        let t138 = 0.8660254037844386 * t96 + 0.5 * t105;
-        let minus_rate_dot_2_leg2 = t122 * (t138 + t82 * t115);
-        let t147 = minus_s2_leg2 * t115 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t149 = minus_c2_leg2 * minus_rate_dot_1_leg2;
-        let t158 = 2.9411764705882355 * t138;
-        let t171 = minus_rate_2_leg2 + twist[2];
-        let t181 = 0.8660254037844386 * (pose[0] + t69 - 0.25980762113533157)
-            - 0.5 * (t77 + t79);
-        let c2_leg3 = 2.9411764705882355 * t181;
-        let t185 = 1.0 - c2_leg3 * c2_leg3;
-        ::overact::guard::reach(t185, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t185);
+        let t90 = 2.5471335405424664 * t83 - 0.5 * minus_s2_leg2;
+        let t91 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t90 * t91;
+        let t95 = t71 * twist[2];
+        let t97 = acceleration[0] + t79 * acceleration[2] - twist[2] * t95;
+        let t101 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t83;
+        let t104 = t79 * twist[2];
+        let t106 = acceleration[1] + t71 * acceleration[2] + twist[2] * t104;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t91;
+        let t110 = twist[0] + t104;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t91;
+        let t113 = twist[1] + t95;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * t110 + minus_g2_vy_leg2 * t113;
+        let t116 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t118 = t90 * t97 + t101 * t106 + 0.34 * t116;
+        let minus_rate_dot_1_leg2 = t91 * t118;
+        let t120 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t101 * t91;
+        let t122 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let t123 = 2.9411764705882355 * t91;
+        let minus_g2_wz_leg2 = t2 * t123;
+        let minus_g1_wz_leg2 = t83 * minus_g2_wz_leg2 - t5;
+        let t127 = minus_g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t110 + minus_g1_vy_leg2 * t113;
+        let t139 = 0.8660254037844386 * t97 + 0.5 * t106;
+        let minus_rate_dot_2_leg2 = t123 * (t139 + t83 * t116);
+        let t148 = minus_s2_leg2 * t116 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t150 = minus_c2_leg2 * minus_rate_dot_1_leg2;
+        let t159 = 2.9411764705882355 * t139;
+        let t172 = minus_rate_2_leg2 + twist[2];
+        let t182 = 0.8660254037844386 * (pose[0] + t70 - 0.25980762113533157)
+            - 0.5 * (t78 + t80);
+        let c2_leg3 = 2.9411764705882355 * t182;
+        let t186 = 1.0 - c2_leg3 * c2_leg3;
+        ::overact::guard::reach(t186, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t186);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t188 = 2.5471335405424664 * t181 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t188 / minus_s2_leg3;
-        let t192 = t69 * twist[2];
-        let t194 = acceleration[0] - t77 * acceleration[2] - twist[2] * t192;
-        let t198 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t181;
-        let t201 = t77 * twist[2];
-        let t203 = acceleration[1] + t69 * acceleration[2] - twist[2] * t201;
-        let g2_vx_leg3 = 2.5471335405424664 / minus_s2_leg3;
-        let t207 = twist[0] - t201;
-        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
-        let t210 = twist[1] + t192;
-        let rate_2_leg3 = g2_vx_leg3 * t207 - minus_g2_vy_leg3 * t210;
-        let t213 = rate_2_leg3 * rate_2_leg3;
-        let t215 = t188 * t194 - t198 * t203 + 0.34 * t213;
-        let minus_rate_dot_1_leg3 = t215 / minus_s2_leg3;
-        let t217 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let g1_vy_leg3 = t198 / minus_s2_leg3;
-        let t219 = g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let t220 = 2.9411764705882355 / minus_s2_leg3;
-        let minus_g2_wz_leg3 = t2 * t220;
-        let g1_wz_leg3 = t5 + t181 * minus_g2_wz_leg3;
-        let t224 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vy_leg3 * t210 - minus_g1_vx_leg3 * t207;
-        let t236 = 0.5 * t203 - 0.8660254037844386 * t194;
-        let minus_rate_dot_2_leg3 = t220 * (t236 - t181 * t213);
-        let t245 = minus_s2_leg3 * t213 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t247 = c2_leg3 * minus_rate_dot_1_leg3;
-        let t256 = 2.9411764705882355 * t236;
-        let t269 = twist[2] - rate_2_leg3;
-        let t274 = 12.5 * t21;
-        let t275 = 12.5 * t7;
+        let t189 = 2.5471335405424664 * t182 - 0.5 * minus_s2_leg3;
+        let t190 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t189 * t190;
+        let t194 = t70 * twist[2];
+        let t196 = acceleration[0] - t78 * acceleration[2] - twist[2] * t194;
+        let t200 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t182;
+        let t203 = t78 * twist[2];
+        let t205 = acceleration[1] + t70 * acceleration[2] - twist[2] * t203;
+        let g2_vx_leg3 = 2.5471335405424664 * t190;
+        let t209 = twist[0] - t203;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t190;
+        let t212 = twist[1] + t194;
+        let rate_2_leg3 = g2_vx_leg3 * t209 - minus_g2_vy_leg3 * t212;
+        let t215 = rate_2_leg3 * rate_2_leg3;
+        let t217 = t189 * t196 - t200 * t205 + 0.34 * t215;
+        let minus_rate_dot_1_leg3 = t190 * t217;
+        let t219 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let g1_vy_leg3 = t200 * t190;
+        let t221 = g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let t222 = 2.9411764705882355 * t190;
+        let minus_g2_wz_leg3 = t2 * t222;
+        let g1_wz_leg3 = t5 + t182 * minus_g2_wz_leg3;
+        let t226 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vy_leg3 * t212 - minus_g1_vx_leg3 * t209;
+        let t238 = 0.5 * t205 - 0.8660254037844386 * t196;
+        let minus_rate_dot_2_leg3 = t222 * (t238 - t182 * t215);
+        let t247 = minus_s2_leg3 * t215 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t249 = c2_leg3 * minus_rate_dot_1_leg3;
+        let t258 = 2.9411764705882355 * t238;
+        let t271 = twist[2] - rate_2_leg3;
+        let t276 = 12.5 * t20;
+        let t277 = 12.5 * t7;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, minus_rate_1_leg1,
                 ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, -t43, -t42,
-                minus_rate_dot_1_leg1, 0.0, 0.0, t119, t119, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                minus_rate_dot_1_leg1, 0.0, 0.0, t120, t120, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vx_leg2 * t147 + minus_g2_vx_leg2 * t149),
-                minus_g1_vx_leg2 * t158 + minus_g2_vx_leg2 * t117, t119,
+                -(minus_g1_vx_leg2 * t148 + minus_g2_vx_leg2 * t150),
+                minus_g1_vx_leg2 * t159 + minus_g2_vx_leg2 * t118, t120,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t171), t217, t217,
+                ::overact::math::signed(minus_g2_vx_leg2, t172), t219, t219,
                 -(minus_g1_vx_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -minus_g1_vx_leg3,
                 -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                -(minus_g1_vx_leg3 * t245 + g2_vx_leg3 * t247),
-                minus_g1_vx_leg3 * t256 - g2_vx_leg3 * t215, t217,
+                -(minus_g1_vx_leg3 * t247 + g2_vx_leg3 * t249),
+                minus_g1_vx_leg3 * t258 - g2_vx_leg3 * t217, t219,
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t269), 0.0, -t274, t275, acceleration[0],
+                -::overact::math::signed(g2_vx_leg3, t271), 0.0, -t276, t277, acceleration[0],
             ],
             [
                 t30, t30, minus_g1_vy_leg1 * minus_rate_1_leg1,
                 ::overact::math::signed(minus_g1_vy_leg1, minus_rate_1_leg1), -minus_g1_vy_leg1,
-                t46, -(t44 + 2.9411764705882355 * t30),
-                -(2.9411764705882355 * (t23 + minus_rate_dot_1_leg1)), t30,
+                g2_vy_leg1 * rate_dot_2_leg1, -(t44 + 2.9411764705882355 * t30),
+                -(2.9411764705882355 * (t22 + minus_rate_dot_1_leg1)), t30,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t62), t121, t121,
+                -::overact::math::signed(g2_vy_leg1, t63), t122, t122,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_vy_leg2 * t147 + minus_g2_vy_leg2 * t149),
-                minus_g1_vy_leg2 * t158 + 1.4705882352941178 * minus_rate_dot_1_leg2, t121,
+                -(minus_g1_vy_leg2 * t148 + minus_g2_vy_leg2 * t150),
+                minus_g1_vy_leg2 * t159 + 1.4705882352941178 * minus_rate_dot_1_leg2, t122,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t171), -t219, -t219,
+                ::overact::math::signed(minus_g2_vy_leg2, t172), -t221, -t221,
                 g1_vy_leg3 * rate_1_leg3, ::overact::math::signed(g1_vy_leg3, rate_1_leg3),
                 g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t245 + minus_g2_vy_leg3 * t247,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t256, -t219,
+                g1_vy_leg3 * t247 + minus_g2_vy_leg3 * t249,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t258, -t221,
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t269), 0.0, -t275, -t274, acceleration[1],
+                ::overact::math::signed(minus_g2_vy_leg3, t271), 0.0, -t277, -t276, acceleration[1],
             ],
             [
                 -t33, -t33, -(g1_wz_leg1 * minus_rate_1_leg1),
-                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1, -(t2 * t46),
-                g1_wz_leg1 * t43 + minus_g1_vy_leg1 * t53, g1_wz_leg1 * t42 + t53, -t33,
+                -::overact::math::signed(g1_wz_leg1, minus_rate_1_leg1), g1_wz_leg1,
+                -(minus_g2_wz_leg1 * rate_dot_2_leg1), g1_wz_leg1 * t43 + minus_g1_vy_leg1 * t54,
+                g1_wz_leg1 * t42 + t54, -t33,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t62), t126, t126,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t63), t127, t127,
                 minus_g1_wz_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_wz_leg2, minus_rate_1_leg2), -minus_g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g1_wz_leg2 * t147 + minus_g2_wz_leg2 * t149),
-                minus_g1_wz_leg2 * t158 + minus_g2_wz_leg2 * t117, t126,
+                -(minus_g1_wz_leg2 * t148 + minus_g2_wz_leg2 * t150),
+                minus_g1_wz_leg2 * t159 + minus_g2_wz_leg2 * t118, t127,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t171), -t224, -t224,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t172), -t226, -t226,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 g1_wz_leg3, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t245 + minus_g2_wz_leg3 * t247,
-                minus_g2_wz_leg3 * t215 - g1_wz_leg3 * t256, -t224,
+                g1_wz_leg3 * t247 + minus_g2_wz_leg3 * t249,
+                minus_g2_wz_leg3 * t217 - g1_wz_leg3 * t258, -t226,
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t269), acceleration[2],
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t271), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -1223,7 +1222,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 227 operations (73 additions, 141 multiplications, 13 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 179 intermediates.
+    /// 227 operations (71 additions, 141 multiplications, 15 divisions), 0 square roots, 4 trigonometric pairs, 25 signs, 179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1238,151 +1237,152 @@ impl Planar3Prr {
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
         ::overact::guard::leg(s2_leg3, 0.7624400821657583, "leg3")?;
-        let t2 = 0.04 * s_phi;
-        let t3 = 0.04 * c_phi;
-        let t4 = t3 + t3;
-        let t5 = t4 * 0.8660254037844386;
-        let t6 = t2 - t5;
-        let t7 = t5 + t2;
-        let t8 = t6 + t7;
-        let t9 = t8 * twist[2];
-        let t12 = twist[2] * t9 - t4 * acceleration[2];
+        let t2 = 0.08 * s_phi;
+        let t3 = t2 * twist[2];
+        let t5 = 0.08 * c_phi;
+        let t7 = twist[2] * t3 - t5 * acceleration[2];
         let g1_vy_leg1 = c2_leg1 / s2_leg1;
-        let t17 = t4 * twist[2];
-        let t20 = twist[2] * t17 + t8 * acceleration[2];
-        let t21 = acceleration[1] - t20;
-        let t22 = g1_vy_leg1 * t21;
+        let t12 = t5 * twist[2];
+        let t15 = twist[2] * t12 + t2 * acceleration[2];
+        let t16 = acceleration[1] - t15;
+        let t17 = g1_vy_leg1 * t16;
         let minus_g2_vy_leg1 = 2.9411764705882355 / s2_leg1;
-        let t24 = twist[1] - t9;
-        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t24;
-        let t29 = t22 + minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 / s2_leg1);
-        let minus_rate_dot_1_leg1 = acceleration[0] + t12 - t29;
-        let t31 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let g1_wz_leg1 = t4 - g1_vy_leg1 * t8;
-        let t34 = g1_wz_leg1 * minus_rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vy_leg1 * t24 - (twist[0] - t17);
-        let t43 = 2.9411764705882355 * t21;
-        let t44 = 2.9411764705882355 * t29;
-        let t45 = g1_vy_leg1 * t44;
-        let t47 = 2.9411764705882355 * (t43 + t45);
-        let g2_wz_leg1 = t8 * minus_g2_vy_leg1;
-        let t54 = g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1);
-        let t63 = minus_rate_2_leg1 + twist[2];
-        let t71 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
-        let g1_vx_leg2 = t71 / s2_leg2;
-        let t75 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
-        let t78 = t8 * 0.8660254037844386;
-        let t79 = t78 + t3;
-        let t80 = t79 * twist[2];
-        let t82 = acceleration[1] + t6 * acceleration[2] + twist[2] * t80;
-        let t86 = t6 * twist[2];
-        let t88 = acceleration[0] + t79 * acceleration[2] - twist[2] * t86;
-        let t91 = 2.9411764705882355 / s2_leg2;
-        let g2_vx_leg2 = 0.8660254037844386 * t91;
-        let t93 = twist[0] + t80;
+        let t19 = twist[1] - t3;
+        let minus_rate_2_leg1 = minus_g2_vy_leg1 * t19;
+        let t24 = t17 + minus_rate_2_leg1 * minus_rate_2_leg1 * (0.34 / s2_leg1);
+        let minus_rate_dot_1_leg1 = acceleration[0] + t7 - t24;
+        let t26 = g1_vy_leg1 * minus_rate_dot_1_leg1;
+        let g1_wz_leg1 = t5 - g1_vy_leg1 * t2;
+        let t29 = g1_wz_leg1 * minus_rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * t19 - (twist[0] - t12);
+        let t38 = 2.9411764705882355 * t16;
+        let t39 = 2.9411764705882355 * t24;
+        let t40 = g1_vy_leg1 * t39;
+        let t42 = 2.9411764705882355 * (t38 + t40);
+        let t44 = 2.9411764705882355 * t26;
+        let g2_wz_leg1 = t2 * minus_g2_vy_leg1;
+        let t58 = minus_rate_2_leg1 + twist[2];
+        let t66 = 0.5 * s2_leg2 - 0.8660254037844386 * c2_leg2;
+        let g1_vx_leg2 = t66 / s2_leg2;
+        let t70 = 0.8660254037844386 * s2_leg2 + 0.5 * c2_leg2;
+        let t71 = 0.04 * s_phi;
+        let t72 = t5 * 0.8660254037844386;
+        let t73 = t71 - t72;
+        let t76 = t2 * 0.8660254037844386;
+        let t77 = 0.04 * c_phi;
+        let t78 = t76 + t77;
+        let t79 = t78 * twist[2];
+        let t81 = acceleration[1] + t73 * acceleration[2] + twist[2] * t79;
+        let t85 = t73 * twist[2];
+        let t87 = acceleration[0] + t78 * acceleration[2] - twist[2] * t85;
+        let g2_vx_leg2 = 2.5471335405424664 / s2_leg2;
+        let t91 = twist[0] + t79;
         let g2_vy_leg2 = 1.4705882352941178 / s2_leg2;
-        let t96 = twist[1] + t86;
-        let rate_2_leg2 = g2_vx_leg2 * t93 + g2_vy_leg2 * t96;
-        let t99 = rate_2_leg2 * rate_2_leg2;
-        let t100 = 0.34 * t99;
-        let t101 = t75 * t82 - t71 * t88 - t100;
-        let minus_rate_dot_1_leg2 = t101 / s2_leg2;
-        let t103 = g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t75 / s2_leg2;
-        let t105 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = g1_vx_leg2 * t79 - minus_g1_vy_leg2 * t6;
-        let t109 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let rate_1_leg2 = g1_vx_leg2 * t93 - minus_g1_vy_leg2 * t96;
-        let t122 = 0.8660254037844386 * t88 + 0.5 * t82;
-        let minus_rate_dot_2_leg2 = t91 * (c2_leg2 * t100 - t122);
-        let g2_wz_leg2 = t8 * t91;
-        let t131 = s2_leg2 * t99 + c2_leg2 * minus_rate_dot_2_leg2;
-        let t133 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t143 = 2.9411764705882355 * t122;
-        let t155 = twist[2] - rate_2_leg2;
-        let t164 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
-        let g1_vx_leg3 = t164 / s2_leg3;
-        let t166 = t78 - t3;
-        let t169 = t7 * twist[2];
-        let t171 = acceleration[0] - t166 * acceleration[2] - twist[2] * t169;
+        let t94 = twist[1] + t85;
+        let rate_2_leg2 = g2_vx_leg2 * t91 + g2_vy_leg2 * t94;
+        let t97 = rate_2_leg2 * rate_2_leg2;
+        let t98 = 0.34 * t97;
+        let t99 = t70 * t81 - t66 * t87 - t98;
+        let minus_rate_dot_1_leg2 = t99 / s2_leg2;
+        let t101 = g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t70 / s2_leg2;
+        let t103 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = g1_vx_leg2 * t78 - minus_g1_vy_leg2 * t73;
+        let t107 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let rate_1_leg2 = g1_vx_leg2 * t91 - minus_g1_vy_leg2 * t94;
+        let t117 = 2.9411764705882355 / s2_leg2;
+        let t121 = 0.8660254037844386 * t87 + 0.5 * t81;
+        let minus_rate_dot_2_leg2 = t117 * (c2_leg2 * t98 - t121);
+        let g2_wz_leg2 = t2 * t117;
+        let t130 = s2_leg2 * t97 + c2_leg2 * minus_rate_dot_2_leg2;
+        let t132 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t142 = 2.9411764705882355 * t121;
+        let t154 = twist[2] - rate_2_leg2;
+        let t163 = 0.8660254037844386 * c2_leg3 + 0.5 * s2_leg3;
+        let g1_vx_leg3 = t163 / s2_leg3;
+        let t165 = t76 - t77;
+        let t168 = t72 + t71;
+        let t169 = t168 * twist[2];
+        let t171 = acceleration[0] - t165 * acceleration[2] - twist[2] * t169;
         let t175 = 0.5 * c2_leg3 - 0.8660254037844386 * s2_leg3;
-        let t178 = t166 * twist[2];
-        let t180 = acceleration[1] + t7 * acceleration[2] - twist[2] * t178;
+        let t178 = t165 * twist[2];
+        let t180 = acceleration[1] + t168 * acceleration[2] - twist[2] * t178;
         let g2_vy_leg3 = 1.4705882352941178 / s2_leg3;
         let t184 = twist[1] + t169;
-        let t186 = 2.9411764705882355 / s2_leg3;
-        let minus_g2_vx_leg3 = 0.8660254037844386 * t186;
-        let t188 = twist[0] - t178;
-        let rate_2_leg3 = g2_vy_leg3 * t184 - minus_g2_vx_leg3 * t188;
-        let t191 = rate_2_leg3 * rate_2_leg3;
-        let t192 = 0.34 * t191;
-        let t193 = t164 * t171 - t175 * t180 + t192;
-        let rate_dot_1_leg3 = t193 / s2_leg3;
-        let t195 = g1_vx_leg3 * rate_dot_1_leg3;
+        let minus_g2_vx_leg3 = 2.5471335405424664 / s2_leg3;
+        let t187 = twist[0] - t178;
+        let rate_2_leg3 = g2_vy_leg3 * t184 - minus_g2_vx_leg3 * t187;
+        let t190 = rate_2_leg3 * rate_2_leg3;
+        let t191 = 0.34 * t190;
+        let t192 = t163 * t171 - t175 * t180 + t191;
+        let rate_dot_1_leg3 = t192 / s2_leg3;
+        let t194 = g1_vx_leg3 * rate_dot_1_leg3;
         let minus_g1_vy_leg3 = t175 / s2_leg3;
-        let t197 = minus_g1_vy_leg3 * rate_dot_1_leg3;
-        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t7 + g1_vx_leg3 * t166;
-        let t201 = minus_g1_wz_leg3 * rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t188 - minus_g1_vy_leg3 * t184;
+        let t196 = minus_g1_vy_leg3 * rate_dot_1_leg3;
+        let minus_g1_wz_leg3 = minus_g1_vy_leg3 * t168 + g1_vx_leg3 * t165;
+        let t200 = minus_g1_wz_leg3 * rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * t187 - minus_g1_vy_leg3 * t184;
+        let t210 = 2.9411764705882355 / s2_leg3;
         let t213 = 0.5 * t180 - 0.8660254037844386 * t171;
-        let rate_dot_2_leg3 = t186 * (t213 - c2_leg3 * t192);
-        let g2_wz_leg3 = t8 * t186;
-        let t223 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t191;
+        let rate_dot_2_leg3 = t210 * (t213 - c2_leg3 * t191);
+        let g2_wz_leg3 = t2 * t210;
+        let t223 = c2_leg3 * rate_dot_2_leg3 - s2_leg3 * t190;
         let t225 = c2_leg3 * rate_dot_1_leg3;
         let t235 = 2.9411764705882355 * t213;
         let t247 = twist[2] - rate_2_leg3;
-        let t252 = 12.5 * t20;
-        let t253 = 12.5 * t12;
+        let t252 = 12.5 * t15;
+        let t253 = 12.5 * t7;
         Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, -rate_1_leg1,
-                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t44, -t43, minus_rate_dot_1_leg1,
-                0.0, 0.0, -t103, -t103, g1_vx_leg2 * rate_1_leg2,
+                -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t39, -t38, minus_rate_dot_1_leg1,
+                0.0, 0.0, -t101, -t101, g1_vx_leg2 * rate_1_leg2,
                 ::overact::math::signed(g1_vx_leg2, rate_1_leg2), g1_vx_leg2,
-                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t131 + g2_vx_leg2 * t133),
-                g2_vx_leg2 * t101 - g1_vx_leg2 * t143, -t103,
+                -(g2_vx_leg2 * minus_rate_dot_2_leg2), -(g1_vx_leg2 * t130 + g2_vx_leg2 * t132),
+                g2_vx_leg2 * t99 - g1_vx_leg2 * t142, -t101,
                 ::overact::math::signed(g2_vx_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vx_leg2, t155), t195, t195, g1_vx_leg3 * rate_1_leg3,
+                -::overact::math::signed(g2_vx_leg2, t154), t194, t194, g1_vx_leg3 * rate_1_leg3,
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3,
                 -(minus_g2_vx_leg3 * rate_dot_2_leg3), g1_vx_leg3 * t223 - minus_g2_vx_leg3 * t225,
-                minus_g2_vx_leg3 * t193 - g1_vx_leg3 * t235, t195,
+                minus_g2_vx_leg3 * t192 - g1_vx_leg3 * t235, t194,
                 -::overact::math::signed(minus_g2_vx_leg3, rate_2_leg3),
                 ::overact::math::signed(minus_g2_vx_leg3, t247), 0.0, -t252, t253, acceleration[0],
             ],
             [
-                -t31, -t31, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t47,
-                2.9411764705882355 * t31 - t45, 2.9411764705882355 * (t22 - minus_rate_dot_1_leg1),
-                -t31, ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(minus_g2_vy_leg1, t63), t105, t105,
+                -t26, -t26, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t42, t44 - t40,
+                2.9411764705882355 * (t17 - minus_rate_dot_1_leg1), -t26,
+                ::overact::math::signed(minus_g2_vy_leg1, minus_rate_2_leg1),
+                ::overact::math::signed(minus_g2_vy_leg1, t58), t103, t103,
                 -(minus_g1_vy_leg2 * rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg2, rate_1_leg2), -minus_g1_vy_leg2,
-                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t131 - g2_vy_leg2 * t133,
-                minus_g1_vy_leg2 * t143 + 1.4705882352941178 * minus_rate_dot_1_leg2, t105,
+                -(g2_vy_leg2 * minus_rate_dot_2_leg2), minus_g1_vy_leg2 * t130 - g2_vy_leg2 * t132,
+                minus_g1_vy_leg2 * t142 + 1.4705882352941178 * minus_rate_dot_1_leg2, t103,
                 ::overact::math::signed(g2_vy_leg2, rate_2_leg2),
-                -::overact::math::signed(g2_vy_leg2, t155), -t197, -t197,
+                -::overact::math::signed(g2_vy_leg2, t154), -t196, -t196,
                 -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3,
                 g2_vy_leg3 * rate_dot_2_leg3, g2_vy_leg3 * t225 - minus_g1_vy_leg3 * t223,
-                minus_g1_vy_leg3 * t235 - 1.4705882352941178 * rate_dot_1_leg3, -t197,
+                minus_g1_vy_leg3 * t235 - 1.4705882352941178 * rate_dot_1_leg3, -t196,
                 ::overact::math::signed(g2_vy_leg3, rate_2_leg3),
                 -::overact::math::signed(g2_vy_leg3, t247), 0.0, -t253, -t252, acceleration[1],
             ],
             [
-                -t34, -t34, g1_wz_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, -(t8 * t47),
-                -(g1_wz_leg1 * t44 + g1_vy_leg1 * t54), g1_wz_leg1 * t43 + t54, -t34,
+                -t29, -t29, g1_wz_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1, -(t2 * t42),
+                -(g1_wz_leg1 * t39 + t2 * t44),
+                g1_wz_leg1 * t38 + g2_wz_leg1 * (s2_leg1 * minus_rate_dot_1_leg1), -t29,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t63), -t109, -t109,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t58), -t107, -t107,
                 g1_wz_leg2 * rate_1_leg2, ::overact::math::signed(g1_wz_leg2, rate_1_leg2),
                 g1_wz_leg2, -(g2_wz_leg2 * minus_rate_dot_2_leg2),
-                -(g1_wz_leg2 * t131 + g2_wz_leg2 * t133), g2_wz_leg2 * t101 - g1_wz_leg2 * t143,
-                -t109, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t155), -t201, -t201,
+                -(g1_wz_leg2 * t130 + g2_wz_leg2 * t132), g2_wz_leg2 * t99 - g1_wz_leg2 * t142,
+                -t107, ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t154), -t200, -t200,
                 -(minus_g1_wz_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_wz_leg3, rate_1_leg3), -minus_g1_wz_leg3,
                 g2_wz_leg3 * rate_dot_2_leg3, g2_wz_leg3 * t225 - minus_g1_wz_leg3 * t223,
-                minus_g1_wz_leg3 * t235 - g2_wz_leg3 * t193, -t201,
+                minus_g1_wz_leg3 * t235 - g2_wz_leg3 * t192, -t200,
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
                 ::overact::math::signed(1.0 - g2_wz_leg3, t247), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -1401,7 +1401,7 @@ impl Planar3Prr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 328 operations (125 additions, 181 multiplications, 22 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 276 intermediates.
+    /// 334 operations (124 additions, 200 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 282 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1440,190 +1440,190 @@ impl Planar3Prr {
         let minus_s2_leg3 = ::overact::math::sqrt(t38);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
         let t42 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t35;
-        let g1_vy_leg3 = t42 / minus_s2_leg3;
-        let t44 = t12 - t24;
-        let t48 = t2 + t31;
-        let t51 = 0.8660254037844386 * (pose[0] + t44 + 0.25980762113533157)
-            + 0.5 * (t32 - t48);
-        let minus_c2_leg2 = 2.9411764705882355 * t51;
-        let t54 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
-        ::overact::guard::reach(t54, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t54);
+        let t43 = 1.0 / minus_s2_leg3;
+        let g1_vy_leg3 = t42 * t43;
+        let t45 = t12 - t24;
+        let t49 = t2 + t31;
+        let t52 = 0.8660254037844386 * (pose[0] + t45 + 0.25980762113533157)
+            + 0.5 * (t32 - t49);
+        let minus_c2_leg2 = 2.9411764705882355 * t52;
+        let t55 = 1.0 - minus_c2_leg2 * minus_c2_leg2;
+        ::overact::guard::reach(t55, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t55);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let t56 = 2.9411764705882355 / minus_s2_leg2;
-        let minus_g2_wz_leg2 = t12 * t56;
-        let minus_g1_wz_leg2 = t51 * minus_g2_wz_leg2 - t2;
-        let t60 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t62 = t12 * 2.9411764705882355;
-        let minus_g2_wz_leg3 = t62 / minus_s2_leg3;
+        let t57 = 1.0 / minus_s2_leg2;
+        let t58 = 2.9411764705882355 * t57;
+        let minus_g2_wz_leg2 = t12 * t58;
+        let minus_g1_wz_leg2 = t52 * minus_g2_wz_leg2 - t2;
+        let t62 = minus_g1_wz_leg2 * actuator_velocities[1];
+        let t64 = 2.9411764705882355 * t43;
+        let minus_g2_wz_leg3 = t12 * t64;
         let g1_wz_leg3 = t2 + t35 * minus_g2_wz_leg3;
-        let t66 = g1_wz_leg3 * actuator_velocities[2];
-        let t70 = 2.5471335405424664 * t51 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t70 / minus_s2_leg2;
-        let t72 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t76 = 2.5471335405424664 * t35 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t76 / minus_s2_leg3;
-        let t78 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t79 = actuator_velocities[0] + t72 + t78;
-        let t83 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let t68 = g1_wz_leg3 * actuator_velocities[2];
+        let t72 = 2.5471335405424664 * t52 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t72 * t57;
+        let t74 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t78 = 2.5471335405424664 * t35 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t78 * t43;
+        let t80 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t81 = actuator_velocities[0] + t74 + t80;
+        let t85 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t87 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t89 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t87, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t87, 2.5803571428571423, "actuators")?;
-        let t88 = t83 / t87;
-        let t93 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t51;
-        let minus_g1_vy_leg2 = t93 / minus_s2_leg2;
-        let t103 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t89, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t89, 2.5803571428571423, "actuators")?;
+        let t90 = 1.0 / t89;
+        let t91 = t85 * t90;
+        let t96 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t52;
+        let minus_g1_vy_leg2 = t96 * t57;
+        let t106 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t105 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t103 * t88;
-        let t111 = t103 / t87;
-        let t113 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+        let t108 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t106 * t91;
+        let t114 = t106 * t90;
+        let t116 = minus_g1_vy_leg1 * minus_g1_vy_leg1
             + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
-            - t103 * t111;
-        ::overact::guard::platform(t113, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t113, 2.580357142857142, "actuators")?;
-        let t114 = t105 / t113;
-        let t115 = g1_vy_leg3 * actuator_velocities[2];
-        let t116 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t120 = t115 - (t16 + t116) + t79 * t111;
-        let t131 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t83 * t88 - t105 * t114;
-        ::overact::guard::platform(t131, 0.0192, "actuators")?;
-        ::overact::guard::platform(t131, 0.0192, "actuators")?;
-        let rate_3_leg1 = (t17 - t60 + t66 + t79 * t88 - t114 * t120) / t131;
-        let t133 = t31 * rate_3_leg1;
-        let t134 = rate_3_leg1 * t133;
-        let t136 = t24 * rate_3_leg1;
+            - t106 * t114;
+        ::overact::guard::platform(t116, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t116, 2.580357142857142, "actuators")?;
+        let t117 = t108 / t116;
+        let t118 = g1_vy_leg3 * actuator_velocities[2];
+        let t119 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t123 = t118 - (t16 + t119) + t81 * t114;
+        let t134 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t85 * t91 - t108 * t117;
+        ::overact::guard::platform(t134, 0.0192, "actuators")?;
+        ::overact::guard::platform(t134, 0.0192, "actuators")?;
+        let rate_3_leg1 = (t17 - t62 + t68 + t81 * t91 - t117 * t123) / t134;
+        let t136 = t31 * rate_3_leg1;
         let t137 = rate_3_leg1 * t136;
-        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
-        let t141 = minus_g2_vy_leg3 + minus_g2_vy_leg3;
-        let g2_vx_leg3 = 0.8660254037844386 * t141;
-        let t146 = t120 / t113 - t114 * rate_3_leg1;
-        let t150 = t79 / t87 + t111 * t146 + t88 * rate_3_leg1;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t150 + t133)
-            + minus_g2_vy_leg3 * (t146 + t136);
-        let t156 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = (t42 * t134 - t76 * t137 + 0.34 * t156)
-            / minus_s2_leg3;
-        let t160 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t162 = t12 * rate_3_leg1;
-        let t163 = rate_3_leg1 * t162;
-        let t164 = t48 * rate_3_leg1;
+        let t139 = t24 * rate_3_leg1;
+        let t140 = rate_3_leg1 * t139;
+        let g2_vx_leg3 = 2.5471335405424664 * t43;
+        let t147 = t123 / t116 - t117 * rate_3_leg1;
+        let t151 = t81 * t90 + t114 * t147 + t91 * rate_3_leg1;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t43;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t151 + t136)
+            + minus_g2_vy_leg3 * (t147 + t139);
+        let t158 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t43 * (t42 * t137 - t78 * t140 + 0.34 * t158);
+        let t162 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t164 = t12 * rate_3_leg1;
         let t165 = rate_3_leg1 * t164;
-        let t166 = t165 - t134;
-        let rate_2_leg1 = g2_vy_leg1 * (t146 - t162);
-        let t173 = rate_2_leg1 * rate_2_leg1 * (0.34 / minus_s2_leg1);
-        let minus_rate_dot_1_leg1 = t163 - minus_g1_vy_leg1 * t166 + t173;
-        let t175 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t177 = t44 * rate_3_leg1;
-        let t178 = rate_3_leg1 * t177;
-        let minus_g2_vx_leg2 = 2.5471335405424664 / minus_s2_leg2;
-        let minus_g2_vy_leg2 = 1.4705882352941178 / minus_s2_leg2;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t164 - t150)
-            + minus_g2_vy_leg2 * (t146 + t177);
-        let t189 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let rate_dot_1_leg2 = (t70 * t178 - t93 * t165 - 0.34 * t189) / minus_s2_leg2;
-        let t193 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t200 = t175 + minus_g1_vx_leg2 * t193 + minus_g1_vx_leg3 * t160;
-        let t202 = g1_vy_leg3 * t160
-            - (minus_g1_vy_leg1 * t175 + minus_g1_vy_leg2 * t193) + t111 * t200;
-        let rate_dot_3_leg1 = (g1_wz_leg1 * t175 - minus_g1_wz_leg2 * t193
-            + g1_wz_leg3 * t160 + t88 * t200 - t114 * t202) / t131;
-        let t215 = t202 / t113 - t114 * rate_dot_3_leg1;
-        let t217 = t166 + t12 * rate_dot_3_leg1;
-        let t218 = t215 - t217;
-        let t219 = 2.9411764705882355 * t218;
-        let t220 = minus_g1_vy_leg1 * t218;
-        let t221 = t173 + t220;
-        let t222 = 2.9411764705882355 * t221;
-        let t223 = minus_g1_vy_leg1 * t222;
-        let t225 = 2.9411764705882355 * (t219 + t223);
-        let t227 = 2.9411764705882355 * t11;
-        let minus_g2_wz_leg1 = t62 / minus_s2_leg1;
-        let t240 = rate_3_leg1 - rate_2_leg1;
-        let t244 = minus_g1_vx_leg2 * actuator_accelerations[1];
-        let t245 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t246 = minus_g1_wz_leg2 * actuator_accelerations[1];
-        let t252 = t163 - t2 * rate_dot_3_leg1;
-        let t254 = t221 + actuator_accelerations[0] + t252;
-        let t261 = 0.5 * (t215 + t44 * rate_dot_3_leg1 + t165);
-        let t262 = 0.8660254037844386 * (t48 * rate_dot_3_leg1 - t254 - t178) + t261;
-        let minus_rate_dot_2_leg2 = t56 * (t262 + t51 * t189);
-        let t269 = minus_c2_leg2 * actuator_accelerations[1];
-        let t273 = minus_s2_leg2 * t189 + minus_c2_leg2 * minus_rate_dot_2_leg2;
-        let t282 = 2.9411764705882355 * t262;
-        let t295 = minus_rate_2_leg2 + rate_3_leg1;
-        let t300 = minus_g1_vx_leg3 * actuator_accelerations[2];
-        let t301 = g1_vy_leg3 * actuator_accelerations[2];
-        let t302 = g1_wz_leg3 * actuator_accelerations[2];
-        let t312 = 0.8660254037844386 * (t254 + t31 * rate_dot_3_leg1 + t137) + t261
-            - 0.8660254037844386 * t252;
-        let minus_rate_dot_2_leg3 = t141 * (t312 - t35 * t156);
-        let t319 = c2_leg3 * actuator_accelerations[2];
-        let t323 = minus_s2_leg3 * t156 - c2_leg3 * minus_rate_dot_2_leg3;
-        let t332 = 2.9411764705882355 * t312;
-        let t345 = minus_rate_2_leg3 + rate_3_leg1;
-        let t350 = 12.5 * t217;
-        let t351 = 12.5 * t252;
+        let t166 = t49 * rate_3_leg1;
+        let t167 = rate_3_leg1 * t166;
+        let t168 = t167 - t137;
+        let rate_2_leg1 = g2_vy_leg1 * (t147 - t164);
+        let t175 = rate_2_leg1 * rate_2_leg1 * (0.1156 * g2_vy_leg1);
+        let minus_rate_dot_1_leg1 = t165 - minus_g1_vy_leg1 * t168 + t175;
+        let t177 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t179 = t45 * rate_3_leg1;
+        let t180 = rate_3_leg1 * t179;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t57;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t57;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t166 - t151)
+            + minus_g2_vy_leg2 * (t147 + t179);
+        let t191 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t57 * (t72 * t180 - t96 * t167 - 0.34 * t191);
+        let t195 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t202 = t177 + minus_g1_vx_leg2 * t195 + minus_g1_vx_leg3 * t162;
+        let t204 = g1_vy_leg3 * t162
+            - (minus_g1_vy_leg1 * t177 + minus_g1_vy_leg2 * t195) + t114 * t202;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t177 - minus_g1_wz_leg2 * t195
+            + g1_wz_leg3 * t162 + t91 * t202 - t117 * t204) / t134;
+        let t217 = t204 / t116 - t117 * rate_dot_3_leg1;
+        let t219 = t168 + t12 * rate_dot_3_leg1;
+        let t220 = t217 - t219;
+        let t221 = 2.9411764705882355 * t220;
+        let t222 = minus_g1_vy_leg1 * t220;
+        let t224 = 2.9411764705882355 * (t175 + t222);
+        let t225 = minus_g1_vy_leg1 * t224;
+        let t226 = t221 + t225;
+        let t228 = minus_s2_leg2 * minus_g2_wz_leg2;
+        let minus_g2_wz_leg1 = t228 / minus_s2_leg1;
+        let t243 = rate_3_leg1 - rate_2_leg1;
+        let t247 = minus_g1_vx_leg2 * actuator_accelerations[1];
+        let t248 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t249 = minus_g1_wz_leg2 * actuator_accelerations[1];
+        let t258 = t90 * t202 + t114 * t217 + t91 * rate_dot_3_leg1;
+        let t265 = 0.5 * (t217 + t45 * rate_dot_3_leg1 + t167);
+        let t266 = 0.8660254037844386 * (t49 * rate_dot_3_leg1 - t258 - t180) + t265;
+        let minus_rate_dot_2_leg2 = t58 * (t266 + t52 * t191);
+        let t273 = minus_c2_leg2 * actuator_accelerations[1];
+        let t277 = minus_s2_leg2 * t191 + minus_c2_leg2 * minus_rate_dot_2_leg2;
+        let t286 = 2.9411764705882355 * t266;
+        let t299 = minus_rate_2_leg2 + rate_3_leg1;
+        let t304 = minus_g1_vx_leg3 * actuator_accelerations[2];
+        let t305 = g1_vy_leg3 * actuator_accelerations[2];
+        let t306 = g1_wz_leg3 * actuator_accelerations[2];
+        let t315 = t165 - t2 * rate_dot_3_leg1;
+        let t318 = 0.8660254037844386 * (t258 + t31 * rate_dot_3_leg1 + t140) + t265
+            - 0.8660254037844386 * t315;
+        let minus_rate_dot_2_leg3 = t64 * (t318 - t35 * t158);
+        let t325 = c2_leg3 * actuator_accelerations[2];
+        let t329 = minus_s2_leg3 * t158 - c2_leg3 * minus_rate_dot_2_leg3;
+        let t338 = 2.9411764705882355 * t318;
+        let t351 = minus_rate_2_leg3 + rate_3_leg1;
+        let t356 = 12.5 * t219;
+        let t357 = 12.5 * t315;
         Ok([
             [
                 -actuator_accelerations[0], -actuator_accelerations[0], -actuator_velocities[0],
-                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t222, -t219,
-                -actuator_accelerations[0], 0.0, 0.0, -t244, -t244, -t72,
+                -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t224, -t221,
+                -actuator_accelerations[0], 0.0, 0.0, -t247, -t247, -t74,
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -minus_g1_vx_leg2, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vx_leg2 * t269 - minus_g1_vx_leg2 * t273,
-                minus_g1_vx_leg2 * t282 - 2.5471335405424664 * actuator_accelerations[1], -t244,
+                minus_g2_vx_leg2 * t273 - minus_g1_vx_leg2 * t277,
+                minus_g1_vx_leg2 * t286 - 2.5471335405424664 * actuator_accelerations[1], -t247,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vx_leg2, t295), -t300, -t300, -t78,
+                ::overact::math::signed(minus_g2_vx_leg2, t299), -t304, -t304, -t80,
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]),
                 -minus_g1_vx_leg3, -(g2_vx_leg3 * minus_rate_dot_2_leg3),
-                g2_vx_leg3 * t319 - minus_g1_vx_leg3 * t323,
-                minus_g1_vx_leg3 * t332 + 2.5471335405424664 * actuator_accelerations[2], -t300,
+                g2_vx_leg3 * t325 - minus_g1_vx_leg3 * t329,
+                minus_g1_vx_leg3 * t338 + 2.5471335405424664 * actuator_accelerations[2], -t304,
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vx_leg3, t345), 0.0, -t350, t351, -t254,
+                -::overact::math::signed(g2_vx_leg3, t351), 0.0, -t356, t357, -t258,
             ],
             [
                 -t11, -t11, -t16,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
-                -minus_g1_vy_leg1, t225, t227 - t223,
-                2.9411764705882355 * (actuator_accelerations[0] - t220), -t11,
+                -minus_g1_vy_leg1, 2.9411764705882355 * t226, 2.9411764705882355 * t11 - t225,
+                2.9411764705882355 * (actuator_accelerations[0] - t222), -t11,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
-                -::overact::math::signed(g2_vy_leg1, t240), -t245, -t245, -t116,
+                -::overact::math::signed(g2_vy_leg1, t243), -t248, -t248, -t119,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_vy_leg2 * t269 - minus_g1_vy_leg2 * t273,
-                minus_g1_vy_leg2 * t282 - 1.4705882352941178 * actuator_accelerations[1], -t245,
+                minus_g2_vy_leg2 * t273 - minus_g1_vy_leg2 * t277,
+                minus_g1_vy_leg2 * t286 - 1.4705882352941178 * actuator_accelerations[1], -t248,
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_vy_leg2, t295), t301, t301, t115,
+                ::overact::math::signed(minus_g2_vy_leg2, t299), t305, t305, t118,
                 ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), g1_vy_leg3,
                 minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg3 * t323 - minus_g2_vy_leg3 * t319,
-                -(g1_vy_leg3 * t332 + 1.4705882352941178 * actuator_accelerations[2]), t301,
+                g1_vy_leg3 * t329 - minus_g2_vy_leg3 * t325,
+                -(g1_vy_leg3 * t338 + 1.4705882352941178 * actuator_accelerations[2]), t305,
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_vy_leg3, t345), 0.0, -t351, -t350, t215,
+                ::overact::math::signed(minus_g2_vy_leg3, t351), 0.0, -t357, -t356, t217,
             ],
             [
                 t15, t15, t17, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
-                g1_wz_leg1, -(t12 * t225), g1_wz_leg1 * t222 - t12 * t227,
-                g1_wz_leg1 * t219 - actuator_accelerations[0] * t62, t15,
+                g1_wz_leg1, -(t226 * t228), g1_wz_leg1 * t224 - t11 * t228,
+                g1_wz_leg1 * t221 - actuator_accelerations[0] * t228, t15,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t240), -t246, -t246, -t60,
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t243), -t249, -t249, -t62,
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
                 -minus_g1_wz_leg2, minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                minus_g2_wz_leg2 * t269 - minus_g1_wz_leg2 * t273,
-                minus_g1_wz_leg2 * t282 - actuator_accelerations[1] * t62, -t246,
+                minus_g2_wz_leg2 * t273 - minus_g1_wz_leg2 * t277,
+                minus_g1_wz_leg2 * t286 - actuator_accelerations[1] * t228, -t249,
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t295), t302, t302, t66,
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t299), t306, t306, t68,
                 ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg3,
                 minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg3 * t323 - minus_g2_wz_leg3 * t319,
-                -(actuator_accelerations[2] * t62 + g1_wz_leg3 * t332), t302,
+                g1_wz_leg3 * t329 - minus_g2_wz_leg3 * t325,
+                -(actuator_accelerations[2] * t228 + g1_wz_leg3 * t338), t306,
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t345), rate_dot_3_leg1,
-                c_phi * t215 + s_phi * t254, c_phi * t254 - s_phi * t215, 0.0,
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t351), rate_dot_3_leg1,
+                c_phi * t217 + s_phi * t258, c_phi * t258 - s_phi * t217, 0.0,
             ],
         ])
     }
@@ -2316,7 +2316,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 220 operations (76 additions, 134 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 178 intermediates.
+    /// 222 operations (75 additions, 144 multiplications, 3 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 180 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2339,15 +2339,15 @@ impl Planar3Prr {
         ::overact::guard::reach(t25, "leg1")?;
         let minus_s2_leg1 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656308, "leg1")?;
-        let g2_vy_leg1 = 2.9411764705882355 / minus_s2_leg1;
+        let t27 = 0.34 / minus_s2_leg1;
+        let g2_vy_leg1 = 8.650519031141869 * t27;
         let minus_g1_vy_leg1 = t22 * g2_vy_leg1;
-        let t29 = acceleration[1] - t7;
-        let t30 = minus_g1_vy_leg1 * t29;
-        let t32 = twist[1] - t9;
-        let rate_2_leg1 = g2_vy_leg1 * t32;
-        let t34 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t12 + acceleration[0] + t30
-            + t34 * (0.1156 * g2_vy_leg1);
+        let t30 = acceleration[1] - t7;
+        let t31 = minus_g1_vy_leg1 * t30;
+        let t33 = twist[1] - t9;
+        let rate_2_leg1 = g2_vy_leg1 * t33;
+        let t35 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t12 + acceleration[0] + t31 + t35 * t27;
         let g1_wz_leg1 = t5 * minus_g1_vy_leg1 + t2;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t45 = 0.08 * minus_c23_leg2;
@@ -2363,64 +2363,66 @@ impl Planar3Prr {
         let minus_s2_leg2 = ::overact::math::sqrt(t62);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
         let t65 = 2.5471335405424664 * t58 - 0.5 * minus_s2_leg2;
-        let minus_g1_vx_leg2 = t65 / minus_s2_leg2;
-        let t69 = t46 * twist[2];
-        let t71 = acceleration[0] + t54 * acceleration[2] - twist[2] * t69;
-        let t75 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t58;
-        let t78 = t54 * twist[2];
-        let t80 = acceleration[1] + t46 * acceleration[2] + twist[2] * t78;
-        let t83 = 2.9411764705882355 / minus_s2_leg2;
-        let minus_g2_vx_leg2 = 0.8660254037844386 * t83;
-        let t85 = twist[0] + t78;
-        let minus_g2_vy_leg2 = 0.5 * t83;
-        let t88 = twist[1] + t69;
+        let t66 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t65 * t66;
+        let t70 = t46 * twist[2];
+        let t72 = acceleration[0] + t54 * acceleration[2] - twist[2] * t70;
+        let t76 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t58;
+        let t79 = t54 * twist[2];
+        let t81 = acceleration[1] + t46 * acceleration[2] + twist[2] * t79;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t66;
+        let t85 = twist[0] + t79;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t66;
+        let t88 = twist[1] + t70;
         let minus_rate_2_leg2 = minus_g2_vx_leg2 * t85 + minus_g2_vy_leg2 * t88;
         let t91 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t93 = t65 * t71 + t75 * t80 + 0.34 * t91;
-        let minus_rate_dot_1_leg2 = t93 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t75 / minus_s2_leg2;
-        let minus_g2_wz_leg2 = t5 * t83;
+        let t93 = t65 * t72 + t76 * t81 + 0.34 * t91;
+        let minus_rate_dot_1_leg2 = t66 * t93;
+        let minus_g1_vy_leg2 = t76 * t66;
+        let t98 = 2.9411764705882355 * t66;
+        let minus_g2_wz_leg2 = t5 * t98;
         let minus_g1_wz_leg2 = t58 * minus_g2_wz_leg2 - t2;
-        let t107 = 0.8660254037844386 * (pose[0] + t45 - 0.25980762113533157)
+        let t108 = 0.8660254037844386 * (pose[0] + t45 - 0.25980762113533157)
             - 0.5 * (t53 + t55);
-        let t111 = 8.650519031141869 * (0.1156 - t107 * t107);
-        ::overact::guard::reach(t111, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t111);
+        let t112 = 8.650519031141869 * (0.1156 - t108 * t108);
+        ::overact::guard::reach(t112, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t112);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t114 = 2.5471335405424664 * t107 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t114 / minus_s2_leg3;
-        let t118 = t45 * twist[2];
-        let t120 = acceleration[0] - t53 * acceleration[2] - twist[2] * t118;
-        let t124 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t107;
-        let t127 = t53 * twist[2];
-        let t129 = acceleration[1] + t45 * acceleration[2] - twist[2] * t127;
-        let g2_vx_leg3 = 2.5471335405424664 / minus_s2_leg3;
-        let t133 = twist[0] - t127;
-        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
-        let t136 = twist[1] + t118;
-        let rate_2_leg3 = g2_vx_leg3 * t133 - minus_g2_vy_leg3 * t136;
-        let t139 = rate_2_leg3 * rate_2_leg3;
-        let t141 = t114 * t120 - t124 * t129 + 0.34 * t139;
-        let minus_rate_dot_1_leg3 = t141 / minus_s2_leg3;
-        let g1_vy_leg3 = t124 / minus_s2_leg3;
-        let t146 = minus_g2_vy_leg3 + minus_g2_vy_leg3;
-        let minus_g2_wz_leg3 = t5 * t146;
-        let g1_wz_leg3 = t2 + t107 * minus_g2_wz_leg3;
-        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t32;
+        let t115 = 2.5471335405424664 * t108 - 0.5 * minus_s2_leg3;
+        let t116 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t115 * t116;
+        let t120 = t45 * twist[2];
+        let t122 = acceleration[0] - t53 * acceleration[2] - twist[2] * t120;
+        let t126 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t108;
+        let t129 = t53 * twist[2];
+        let t131 = acceleration[1] + t45 * acceleration[2] - twist[2] * t129;
+        let g2_vx_leg3 = 2.5471335405424664 * t116;
+        let t135 = twist[0] - t129;
+        let minus_g2_vy_leg3 = 1.4705882352941178 * t116;
+        let t138 = twist[1] + t120;
+        let rate_2_leg3 = g2_vx_leg3 * t135 - minus_g2_vy_leg3 * t138;
+        let t141 = rate_2_leg3 * rate_2_leg3;
+        let t143 = t115 * t122 - t126 * t131 + 0.34 * t141;
+        let minus_rate_dot_1_leg3 = t116 * t143;
+        let g1_vy_leg3 = t126 * t116;
+        let t148 = 2.9411764705882355 * t116;
+        let minus_g2_wz_leg3 = t5 * t148;
+        let g1_wz_leg3 = t2 + t108 * minus_g2_wz_leg3;
+        let minus_rate_1_leg1 = twist[0] - t3 + minus_g1_vy_leg1 * t33;
         let minus_rate_1_leg2 = minus_g1_vx_leg2 * t85 + minus_g1_vy_leg2 * t88;
-        let rate_1_leg3 = g1_vy_leg3 * t136 - minus_g1_vx_leg3 * t133;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t29 + t22 * t34);
+        let rate_1_leg3 = g1_vy_leg3 * t138 - minus_g1_vx_leg3 * t135;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t30 + t22 * t35);
         let minus_g2_wz_leg1 = t5 * g2_vy_leg1;
-        let t185 = 0.8660254037844386 * t71 + 0.5 * t80;
-        let minus_rate_dot_2_leg2 = t83 * (t185 + t58 * t91);
-        let t194 = 0.5 * t129 - 0.8660254037844386 * t120;
-        let minus_rate_dot_2_leg3 = t146 * (t194 - t107 * t139);
-        let t201 = 2.9411764705882355 * t29;
-        let t208 = 2.9411764705882355 * t185;
-        let t218 = 2.9411764705882355 * t194;
-        let t236 = twist[2] - rate_2_leg1;
-        let t240 = minus_rate_2_leg2 + twist[2];
-        let t245 = twist[2] - rate_2_leg3;
+        let t187 = 0.8660254037844386 * t72 + 0.5 * t81;
+        let minus_rate_dot_2_leg2 = t98 * (t187 + t58 * t91);
+        let t196 = 0.5 * t131 - 0.8660254037844386 * t122;
+        let minus_rate_dot_2_leg3 = t148 * (t196 - t108 * t141);
+        let t203 = 2.9411764705882355 * t30;
+        let t210 = 2.9411764705882355 * t187;
+        let t220 = 2.9411764705882355 * t196;
+        let t238 = twist[2] - rate_2_leg1;
+        let t242 = minus_rate_2_leg2 + twist[2];
+        let t247 = twist[2] - rate_2_leg3;
         Ok([
             [
                 0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
@@ -2430,13 +2432,13 @@ impl Planar3Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vx_leg3, rate_1_leg3), -1.0, -minus_g1_vx_leg2,
                 -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t201,
-                minus_g1_vx_leg2 * t208 + minus_g2_vx_leg2 * t93,
-                minus_g1_vx_leg3 * t218 - g2_vx_leg3 * t141, 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t203,
+                minus_g1_vx_leg2 * t210 + minus_g2_vx_leg2 * t93,
+                minus_g1_vx_leg3 * t220 - g2_vx_leg3 * t143, 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(g2_vx_leg3, rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t240),
-                -::overact::math::signed(g2_vx_leg3, t245),
+                ::overact::math::signed(minus_g2_vx_leg2, t242),
+                -::overact::math::signed(g2_vx_leg3, t247),
             ],
             [
                 0.0, -t13, -t8, acceleration[1], minus_g1_vy_leg1 * minus_rate_dot_1_leg1,
@@ -2448,15 +2450,15 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                -(2.9411764705882355 * (t30 + minus_rate_dot_1_leg1)),
-                minus_g1_vy_leg2 * t208 + 1.4705882352941178 * minus_rate_dot_1_leg2,
-                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t218,
+                -(2.9411764705882355 * (t31 + minus_rate_dot_1_leg1)),
+                minus_g1_vy_leg2 * t210 + 1.4705882352941178 * minus_rate_dot_1_leg2,
+                1.4705882352941178 * minus_rate_dot_1_leg3 - g1_vy_leg3 * t220,
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_vy_leg3, rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t236),
-                ::overact::math::signed(minus_g2_vy_leg2, t240),
-                ::overact::math::signed(minus_g2_vy_leg3, t245),
+                -::overact::math::signed(g2_vy_leg1, t238),
+                ::overact::math::signed(minus_g2_vy_leg2, t242),
+                ::overact::math::signed(minus_g2_vy_leg3, t247),
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -2469,16 +2471,16 @@ impl Planar3Prr {
                 ::overact::math::signed(g1_wz_leg3, rate_1_leg3), g1_wz_leg1, -minus_g1_wz_leg2,
                 g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t201
+                g1_wz_leg1 * t203
                     + minus_g2_wz_leg1 * (minus_s2_leg1 * minus_rate_dot_1_leg1),
-                minus_g1_wz_leg2 * t208 + minus_g2_wz_leg2 * t93,
-                minus_g2_wz_leg3 * t141 - g1_wz_leg3 * t218,
+                minus_g1_wz_leg2 * t210 + minus_g2_wz_leg2 * t93,
+                minus_g2_wz_leg3 * t143 - g1_wz_leg3 * t220,
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(minus_g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t236),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t240),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t245),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t238),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t242),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t247),
             ],
         ])
     }
@@ -2654,7 +2656,7 @@ impl Planar3Prr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 301 operations (113 additions, 175 multiplications, 13 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 258 intermediates.
+    /// 306 operations (117 additions, 178 multiplications, 11 divisions), 3 square roots, 1 trigonometric pairs, 25 signs, 263 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2681,181 +2683,188 @@ impl Planar3Prr {
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t19 = 0.08 * minus_c23_leg2;
         let t20 = t2 - t19;
-        let minus_s23_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t27 = 0.08 * minus_s23_leg2;
-        let t28 = t3 + t27;
-        let t29 = pose[1] + 0.15;
-        let t32 = 0.8660254037844386 * (pose[0] + t20 + 0.25980762113533157)
-            + 0.5 * (t29 - t28);
-        let t33 = t2 * 2.9411764705882355;
-        let t36 = 8.650519031141869 * (0.1156 - t32 * t32);
-        ::overact::guard::reach(t36, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t36);
+        let t24 = t2 * 0.8660254037844386;
+        let t26 = t24 - t3 * 0.5;
+        let t28 = pose[1] + t26 + 0.15;
+        let t29 = 0.5 * t28;
+        let t31 = 0.8660254037844386 * (pose[0] + t20 + 0.25980762113533157) + t29 - t24;
+        let t34 = 8.650519031141869 * (0.1156 - t31 * t31);
+        ::overact::guard::reach(t34, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t34);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656308, "leg2")?;
-        let minus_g2_wz_leg2 = t33 / minus_s2_leg2;
-        let minus_g1_wz_leg2 = t32 * minus_g2_wz_leg2 - t3;
+        let t36 = 1.0 / minus_s2_leg2;
+        let t37 = 2.9411764705882355 * t36;
+        let minus_g2_wz_leg2 = t2 * t37;
+        let minus_g1_wz_leg2 = t31 * minus_g2_wz_leg2 - t3;
         let t41 = minus_g1_wz_leg2 * actuator_velocities[1];
-        let t48 = 0.8660254037844386 * (pose[0] + t19 - 0.25980762113533157)
-            - 0.5 * (t27 + t29);
-        let t51 = 8.650519031141869 * (0.1156 - t48 * t48);
-        ::overact::guard::reach(t51, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t51);
+        let t44 = pose[0] + t19 - 0.25980762113533157;
+        let t46 = 0.8660254037844386 * t44 - t29;
+        let t49 = 0.5 * t44 + 0.8660254037844386 * t28;
+        let t50 = t49 * t49;
+        let t55 = 8.650519031141869 * (t50 - (t50 + t46 * t46 - 0.1156));
+        ::overact::guard::reach(t55, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t55);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656308, "leg3")?;
-        let t53 = 1.0 / minus_s2_leg3;
-        let minus_g2_wz_leg3 = t53 * t33;
-        let g1_wz_leg3 = t3 + t48 * minus_g2_wz_leg3;
-        let t57 = g1_wz_leg3 * actuator_velocities[2];
-        let t61 = 2.5471335405424664 * t32 - 0.5 * minus_s2_leg2;
-        let t62 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t61 * t62;
-        let t64 = minus_g1_vx_leg2 * actuator_velocities[1];
-        let t68 = 2.5471335405424664 * t48 - 0.5 * minus_s2_leg3;
-        let minus_g1_vx_leg3 = t68 * t53;
-        let t70 = minus_g1_vx_leg3 * actuator_velocities[2];
-        let t71 = actuator_velocities[0] + t64 + t70;
-        let t75 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
+        let minus_g2_vy_leg3 = 1.4705882352941178 / minus_s2_leg3;
+        let t58 = minus_g2_vy_leg3 + minus_g2_vy_leg3;
+        let minus_g2_wz_leg3 = t2 * t58;
+        let g1_wz_leg3 = t3 + t46 * minus_g2_wz_leg3;
+        let t62 = g1_wz_leg3 * actuator_velocities[2];
+        let t66 = 2.5471335405424664 * t31 - 0.5 * minus_s2_leg2;
+        let minus_g1_vx_leg2 = t66 * t36;
+        let t68 = minus_g1_vx_leg2 * actuator_velocities[1];
+        let t72 = 2.5471335405424664 * t46 - 0.5 * minus_s2_leg3;
+        let minus_g1_vx_leg3 = t72 / minus_s2_leg3;
+        let t74 = minus_g1_vx_leg3 * actuator_velocities[2];
+        let t75 = actuator_velocities[0] + t68 + t74;
+        let t79 = minus_g1_vx_leg2 * minus_g1_wz_leg2 - g1_wz_leg1
             - minus_g1_vx_leg3 * g1_wz_leg3;
-        let t79 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
+        let t83 = 1.0 + minus_g1_vx_leg2 * minus_g1_vx_leg2
             + minus_g1_vx_leg3 * minus_g1_vx_leg3;
-        ::overact::guard::platform(t79, 2.5803571428571423, "actuators")?;
-        ::overact::guard::platform(t79, 2.5803571428571423, "actuators")?;
-        let t80 = t75 / t79;
-        let t85 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t32;
-        let minus_g1_vy_leg2 = t85 * t62;
-        let t92 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t48;
-        let g1_vy_leg3 = t92 * t53;
-        let t99 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
+        ::overact::guard::platform(t83, 2.5803571428571423, "actuators")?;
+        let t84 = 1.0 / t83;
+        let t85 = t79 * t84;
+        let t90 = 0.8660254037844386 * minus_s2_leg2 + 1.4705882352941178 * t31;
+        let minus_g1_vy_leg2 = t90 * t36;
+        let t97 = 0.8660254037844386 * minus_s2_leg3 + 1.4705882352941178 * t46;
+        let g1_vy_leg3 = t97 / minus_s2_leg3;
+        let t104 = minus_g1_vy_leg1 + minus_g1_vx_leg2 * minus_g1_vy_leg2
             - minus_g1_vx_leg3 * g1_vy_leg3;
-        let t101 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
-            + g1_vy_leg3 * g1_wz_leg3 - t99 * t80;
-        let t107 = t99 / t79;
-        let t109 = minus_g1_vy_leg1 * minus_g1_vy_leg1
-            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3 - t99 * t107;
-        ::overact::guard::platform(t109, 2.580357142857142, "actuators")?;
-        ::overact::guard::platform(t109, 2.580357142857142, "actuators")?;
-        let t110 = t101 / t109;
-        let t111 = g1_vy_leg3 * actuator_velocities[2];
-        let t112 = minus_g1_vy_leg1 * actuator_velocities[0];
-        let t113 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t117 = t111 - (t112 + t113) + t71 * t107;
-        let t128 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 - t75 * t80 - t101 * t110;
-        ::overact::guard::platform(t128, 0.0192, "actuators")?;
-        ::overact::guard::platform(t128, 0.0192, "actuators")?;
-        let rate_3_leg1 = (t15 - t41 + t57 + t71 * t80 - t110 * t117) / t128;
-        let t130 = t2 * rate_3_leg1;
-        let t131 = rate_3_leg1 * t130;
-        let t132 = t28 * rate_3_leg1;
-        let t133 = rate_3_leg1 * t132;
-        let t134 = t27 * rate_3_leg1;
-        let t135 = rate_3_leg1 * t134;
-        let t136 = t133 - t135;
-        let t141 = t117 / t109 - t110 * rate_3_leg1;
-        let rate_2_leg1 = g2_vy_leg1 * (t141 - t130);
-        let t144 = rate_2_leg1 * rate_2_leg1;
-        let minus_rate_dot_1_leg1 = t131 - minus_g1_vy_leg1 * t136 + t144 * t10;
-        let t147 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
-        let t149 = t20 * rate_3_leg1;
-        let t150 = rate_3_leg1 * t149;
-        let minus_g2_vx_leg2 = 2.5471335405424664 * t62;
-        let t159 = t71 / t79 + t107 * t141 + t80 * rate_3_leg1;
-        let minus_g2_vy_leg2 = 1.4705882352941178 * t62;
-        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t132 - t159)
-            + minus_g2_vy_leg2 * (t141 + t149);
-        let t166 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let rate_dot_1_leg2 = t62 * (t61 * t150 - t85 * t133 - 0.34 * t166);
-        let t170 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let t174 = t19 * rate_3_leg1;
-        let t175 = rate_3_leg1 * t174;
-        let g2_vx_leg3 = 2.5471335405424664 * t53;
-        let minus_g2_vy_leg3 = 1.4705882352941178 * t53;
-        let minus_rate_2_leg3 = g2_vx_leg3 * (t159 + t134)
-            + minus_g2_vy_leg3 * (t141 + t174);
-        let t185 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t53 * (t92 * t135 - t68 * t175 + 0.34 * t185);
-        let t189 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let t195 = t147 + minus_g1_vx_leg2 * t170 + minus_g1_vx_leg3 * t189;
-        let t204 = g1_vy_leg3 * t189
-            - (minus_g1_vy_leg1 * t147 + minus_g1_vy_leg2 * t170) + t107 * t195;
-        let rate_dot_3_leg1 = (g1_wz_leg1 * t147 - minus_g1_wz_leg2 * t170
-            + g1_wz_leg3 * t189 + t80 * t195 - t110 * t204) / t128;
-        let t209 = t136 + t2 * rate_dot_3_leg1;
-        let t210 = 12.5 * t209;
-        let t212 = t131 - t3 * rate_dot_3_leg1;
-        let t213 = 12.5 * t212;
-        let t216 = t204 / t109 - t110 * rate_dot_3_leg1;
-        let t222 = t195 / t79 + t107 * t216 + t80 * rate_dot_3_leg1;
-        let t245 = t216 - t209;
-        let rate_dot_2_leg1 = g2_vy_leg1 * (t245 + t5 * t144);
+        let t106 = minus_g1_vy_leg2 * minus_g1_wz_leg2 - minus_g1_vy_leg1 * g1_wz_leg1
+            + g1_vy_leg3 * g1_wz_leg3 - t104 * t85;
+        let t112 = t104 * t84;
+        let t114 = minus_g1_vy_leg1 * minus_g1_vy_leg1
+            + minus_g1_vy_leg2 * minus_g1_vy_leg2 + g1_vy_leg3 * g1_vy_leg3
+            - t104 * t112;
+        ::overact::guard::platform(t114, 2.580357142857142, "actuators")?;
+        ::overact::guard::platform(t114, 2.580357142857142, "actuators")?;
+        let t115 = 1.0 / t114;
+        let t116 = t106 * t115;
+        let t117 = g1_vy_leg3 * actuator_velocities[2];
+        let t118 = minus_g1_vy_leg1 * actuator_velocities[0];
+        let t119 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t123 = t117 - (t118 + t119) + t75 * t112;
+        let t134 = g1_wz_leg1 * g1_wz_leg1 + minus_g1_wz_leg2 * minus_g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 - t79 * t85 - t106 * t116;
+        ::overact::guard::platform(t134, 0.0192, "actuators")?;
+        ::overact::guard::platform(t134, 0.0192, "actuators")?;
+        let rate_3_leg1 = (t15 - t41 + t62 + t75 * t85 - t116 * t123) / t134;
+        let t136 = t2 * rate_3_leg1;
+        let t137 = rate_3_leg1 * t136;
+        let t138 = t3 + t26;
+        let t139 = t138 * rate_3_leg1;
+        let t140 = rate_3_leg1 * t139;
+        let t141 = t26 * rate_3_leg1;
+        let t142 = rate_3_leg1 * t141;
+        let t143 = t140 - t142;
+        let t148 = t115 * t123 - t116 * rate_3_leg1;
+        let rate_2_leg1 = g2_vy_leg1 * (t148 - t136);
+        let t151 = rate_2_leg1 * rate_2_leg1;
+        let minus_rate_dot_1_leg1 = t137 - minus_g1_vy_leg1 * t143 + t151 * t10;
+        let t154 = actuator_accelerations[0] + minus_rate_dot_1_leg1;
+        let t156 = t20 * rate_3_leg1;
+        let t157 = rate_3_leg1 * t156;
+        let minus_g2_vx_leg2 = 2.5471335405424664 * t36;
+        let t166 = t75 * t84 + t112 * t148 + t85 * rate_3_leg1;
+        let minus_g2_vy_leg2 = 1.4705882352941178 * t36;
+        let minus_rate_2_leg2 = minus_g2_vx_leg2 * (t139 - t166)
+            + minus_g2_vy_leg2 * (t148 + t156);
+        let t173 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let rate_dot_1_leg2 = t36 * (t66 * t157 - t90 * t140 - 0.34 * t173);
+        let t177 = actuator_accelerations[1] - rate_dot_1_leg2;
+        let t181 = t19 * rate_3_leg1;
+        let t182 = rate_3_leg1 * t181;
+        let g2_vx_leg3 = 2.5471335405424664 / minus_s2_leg3;
+        let minus_rate_2_leg3 = g2_vx_leg3 * (t166 + t141)
+            + minus_g2_vy_leg3 * (t148 + t181);
+        let t191 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let minus_rate_dot_1_leg3 = (t97 * t142 - t72 * t182 + 0.34 * t191)
+            / minus_s2_leg3;
+        let t195 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let t201 = t154 + minus_g1_vx_leg2 * t177 + minus_g1_vx_leg3 * t195;
+        let t210 = g1_vy_leg3 * t195
+            - (minus_g1_vy_leg1 * t154 + minus_g1_vy_leg2 * t177) + t112 * t201;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t154 - minus_g1_wz_leg2 * t177
+            + g1_wz_leg3 * t195 + t85 * t201 - t116 * t210) / t134;
+        let t215 = t143 + t2 * rate_dot_3_leg1;
+        let t216 = 12.5 * t215;
+        let t218 = t137 - t3 * rate_dot_3_leg1;
+        let t219 = 12.5 * t218;
+        let t222 = t115 * t210 - t116 * rate_dot_3_leg1;
+        let t228 = t84 * t201 + t112 * t222 + t85 * rate_dot_3_leg1;
+        let t251 = t222 - t215;
+        let rate_dot_2_leg1 = g2_vy_leg1 * (t251 + t5 * t151);
         let minus_g2_wz_leg1 = t2 * g2_vy_leg1;
-        let t260 = 0.5 * (t216 + t20 * rate_dot_3_leg1 + t133);
-        let t261 = 0.8660254037844386 * (t28 * rate_dot_3_leg1 - t222 - t150) + t260;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t62 * (t261 + t32 * t166);
-        let t275 = 0.8660254037844386 * (t222 + t27 * rate_dot_3_leg1 + t175) + t260
-            - 0.8660254037844386 * t212;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t53 * (t275 - t48 * t185);
-        let t282 = 2.9411764705882355 * t245;
-        let t289 = 2.9411764705882355 * t261;
-        let t299 = 2.9411764705882355 * t275;
-        let t317 = rate_3_leg1 - rate_2_leg1;
-        let t321 = minus_rate_2_leg2 + rate_3_leg1;
-        let t326 = minus_rate_2_leg3 + rate_3_leg1;
+        let t265 = 0.5 * (t222 + t20 * rate_dot_3_leg1 + t140);
+        let t266 = 0.8660254037844386 * (t138 * rate_dot_3_leg1 - t228 - t157) + t265;
+        let minus_rate_dot_2_leg2 = t37 * (t266 + t31 * t173);
+        let t279 = 0.8660254037844386 * (t228 + t26 * rate_dot_3_leg1 + t182) + t265
+            - 0.8660254037844386 * t218;
+        let minus_rate_dot_2_leg3 = t58 * (t279 - t46 * t191);
+        let t286 = 2.9411764705882355 * t251;
+        let t291 = minus_s2_leg2 * minus_g2_wz_leg2;
+        let t294 = 2.9411764705882355 * t266;
+        let t304 = 2.9411764705882355 * t279;
+        let t322 = rate_3_leg1 - rate_2_leg1;
+        let t326 = minus_rate_2_leg2 + rate_3_leg1;
+        let t331 = minus_rate_2_leg3 + rate_3_leg1;
         Ok([
             [
-                0.0, -t210, t213, -t222, -actuator_accelerations[0],
+                0.0, -t216, t219, -t228, -actuator_accelerations[0],
                 -(minus_g1_vx_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t64,
-                -t70, -::overact::math::sign(actuator_velocities[0]),
+                -(minus_g1_vx_leg3 * actuator_accelerations[2]), -actuator_velocities[0], -t68,
+                -t74, -::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vx_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vx_leg3, actuator_velocities[2]), -1.0,
                 -minus_g1_vx_leg2, -minus_g1_vx_leg3, 0.0, minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t282,
-                minus_g1_vx_leg2 * t289 - 2.5471335405424664 * actuator_accelerations[1],
-                minus_g1_vx_leg3 * t299 + 2.5471335405424664 * actuator_accelerations[2], 0.0,
+                -(g2_vx_leg3 * minus_rate_dot_2_leg3), -t286,
+                minus_g1_vx_leg2 * t294 - 2.5471335405424664 * actuator_accelerations[1],
+                minus_g1_vx_leg3 * t304 + 2.5471335405424664 * actuator_accelerations[2], 0.0,
                 ::overact::math::signed(minus_g2_vx_leg2, minus_rate_2_leg2),
                 -::overact::math::signed(g2_vx_leg3, minus_rate_2_leg3), 0.0,
-                ::overact::math::signed(minus_g2_vx_leg2, t321),
-                -::overact::math::signed(g2_vx_leg3, t326),
+                ::overact::math::signed(minus_g2_vx_leg2, t326),
+                -::overact::math::signed(g2_vx_leg3, t331),
             ],
             [
-                0.0, -t213, -t210, t216, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
+                0.0, -t219, -t216, t222, -(minus_g1_vy_leg1 * actuator_accelerations[0]),
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                g1_vy_leg3 * actuator_accelerations[2], -t112, -t113, t111,
+                g1_vy_leg3 * actuator_accelerations[2], -t118, -t119, t117,
                 -::overact::math::signed(minus_g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vy_leg3, actuator_velocities[2]), -minus_g1_vy_leg1,
                 -minus_g1_vy_leg2, g1_vy_leg3, g2_vy_leg1 * rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
                 2.9411764705882355
-                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t245),
-                minus_g1_vy_leg2 * t289 - 1.4705882352941178 * actuator_accelerations[1],
-                -(g1_vy_leg3 * t299 + 1.4705882352941178 * actuator_accelerations[2]),
+                    * (actuator_accelerations[0] - minus_g1_vy_leg1 * t251),
+                minus_g1_vy_leg2 * t294 - 1.4705882352941178 * actuator_accelerations[1],
+                -(g1_vy_leg3 * t304 + 1.4705882352941178 * actuator_accelerations[2]),
                 ::overact::math::signed(g2_vy_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_vy_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_vy_leg3, minus_rate_2_leg3),
-                -::overact::math::signed(g2_vy_leg1, t317),
-                ::overact::math::signed(minus_g2_vy_leg2, t321),
-                ::overact::math::signed(minus_g2_vy_leg3, t326),
+                -::overact::math::signed(g2_vy_leg1, t322),
+                ::overact::math::signed(minus_g2_vy_leg2, t326),
+                ::overact::math::signed(minus_g2_vy_leg3, t331),
             ],
             [
-                rate_dot_3_leg1, c_phi * t216 + s_phi * t222, c_phi * t222 - s_phi * t216, 0.0,
+                rate_dot_3_leg1, c_phi * t222 + s_phi * t228, c_phi * t228 - s_phi * t222, 0.0,
                 g1_wz_leg1 * actuator_accelerations[0],
                 -(minus_g1_wz_leg2 * actuator_accelerations[1]),
-                g1_wz_leg3 * actuator_accelerations[2], t15, -t41, t57,
+                g1_wz_leg3 * actuator_accelerations[2], t15, -t41, t62,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 -minus_g1_wz_leg2, g1_wz_leg3, -(minus_g2_wz_leg1 * rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
-                g1_wz_leg1 * t282 - actuator_accelerations[0] * t33,
-                minus_g1_wz_leg2 * t289 - actuator_accelerations[1] * t33,
-                -(actuator_accelerations[2] * t33 + g1_wz_leg3 * t299),
+                g1_wz_leg1 * t286 - actuator_accelerations[0] * t291,
+                minus_g1_wz_leg2 * t294 - actuator_accelerations[1] * t291,
+                -(actuator_accelerations[2] * t291 + g1_wz_leg3 * t304),
                 -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(minus_g2_wz_leg2, minus_rate_2_leg2),
                 ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t317),
-                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t321),
-                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t326),
+                ::overact::math::signed(minus_g2_wz_leg1 + 1.0, t322),
+                ::overact::math::signed(minus_g2_wz_leg2 + 1.0, t326),
+                ::overact::math::signed(minus_g2_wz_leg3 + 1.0, t331),
             ],
         ])
     }

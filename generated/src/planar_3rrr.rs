@@ -1203,11 +1203,11 @@ impl Planar3Rrr {
         let t251 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
             + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t212 * t249;
         let t252 = t251 * t221;
-        let t270 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+        let t261 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
             + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t248 * t249 - t251 * t252;
-        ::overact::guard::platform(t270, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t261, 0.4800000000000003, "actuators")?;
         let t271 = (g1_wz_leg1 * t129 + g1_wz_leg2 * t80 - minus_g1_wz_leg3 * t198
-            - t200 * t249 - t252 * t228) / t270;
+            - t200 * t249 - t252 * t228) / t261;
         let t273 = t221 * t228 - t252 * t271;
         Ok([t200 * t206 + t213 * t273 - t249 * t271, t273, t271])
     }
@@ -1665,7 +1665,7 @@ impl Planar3Rrr {
     /// Output: 3 x 37.
     /// Columns: `PARAMETERS`.
     ///
-    /// 472 operations (179 additions, 281 multiplications, 12 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 409 intermediates.
+    /// 469 operations (178 additions, 275 multiplications, 16 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 406 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1703,238 +1703,237 @@ impl Planar3Rrr {
         let t33 = g1_wz_leg1 * actuator_velocities[0];
         let minus_g2_vx_leg1 = t15 * t18;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t42 = 0.1 * minus_c123_leg2;
-        let t43 = t2 - t42;
-        let t45 = pose[0] + t43 + 0.3031088913245535;
-        let t47 = 0.8660254037844386 * s_phi;
-        let minus_s123_leg2 = t47 - 0.5 * c_phi;
-        let t50 = 0.1 * minus_s123_leg2;
-        let t51 = t5 + t50;
-        let t53 = pose[1] + 0.175 - t51;
-        let t55 = 0.5 * t45 - 0.8660254037844386 * t53;
-        let t58 = 0.8660254037844386 * t45 + 0.5 * t53;
-        let t61 = t58 * t58 + t55 * t55;
-        let t63 = 0.04 / t61 - 0.25;
-        ::overact::guard::reach(t63, "leg2")?;
-        let t64 = ::overact::math::sqrt(t63);
-        let t67 = t55 * t64 + 0.5 * t58;
-        let t71 = 0.5 * t55 - t58 * t64;
-        let t73 = 4.330127018922193 * t67 + 2.5 * t71;
-        let t74 = t61 * t64;
-        ::overact::guard::leg(t74, 0.03903123748998999, "leg2")?;
-        let t75 = 0.2 / t74;
-        let g1_vx_leg2 = t73 * t75;
-        let t80 = pose[0] + t42 - 0.3031088913245535;
-        let t82 = t53 * 5.0;
-        let t83 = t47 + t82;
-        let t84 = 0.1 * t83;
-        let t85 = 0.8660254037844386 * t80 - t84;
-        let t90 = 0.5 * t80 + 0.8660254037844386 * (t84 + t84);
-        let t93 = t85 * t85 + t90 * t90;
-        let t95 = 0.04 / t93 - 0.25;
-        ::overact::guard::reach(t95, "leg3")?;
-        let t96 = ::overact::math::sqrt(t95);
-        let t98 = 0.5 * t85 - t90 * t96;
-        let t102 = 0.5 * t90 + t85 * t96;
-        let t104 = 4.330127018922193 * t98 + 2.5 * t102;
-        let t105 = t93 * t96;
-        ::overact::guard::leg(t105, 0.03903123748998999, "leg3")?;
-        let t106 = 0.2 / t105;
-        let g1_vx_leg3 = t104 * t106;
-        let t109 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t109, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t109, 39.38461538461539, "actuators")?;
-        let t110 = 1.0 / t109;
-        let t114 = 4.330127018922193 * t71 - 2.5 * t67;
-        let minus_g1_vy_leg2 = t114 * t75;
-        let g1_wz_leg2 = t51 * g1_vx_leg2 - t43 * minus_g1_vy_leg2;
-        let t118 = g1_wz_leg2 * actuator_velocities[1];
-        let t122 = 2.5 * t98 - 4.330127018922193 * t102;
-        let minus_g1_vy_leg3 = t122 * t106;
-        let minus_g1_wz_leg3 = t42 * minus_g1_vy_leg3 + t50 * g1_vx_leg3;
-        let t127 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t129 = g1_vx_leg2 * actuator_velocities[1];
-        let t131 = g1_vx_leg3 * actuator_velocities[2];
-        let t132 = t129 - t31 + t131;
-        let t137 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t41 = 0.1 * minus_c123_leg2;
+        let t42 = t2 - t41;
+        let t44 = pose[0] + t42 + 0.3031088913245535;
+        let t46 = t2 * 0.8660254037844386;
+        let t48 = t46 + 0.5 * t5;
+        let t50 = pose[1] - t48 + 0.175;
+        let t52 = 0.5 * t44 - 0.8660254037844386 * t50;
+        let t54 = 0.5 * t50;
+        let t55 = 0.8660254037844386 * t44 + t54;
+        let t58 = t55 * t55 + t52 * t52;
+        let t60 = 0.04 / t58 - 0.25;
+        ::overact::guard::reach(t60, "leg2")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t64 = t52 * t61 + 0.5 * t55;
+        let t68 = 0.5 * t52 - t55 * t61;
+        let t70 = 4.330127018922193 * t64 + 2.5 * t68;
+        let t71 = t58 * t61;
+        ::overact::guard::leg(t71, 0.03903123748998999, "leg2")?;
+        let t72 = 0.2 / t71;
+        let g1_vx_leg2 = t70 * t72;
+        let t77 = 4.330127018922193 * t68 - 2.5 * t64;
+        let minus_g1_vy_leg2 = t77 * t72;
+        let g1_wz_leg2 = t48 * g1_vx_leg2 - t42 * minus_g1_vy_leg2;
+        let t81 = g1_wz_leg2 * actuator_velocities[1];
+        let t84 = pose[0] + t41 - 0.3031088913245535;
+        let t86 = t46 + t54;
+        let t87 = 0.8660254037844386 * t84 - t86;
+        let t90 = t86 + t86;
+        let t92 = 0.5 * t84 + 0.8660254037844386 * t90;
+        let t95 = t87 * t87 + t92 * t92;
+        let t97 = 0.04 / t95 - 0.25;
+        ::overact::guard::reach(t97, "leg3")?;
+        let t98 = ::overact::math::sqrt(t97);
+        let t100 = 0.5 * t87 - t92 * t98;
+        let t104 = 0.5 * t92 + t87 * t98;
+        let t106 = 2.5 * t100 - 4.330127018922193 * t104;
+        let t107 = t95 * t98;
+        ::overact::guard::leg(t107, 0.03903123748998999, "leg3")?;
+        let t108 = 0.2 / t107;
+        let minus_g1_vy_leg3 = t106 * t108;
+        let t111 = t48 - t5;
+        let t114 = 4.330127018922193 * t100 + 2.5 * t104;
+        let g1_vx_leg3 = t114 * t108;
+        let minus_g1_wz_leg3 = t41 * minus_g1_vy_leg3 + t111 * g1_vx_leg3;
+        let t118 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let t120 = g1_vx_leg2 * actuator_velocities[1];
+        let t122 = g1_vx_leg3 * actuator_velocities[2];
+        let t123 = t120 - t31 + t122;
+        let t128 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t138 = t137 * t110;
-        let t150 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        let t133 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t133, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t133, 39.38461538461539, "actuators")?;
+        let t134 = t128 / t133;
+        let t146 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t152 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t150 * t138;
-        let t158 = t150 * t110;
-        let t160 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t150 * t158;
-        ::overact::guard::platform(t160, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t160, 39.384615384615394, "actuators")?;
-        let t161 = t152 / t160;
-        let t162 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t164 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t167 = t32 - t162 - t164 + t132 * t158;
-        let t178 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t137 * t138 - t152 * t161;
-        ::overact::guard::platform(t178, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t178, 0.4800000000000003, "actuators")?;
-        let rate_3_leg1 = (t33 + t118 - t127 - t132 * t138 - t161 * t167) / t178;
-        let t180 = t43 * rate_3_leg1;
-        let t181 = rate_3_leg1 * t180;
-        let t183 = t51 * rate_3_leg1;
-        let t184 = rate_3_leg1 * t183;
-        let t187 = t114 + t82;
-        let minus_g2_vy_leg2 = t187 * t75;
-        let t191 = t167 / t160 - t161 * rate_3_leg1;
-        let t195 = t45 * 5.0 - t73;
-        let minus_g2_vx_leg2 = t195 * t75;
-        let t201 = t132 * t110 + t158 * t191 - t138 * rate_3_leg1;
-        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t191 + t180)
-            + minus_g2_vx_leg2 * (t201 + t183);
-        let t205 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t207 = t73 * t181 + t114 * t184 - 0.2 * t205;
-        let t208 = actuator_velocities[1] * actuator_velocities[1];
-        let t210 = 2.5 * (t61 - 0.08);
-        let minus_rate_dot_1_leg2 = t75 * (t207 - t208 * t210);
-        let t214 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t216 = t5 * rate_3_leg1;
+        let t148 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t146 * t134;
+        let t154 = t146 / t133;
+        let t156 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t146 * t154;
+        ::overact::guard::platform(t156, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t156, 39.384615384615394, "actuators")?;
+        let t157 = t148 / t156;
+        let t158 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t160 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t163 = t32 - t158 - t160 + t123 * t154;
+        let t174 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t128 * t134 - t148 * t157;
+        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
+        let rate_3_leg1 = (t33 + t81 - t118 - t123 * t134 - t157 * t163) / t174;
+        let t176 = t42 * rate_3_leg1;
+        let t177 = rate_3_leg1 * t176;
+        let t179 = t48 * rate_3_leg1;
+        let t180 = rate_3_leg1 * t179;
+        let t184 = t77 + t50 * 5.0;
+        let minus_g2_vy_leg2 = t184 * t72;
+        let t188 = t163 / t156 - t157 * rate_3_leg1;
+        let t192 = t44 * 5.0 - t70;
+        let minus_g2_vx_leg2 = t192 * t72;
+        let t198 = t123 / t133 + t154 * t188 - t134 * rate_3_leg1;
+        let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t188 + t176)
+            + minus_g2_vx_leg2 * (t198 + t179);
+        let t202 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t204 = t70 * t177 + t77 * t180 - 0.2 * t202;
+        let t205 = actuator_velocities[1] * actuator_velocities[1];
+        let t207 = 2.5 * (t58 - 0.08);
+        let minus_rate_dot_1_leg2 = t72 * (t204 - t205 * t207);
+        let t211 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t213 = t5 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
-        let t220 = t2 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t201 - t216)
-            + minus_g2_vy_leg1 * (t191 - t220);
-        let t224 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t226 = rate_3_leg1 * t220;
-        let t228 = rate_3_leg1 * t216;
-        let t231 = 0.04 * t224 - (t16 * t226 + t24 * t228);
-        let t232 = actuator_velocities[0] * actuator_velocities[0];
-        let t233 = t10 - 0.08;
-        let t234 = 0.5 * t233;
-        let rate_dot_1_leg1 = t18 * (t231 + t232 * t234);
-        let t238 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t241 = t50 * rate_3_leg1;
+        let t217 = t2 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t198 - t213)
+            + minus_g2_vy_leg1 * (t188 - t217);
+        let t221 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t223 = rate_3_leg1 * t217;
+        let t225 = rate_3_leg1 * t213;
+        let t228 = 0.04 * t221 - (t16 * t223 + t24 * t225);
+        let t229 = actuator_velocities[0] * actuator_velocities[0];
+        let t230 = t10 - 0.08;
+        let t231 = 0.5 * t230;
+        let rate_dot_1_leg1 = t18 * (t228 + t229 * t231);
+        let t235 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t238 = t111 * rate_3_leg1;
+        let t239 = rate_3_leg1 * t238;
+        let t241 = t41 * rate_3_leg1;
         let t242 = rate_3_leg1 * t241;
-        let t244 = t42 * rate_3_leg1;
-        let t245 = rate_3_leg1 * t244;
-        let t248 = t122 + t83;
-        let minus_g2_vy_leg3 = t248 * t106;
-        let t253 = t80 * 5.0 - t104;
-        let minus_g2_vx_leg3 = t253 * t106;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t191 + t244)
-            + minus_g2_vx_leg3 * (t201 - t241);
-        let t258 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t260 = t122 * t242 - t104 * t245 + 0.2 * t258;
-        let t261 = actuator_velocities[2] * actuator_velocities[2];
-        let t263 = 2.5 * (t93 - 0.08);
-        let rate_dot_1_leg3 = t106 * (t260 + t261 * t263);
-        let t267 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t269 = g1_vx_leg2 * t214 - minus_g1_vx_leg1 * t238 + g1_vx_leg3 * t267;
-        let t277 = g1_vy_leg1 * t238 - minus_g1_vy_leg2 * t214 - minus_g1_vy_leg3 * t267
-            + t158 * t269;
-        let rate_dot_3_leg1 = (g1_wz_leg1 * t238 + g1_wz_leg2 * t214
-            - minus_g1_wz_leg3 * t267 - t138 * t269 - t161 * t277) / t178;
-        let t290 = t277 / t160 - t161 * rate_dot_3_leg1;
-        let t294 = t110 * t269 + t158 * t290 - t138 * rate_dot_3_leg1;
-        let t296 = t226 - t5 * rate_dot_3_leg1;
-        let t300 = t228 + t2 * rate_dot_3_leg1;
-        let t305 = t15 * (t294 + t296) + t23 * (t290 - t300) + 0.04 * t232;
-        let minus_rate_dot_2_leg1 = t18 * (t305 + t224 * t234);
+        let t245 = t90 / t107;
+        let minus_g2_vy_leg3 = minus_g1_vy_leg3 + t245;
+        let t250 = t84 * 5.0 - t114;
+        let minus_g2_vx_leg3 = t250 * t108;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t188 + t241)
+            + minus_g2_vx_leg3 * (t198 - t238);
+        let t255 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t257 = t106 * t239 - t114 * t242 + 0.2 * t255;
+        let t258 = actuator_velocities[2] * actuator_velocities[2];
+        let t260 = 2.5 * (t95 - 0.08);
+        let rate_dot_1_leg3 = t108 * (t257 + t258 * t260);
+        let t264 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t266 = g1_vx_leg2 * t211 - minus_g1_vx_leg1 * t235 + g1_vx_leg3 * t264;
+        let t274 = g1_vy_leg1 * t235 - minus_g1_vy_leg2 * t211 - minus_g1_vy_leg3 * t264
+            + t154 * t266;
+        let rate_dot_3_leg1 = (g1_wz_leg1 * t235 + g1_wz_leg2 * t211
+            - minus_g1_wz_leg3 * t264 - t134 * t266 - t157 * t274) / t174;
+        let t287 = t274 / t156 - t157 * rate_dot_3_leg1;
+        let t291 = t266 / t133 + t154 * t287 - t134 * rate_dot_3_leg1;
+        let t293 = t223 - t5 * rate_dot_3_leg1;
+        let t297 = t225 + t2 * rate_dot_3_leg1;
+        let t302 = t15 * (t291 + t293) + t23 * (t287 - t297) + 0.04 * t229;
+        let minus_rate_dot_2_leg1 = t18 * (t302 + t221 * t231);
         let g2_wz_leg1 = t2 * minus_g2_vy_leg1 + t5 * minus_g2_vx_leg1;
-        let t315 = 5.0 * t17;
-        let t317 = 2.5 * t233;
-        let t319 = t224 * t315 + t317 * minus_rate_dot_2_leg1;
-        let t323 = t232 * t315 + actuator_accelerations[0] * t317;
-        let t334 = 5.0 * (t231 + t17 * t238);
-        let t336 = 5.0 * t305;
-        let t349 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t355 = minus_rate_2_leg1 + rate_3_leg1;
-        let t360 = g1_vx_leg2 * actuator_accelerations[1];
-        let t361 = minus_g1_vy_leg2 * actuator_accelerations[1];
-        let t362 = g1_wz_leg2 * actuator_accelerations[1];
-        let t376 = t195 * (t294 + t51 * rate_dot_3_leg1 - t181)
-            + t187 * (t290 + t43 * rate_dot_3_leg1 + t184) + 0.2 * t208;
-        let minus_rate_dot_2_leg2 = t75 * (t376 + t205 * t210);
-        let minus_g2_wz_leg2 = t43 * minus_g2_vy_leg2 + t51 * minus_g2_vx_leg2;
-        let t386 = 5.0 * t74;
-        let t389 = t205 * t386 + t210 * minus_rate_dot_2_leg2;
-        let t393 = t208 * t386 + actuator_accelerations[1] * t210;
-        let t404 = t207 - t214 * t386;
-        let t418 = -(minus_rate_2_leg2 + actuator_velocities[1]);
-        let t424 = rate_3_leg1 + minus_rate_2_leg2;
-        let t429 = g1_vx_leg3 * actuator_accelerations[2];
-        let t430 = minus_g1_vy_leg3 * actuator_accelerations[2];
-        let t431 = minus_g1_wz_leg3 * actuator_accelerations[2];
-        let t445 = t248 * (t290 + t42 * rate_dot_3_leg1 - t242)
-            + t253 * (t294 - t50 * rate_dot_3_leg1 - t245) + 0.2 * t261;
-        let minus_rate_dot_2_leg3 = t106 * (t445 + t258 * t263);
-        let g2_wz_leg3 = t50 * minus_g2_vx_leg3 - t42 * minus_g2_vy_leg3;
-        let t456 = 5.0 * t105;
-        let t458 = t263 * minus_rate_dot_2_leg3 + t258 * t456;
-        let t462 = t261 * t456 + actuator_accelerations[2] * t263;
-        let t472 = t260 + t267 * t456;
-        let t487 = -(minus_rate_2_leg3 + actuator_velocities[2]);
-        let t493 = rate_3_leg1 + minus_rate_2_leg3;
-        let t498 = 10.0 * t300;
-        let t499 = 10.0 * t296;
+        let t312 = 5.0 * t17;
+        let t314 = 2.5 * t230;
+        let t316 = t221 * t312 + t314 * minus_rate_dot_2_leg1;
+        let t320 = t229 * t312 + actuator_accelerations[0] * t314;
+        let t331 = 5.0 * (t228 + t17 * t235);
+        let t333 = 5.0 * t302;
+        let t346 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t352 = minus_rate_2_leg1 + rate_3_leg1;
+        let t357 = g1_vx_leg2 * actuator_accelerations[1];
+        let t358 = minus_g1_vy_leg2 * actuator_accelerations[1];
+        let t359 = g1_wz_leg2 * actuator_accelerations[1];
+        let t373 = t192 * (t291 + t48 * rate_dot_3_leg1 - t177)
+            + t184 * (t287 + t42 * rate_dot_3_leg1 + t180) + 0.2 * t205;
+        let minus_rate_dot_2_leg2 = t72 * (t373 + t202 * t207);
+        let minus_g2_wz_leg2 = t42 * minus_g2_vy_leg2 + t48 * minus_g2_vx_leg2;
+        let t383 = 5.0 * t71;
+        let t386 = t202 * t383 + t207 * minus_rate_dot_2_leg2;
+        let t390 = t205 * t383 + actuator_accelerations[1] * t207;
+        let t401 = t204 - t211 * t383;
+        let t415 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t421 = rate_3_leg1 + minus_rate_2_leg2;
+        let t426 = g1_vx_leg3 * actuator_accelerations[2];
+        let t427 = minus_g1_vy_leg3 * actuator_accelerations[2];
+        let t428 = minus_g1_wz_leg3 * actuator_accelerations[2];
+        let t432 = 5.0 * t107;
+        let t442 = minus_g2_vy_leg3 * t432 * (t287 + t41 * rate_dot_3_leg1 - t239)
+            + t250 * (t291 - t111 * rate_dot_3_leg1 - t242);
+        let t444 = t442 + 0.2 * t258;
+        let minus_rate_dot_2_leg3 = t108 * (t444 + t255 * t260);
+        let g2_wz_leg3 = t111 * minus_g2_vx_leg3 - t41 * minus_g2_vy_leg3;
+        let t456 = t260 * minus_rate_dot_2_leg3 + t255 * t432;
+        let t460 = t258 * t432 + actuator_accelerations[2] * t260;
+        let t470 = t257 + t264 * t432;
+        let t485 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t490 = rate_3_leg1 + minus_rate_2_leg3;
+        let t495 = 10.0 * t297;
+        let t496 = 10.0 * t293;
         Ok([
             [
                 -t20, -t20, -t31,
                 -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 -minus_g1_vx_leg1, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
-                minus_g1_vx_leg1 * t319 - minus_g2_vx_leg1 * t323,
-                minus_g2_vx_leg1 * t334 - minus_g1_vx_leg1 * t336, -(0.04 * t20),
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t349),
-                ::overact::math::signed(minus_g2_vx_leg1, t355), t360, t360, t129,
+                minus_g1_vx_leg1 * t316 - minus_g2_vx_leg1 * t320,
+                minus_g2_vx_leg1 * t331 - minus_g1_vx_leg1 * t333, -(0.04 * t20),
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t346),
+                ::overact::math::signed(minus_g2_vx_leg1, t352), t357, t357, t120,
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]), g1_vx_leg2,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2,
-                -(g1_vx_leg2 * t389 + minus_g2_vx_leg2 * t393),
-                g1_vx_leg2 * t376 - minus_g2_vx_leg2 * t404, 0.04 * t360,
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t418),
-                ::overact::math::signed(minus_g2_vx_leg2, t424), t429, t429, t131,
+                -(g1_vx_leg2 * t386 + minus_g2_vx_leg2 * t390),
+                g1_vx_leg2 * t373 - minus_g2_vx_leg2 * t401, 0.04 * t357,
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t415),
+                ::overact::math::signed(minus_g2_vx_leg2, t421), t426, t426, t122,
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), g1_vx_leg3,
                 minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                -(g1_vx_leg3 * t458 + minus_g2_vx_leg3 * t462),
-                minus_g2_vx_leg3 * t472 + g1_vx_leg3 * t445, 0.04 * t429,
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t487),
-                ::overact::math::signed(minus_g2_vx_leg3, t493), 0.0, -t498, t499, t294,
+                -(g1_vx_leg3 * t456 + minus_g2_vx_leg3 * t460),
+                minus_g2_vx_leg3 * t470 + g1_vx_leg3 * t444, 0.04 * t426,
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t485),
+                ::overact::math::signed(minus_g2_vx_leg3, t490), 0.0, -t495, t496, t291,
             ],
             [
                 t26, t26, t32, ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 g1_vy_leg1, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
-                -(g1_vy_leg1 * t319 + minus_g2_vy_leg1 * t323),
-                g1_vy_leg1 * t336 + minus_g2_vy_leg1 * t334, 0.04 * t26,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t349),
-                ::overact::math::signed(minus_g2_vy_leg1, t355), -t361, -t361, -t162,
+                -(g1_vy_leg1 * t316 + minus_g2_vy_leg1 * t320),
+                g1_vy_leg1 * t333 + minus_g2_vy_leg1 * t331, 0.04 * t26,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t346),
+                ::overact::math::signed(minus_g2_vy_leg1, t352), -t358, -t358, -t158,
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -minus_g1_vy_leg2, minus_g2_vy_leg2 * minus_rate_dot_2_leg2,
-                minus_g1_vy_leg2 * t389 - minus_g2_vy_leg2 * t393,
-                -(minus_g2_vy_leg2 * t404 + minus_g1_vy_leg2 * t376), -(0.04 * t361),
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t418),
-                ::overact::math::signed(minus_g2_vy_leg2, t424), -t430, -t430, -t164,
+                minus_g1_vy_leg2 * t386 - minus_g2_vy_leg2 * t390,
+                -(minus_g2_vy_leg2 * t401 + minus_g1_vy_leg2 * t373), -(0.04 * t358),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t415),
+                ::overact::math::signed(minus_g2_vy_leg2, t421), -t427, -t427, -t160,
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]),
                 -minus_g1_vy_leg3, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                minus_g1_vy_leg3 * t458 - minus_g2_vy_leg3 * t462,
-                minus_g2_vy_leg3 * t472 - minus_g1_vy_leg3 * t445, -(0.04 * t430),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t487),
-                ::overact::math::signed(minus_g2_vy_leg3, t493), 0.0, -t499, -t498, t290,
+                minus_g1_vy_leg3 * t456 - minus_g2_vy_leg3 * t460,
+                minus_g2_vy_leg3 * t470 - minus_g1_vy_leg3 * t444, -(0.04 * t427),
+                -::overact::math::signed(t245, t485),
+                ::overact::math::signed(minus_g2_vy_leg3, t490), 0.0, -t496, -t495, t287,
             ],
             [
                 t30, t30, t33, ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 g1_wz_leg1, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
-                g2_wz_leg1 * t323 - g1_wz_leg1 * t319, g1_wz_leg1 * t336 - g2_wz_leg1 * t334,
-                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t349),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t355), t362, t362, t118,
+                g2_wz_leg1 * t320 - g1_wz_leg1 * t316, g1_wz_leg1 * t333 - g2_wz_leg1 * t331,
+                0.04 * t30, -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t346),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t352), t359, t359, t81,
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]), g1_wz_leg2,
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
-                -(minus_g2_wz_leg2 * t393 + g1_wz_leg2 * t389),
-                g1_wz_leg2 * t376 - minus_g2_wz_leg2 * t404, 0.04 * t362,
-                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t418),
-                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t424), -t431, -t431, -t127,
+                -(minus_g2_wz_leg2 * t390 + g1_wz_leg2 * t386),
+                g1_wz_leg2 * t373 - minus_g2_wz_leg2 * t401, 0.04 * t359,
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t415),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t421), -t428, -t428, -t118,
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]),
                 -minus_g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg3 * t462 + minus_g1_wz_leg3 * t458,
-                -(minus_g1_wz_leg3 * t445 + g2_wz_leg3 * t472), -(0.04 * t431),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t487),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t493), rate_dot_3_leg1,
-                c_phi * t290 - s_phi * t294, -(s_phi * t290 + c_phi * t294), 0.0,
+                g2_wz_leg3 * t460 + minus_g1_wz_leg3 * t456,
+                -(minus_g1_wz_leg3 * t444 + g2_wz_leg3 * t470), -(0.04 * t428),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t485),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t490), rate_dot_3_leg1,
+                c_phi * t287 - s_phi * t291, -(s_phi * t287 + c_phi * t291), 0.0,
             ],
         ])
     }
@@ -2693,7 +2692,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 321 operations (121 additions, 194 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 279 intermediates.
+    /// 321 operations (120 additions, 195 multiplications, 6 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 279 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2745,8 +2744,7 @@ impl Planar3Rrr {
         let t75 = t5 - t74;
         let t77 = pose[0] + t75 + 0.3031088913245535;
         let t78 = 0.5 * t77;
-        let t79 = 0.8660254037844386 * s_phi;
-        let minus_s123_leg2 = t79 - 0.5 * c_phi;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
         let t82 = 0.1 * minus_s123_leg2;
         let t83 = t2 + t82;
         let t84 = pose[1] + 0.175;
@@ -2770,8 +2768,7 @@ impl Planar3Rrr {
         let t116 = acceleration[1] + t75 * acceleration[2] + twist[2] * t114;
         let t120 = t75 * twist[2];
         let t122 = acceleration[0] + t83 * acceleration[2] - twist[2] * t120;
-        let t125 = 10.0 * t89;
-        let t126 = t111 + t125;
+        let t126 = t111 + 10.0 * t89;
         let minus_g2_vy_leg2 = t126 * t107;
         let t128 = twist[1] + t120;
         let t131 = 10.0 * t78 - t105;
@@ -2807,7 +2804,7 @@ impl Planar3Rrr {
         let t190 = 2.5 * t172 - 4.330127018922193 * t176;
         let t193 = t82 * twist[2];
         let t195 = acceleration[1] + t74 * acceleration[2] - twist[2] * t193;
-        let t199 = t190 + t79 + t125;
+        let t199 = t190 + t158 * 5.0;
         let minus_g2_vy_leg3 = t199 * t180;
         let t201 = twist[1] + t184;
         let t204 = 10.0 * t162 - t178;
@@ -3096,7 +3093,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 418 operations (166 additions, 240 multiplications, 12 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 373 intermediates.
+    /// 420 operations (165 additions, 246 multiplications, 9 divisions), 3 square roots, 1 trigonometric pairs, 27 signs, 375 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3126,91 +3123,91 @@ impl Planar3Rrr {
         let t24 = t7 - t23;
         let g1_vy_leg1 = t24 * t18;
         let g1_wz_leg1 = t2 * minus_g1_vx_leg1 - t3 * g1_vy_leg1;
-        let minus_g2_vx_leg1 = t15 * t18;
+        let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
+        let t32 = 0.1 * minus_s123_leg2;
+        let t33 = t2 + t32;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t32 = 0.1 * minus_c123_leg2;
-        let t33 = t3 - t32;
-        let t35 = pose[0] + t33 + 0.3031088913245535;
-        let t37 = 0.8660254037844386 * s_phi;
-        let minus_s123_leg2 = t37 - 0.5 * c_phi;
-        let t40 = 0.1 * minus_s123_leg2;
-        let t41 = pose[1] + 0.175;
-        let t42 = t40 + t41;
-        let t43 = 0.5 * t42;
-        let t44 = 10.0 * t43;
-        let t45 = t44 - t37;
-        let t46 = 0.1 * t45;
-        let t47 = t46 + t46;
-        let t49 = 0.5 * t35 - 0.8660254037844386 * t47;
-        let t51 = 0.8660254037844386 * t35 + t46;
-        let t54 = t51 * t51 + t49 * t49;
-        let t56 = 0.04 / t54 - 0.25;
-        ::overact::guard::reach(t56, "leg2")?;
-        let t57 = ::overact::math::sqrt(t56);
-        let t60 = t49 * t57 + 0.5 * t51;
-        let t64 = 0.5 * t49 - t51 * t57;
-        let t66 = 4.330127018922193 * t60 + 2.5 * t64;
-        let t67 = t54 * t57;
-        ::overact::guard::leg(t67, 0.03903123748998999, "leg2")?;
-        let t68 = 0.2 / t67;
-        let g1_vx_leg2 = t66 * t68;
-        let t70 = g1_vx_leg2 * actuator_velocities[1];
-        let t71 = minus_g1_vx_leg1 * actuator_velocities[0];
-        let t74 = pose[0] + t32 - 0.3031088913245535;
-        let t76 = 0.8660254037844386 * t74 - t43;
-        let t80 = 0.5 * t74 + 0.8660254037844386 * t42;
-        let t83 = t76 * t76 + t80 * t80;
-        let t85 = 0.04 / t83 - 0.25;
-        ::overact::guard::reach(t85, "leg3")?;
-        let t86 = ::overact::math::sqrt(t85);
-        let t88 = 0.5 * t76 - t80 * t86;
-        let t92 = 0.5 * t80 + t76 * t86;
-        let t94 = 4.330127018922193 * t88 + 2.5 * t92;
-        let t95 = t83 * t86;
-        ::overact::guard::leg(t95, 0.03903123748998999, "leg3")?;
-        let t96 = 0.2 / t95;
-        let g1_vx_leg3 = t94 * t96;
-        let t98 = g1_vx_leg3 * actuator_velocities[2];
-        let t99 = t70 - t71 + t98;
-        let t104 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
-            + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t104, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t104, 39.38461538461539, "actuators")?;
-        let t105 = 1.0 / t104;
-        let t110 = 4.330127018922193 * t64 - 2.5 * t60;
-        let minus_g1_vy_leg2 = t110 * t68;
-        let t116 = 2.5 * t88 - 4.330127018922193 * t92;
-        let minus_g1_vy_leg3 = t116 * t96;
-        let t119 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
-            + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t120 = t119 * t105;
-        let t121 = g1_vy_leg1 * actuator_velocities[0];
-        let t122 = minus_g1_vy_leg2 * actuator_velocities[1];
-        let t124 = minus_g1_vy_leg3 * actuator_velocities[2];
-        let t127 = t121 - t122 - t124 + t99 * t120;
-        let t134 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t119 * t120;
-        ::overact::guard::platform(t134, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t134, 39.384615384615394, "actuators")?;
-        let t137 = t41 - t47;
-        let g1_wz_leg2 = t137 * g1_vx_leg2 - t33 * minus_g1_vy_leg2;
-        let minus_g1_wz_leg3 = t32 * minus_g1_vy_leg3 + t40 * g1_vx_leg3;
-        let t152 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t37 = 0.1 * minus_c123_leg2;
+        let t38 = t3 - t37;
+        let t40 = pose[0] + t38 + 0.3031088913245535;
+        let t41 = 0.5 * t40;
+        let t42 = pose[1] + 0.175;
+        let t43 = t42 - t33;
+        let t45 = t41 - 0.8660254037844386 * t43;
+        let t47 = 0.5 * t43;
+        let t48 = 0.8660254037844386 * t40 + t47;
+        let t51 = t48 * t48 + t45 * t45;
+        let t53 = 0.04 / t51 - 0.25;
+        ::overact::guard::reach(t53, "leg2")?;
+        let t54 = ::overact::math::sqrt(t53);
+        let t57 = t45 * t54 + 0.5 * t48;
+        let t61 = 0.5 * t45 - t48 * t54;
+        let t63 = 4.330127018922193 * t57 + 2.5 * t61;
+        let t64 = t51 * t54;
+        ::overact::guard::leg(t64, 0.03903123748998999, "leg2")?;
+        let t65 = 0.2 / t64;
+        let g1_vx_leg2 = t63 * t65;
+        let t70 = 4.330127018922193 * t61 - 2.5 * t57;
+        let minus_g1_vy_leg2 = t70 * t65;
+        let g1_wz_leg2 = t33 * g1_vx_leg2 - t38 * minus_g1_vy_leg2;
+        let t77 = pose[0] + t37 - 0.3031088913245535;
+        let t79 = t32 + t42;
+        let t80 = 0.5 * t79;
+        let t81 = 0.8660254037844386 * t77 - t80;
+        let t85 = 0.5 * t77 + 0.8660254037844386 * t79;
+        let t88 = t81 * t81 + t85 * t85;
+        let t90 = 0.04 / t88 - 0.25;
+        ::overact::guard::reach(t90, "leg3")?;
+        let t91 = ::overact::math::sqrt(t90);
+        let t93 = 0.5 * t81 - t85 * t91;
+        let t97 = 0.5 * t85 + t81 * t91;
+        let t99 = 2.5 * t93 - 4.330127018922193 * t97;
+        let t100 = t88 * t91;
+        ::overact::guard::leg(t100, 0.03903123748998999, "leg3")?;
+        let t101 = 0.2 / t100;
+        let minus_g1_vy_leg3 = t99 * t101;
+        let t106 = 4.330127018922193 * t93 + 2.5 * t97;
+        let g1_vx_leg3 = t106 * t101;
+        let minus_g1_wz_leg3 = t37 * minus_g1_vy_leg3 + t32 * g1_vx_leg3;
+        let t116 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t153 = t152 * t105;
-        let t155 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t119 * t153;
-        let t156 = t155 / t134;
-        let t157 = g1_wz_leg1 * actuator_velocities[0];
-        let t158 = g1_wz_leg2 * actuator_velocities[1];
-        let t160 = minus_g1_wz_leg3 * actuator_velocities[2];
-        let t174 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t152 * t153 - t155 * t156;
-        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t174, 0.4800000000000003, "actuators")?;
-        let rate_3_leg1 = (t157 + t158 - t160 - t99 * t153 - t156 * t127) / t174;
-        let t177 = t127 / t134 - t156 * rate_3_leg1;
-        let t181 = t99 * t105 + t120 * t177 - t153 * rate_3_leg1;
+        let t121 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+            + g1_vx_leg3 * g1_vx_leg3;
+        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t121, 39.38461538461539, "actuators")?;
+        let t122 = 1.0 / t121;
+        let t123 = t116 * t122;
+        let t135 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+            + g1_vx_leg3 * minus_g1_vy_leg3;
+        let t137 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t135 * t123;
+        let t143 = t135 * t122;
+        let t145 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t135 * t143;
+        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t145, 39.384615384615394, "actuators")?;
+        let t146 = 1.0 / t145;
+        let t147 = t137 * t146;
+        let t149 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t116 * t123 - t137 * t147;
+        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t149, 0.4800000000000003, "actuators")?;
+        let t150 = 1.0 / t149;
+        let minus_g2_vx_leg1 = t15 * t18;
+        let t152 = g1_vx_leg2 * actuator_velocities[1];
+        let t153 = minus_g1_vx_leg1 * actuator_velocities[0];
+        let t155 = g1_vx_leg3 * actuator_velocities[2];
+        let t156 = t152 - t153 + t155;
+        let t158 = g1_vy_leg1 * actuator_velocities[0];
+        let t159 = minus_g1_vy_leg2 * actuator_velocities[1];
+        let t161 = minus_g1_vy_leg3 * actuator_velocities[2];
+        let t164 = t158 - t159 - t161 + t156 * t143;
+        let t166 = g1_wz_leg1 * actuator_velocities[0];
+        let t167 = g1_wz_leg2 * actuator_velocities[1];
+        let t169 = minus_g1_wz_leg3 * actuator_velocities[2];
+        let rate_3_leg1 = t150 * (t166 + t167 - t169 - t156 * t123 - t147 * t164);
+        let t177 = t146 * t164 - t147 * rate_3_leg1;
+        let t181 = t156 * t122 + t143 * t177 - t123 * rate_3_leg1;
         let t182 = t2 * rate_3_leg1;
         let minus_g2_vy_leg1 = t23 * t18;
         let t186 = t3 * rate_3_leg1;
@@ -3224,128 +3221,129 @@ impl Planar3Rrr {
         let t200 = 0.5 * (t10 - 0.08);
         let rate_dot_1_leg1 = t18 * (t197 + t198 * t200);
         let t204 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t206 = t33 * rate_3_leg1;
+        let t206 = t38 * rate_3_leg1;
         let t207 = rate_3_leg1 * t206;
-        let t209 = t137 * rate_3_leg1;
+        let t209 = t33 * rate_3_leg1;
         let t210 = rate_3_leg1 * t209;
-        let t213 = t110 + t45;
-        let minus_g2_vy_leg2 = t213 * t68;
-        let t218 = t35 * 5.0 - t66;
-        let minus_g2_vx_leg2 = t218 * t68;
+        let t214 = t70 + 10.0 * t47;
+        let minus_g2_vy_leg2 = t214 * t65;
+        let t219 = 10.0 * t41 - t63;
+        let minus_g2_vx_leg2 = t219 * t65;
         let minus_rate_2_leg2 = minus_g2_vy_leg2 * (t177 + t206)
             + minus_g2_vx_leg2 * (t181 + t209);
-        let t223 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t224 = 0.2 * t223;
-        let t226 = actuator_velocities[1] * actuator_velocities[1];
-        let t228 = 2.5 * (t54 - 0.08);
-        let minus_rate_dot_1_leg2 = t68
-            * (t66 * t207 + t110 * t210 - t224 - t226 * t228);
-        let t232 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t235 = t40 * rate_3_leg1;
-        let t236 = rate_3_leg1 * t235;
-        let t238 = t32 * rate_3_leg1;
-        let t239 = rate_3_leg1 * t238;
-        let t242 = t116 + t44;
-        let minus_g2_vy_leg3 = t242 * t96;
-        let t247 = t74 * 5.0 - t94;
-        let minus_g2_vx_leg3 = t247 * t96;
-        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t177 + t238)
-            + minus_g2_vx_leg3 * (t181 - t235);
-        let t252 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t253 = 0.2 * t252;
-        let t255 = actuator_velocities[2] * actuator_velocities[2];
-        let t257 = 2.5 * (t83 - 0.08);
-        let rate_dot_1_leg3 = t96 * (t116 * t236 - t94 * t239 + t253 + t255 * t257);
-        let t261 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t268 = g1_vx_leg2 * t232 - minus_g1_vx_leg1 * t204 + g1_vx_leg3 * t261;
-        let t277 = g1_vy_leg1 * t204 - minus_g1_vy_leg2 * t232 - minus_g1_vy_leg3 * t261
-            + t120 * t268;
-        let rate_dot_3_leg1 = (g1_wz_leg1 * t204 + g1_wz_leg2 * t232
-            - minus_g1_wz_leg3 * t261 - t153 * t268 - t156 * t277) / t174;
-        let t282 = t194 + t3 * rate_dot_3_leg1;
-        let t283 = 10.0 * t282;
-        let t285 = t192 - t2 * rate_dot_3_leg1;
-        let t286 = 10.0 * t285;
-        let t289 = t277 / t134 - t156 * rate_dot_3_leg1;
-        let t295 = t105 * t268 + t120 * t289 - t153 * rate_dot_3_leg1;
-        let t325 = t15 * (t285 + t295) + t23 * (t289 - t282) + 0.04 * t198;
-        let minus_rate_dot_2_leg1 = t18 * (t325 + t190 * t200);
+        let t224 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t225 = 0.2 * t224;
+        let t227 = actuator_velocities[1] * actuator_velocities[1];
+        let t229 = 2.5 * (t51 - 0.08);
+        let minus_rate_dot_1_leg2 = t65 * (t63 * t207 + t70 * t210 - t225 - t227 * t229);
+        let t233 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t236 = t32 * rate_3_leg1;
+        let t237 = rate_3_leg1 * t236;
+        let t239 = t37 * rate_3_leg1;
+        let t240 = rate_3_leg1 * t239;
+        let t244 = t99 + 10.0 * t80;
+        let minus_g2_vy_leg3 = t244 * t101;
+        let t249 = t77 * 5.0 - t106;
+        let minus_g2_vx_leg3 = t249 * t101;
+        let minus_rate_2_leg3 = minus_g2_vy_leg3 * (t177 + t239)
+            + minus_g2_vx_leg3 * (t181 - t236);
+        let t254 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t255 = 0.2 * t254;
+        let t257 = actuator_velocities[2] * actuator_velocities[2];
+        let t259 = 2.5 * (t88 - 0.08);
+        let rate_dot_1_leg3 = t101 * (t99 * t237 - t106 * t240 + t255 + t257 * t259);
+        let t263 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t270 = g1_vx_leg2 * t233 - minus_g1_vx_leg1 * t204 + g1_vx_leg3 * t263;
+        let t279 = g1_vy_leg1 * t204 - minus_g1_vy_leg2 * t233 - minus_g1_vy_leg3 * t263
+            + t143 * t270;
+        let rate_dot_3_leg1 = t150
+            * (g1_wz_leg1 * t204 + g1_wz_leg2 * t233 - minus_g1_wz_leg3 * t263
+                - t123 * t270 - t147 * t279);
+        let t284 = t194 + t3 * rate_dot_3_leg1;
+        let t285 = 10.0 * t284;
+        let t287 = t192 - t2 * rate_dot_3_leg1;
+        let t288 = 10.0 * t287;
+        let t291 = t146 * t279 - t147 * rate_dot_3_leg1;
+        let t297 = t122 * t270 + t143 * t291 - t123 * rate_dot_3_leg1;
+        let t327 = t15 * (t287 + t297) + t23 * (t291 - t284) + 0.04 * t198;
+        let minus_rate_dot_2_leg1 = t18 * (t327 + t190 * t200);
         let g2_wz_leg1 = t3 * minus_g2_vy_leg1 + t2 * minus_g2_vx_leg1;
-        let t337 = t295 + t137 * rate_dot_3_leg1 - t207;
-        let t341 = t289 + t33 * rate_dot_3_leg1 + t210;
-        let t345 = t218 * t337 + t213 * t341 + 0.2 * t226;
-        let minus_rate_dot_2_leg2 = t68 * (t345 + t223 * t228);
-        let minus_g2_wz_leg2 = t33 * minus_g2_vy_leg2 + t137 * minus_g2_vx_leg2;
-        let t357 = t289 + t32 * rate_dot_3_leg1 - t236;
-        let t361 = t295 - t40 * rate_dot_3_leg1 - t239;
-        let t365 = t242 * t357 + t247 * t361 + 0.2 * t255;
-        let minus_rate_dot_2_leg3 = t96 * (t365 + t252 * t257);
-        let g2_wz_leg3 = t40 * minus_g2_vx_leg3 - t32 * minus_g2_vy_leg3;
-        let t377 = 5.0 * (t197 + t17 * t204);
-        let t379 = 5.0 * t325;
-        let t392 = t110 * t341 - t66 * t337 - t224;
-        let t404 = t94 * t361 - t116 * t357 + t253;
-        let t415 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t423 = -(minus_rate_2_leg2 + actuator_velocities[1]);
-        let t431 = -(minus_rate_2_leg3 + actuator_velocities[2]);
-        let t437 = minus_rate_2_leg1 + rate_3_leg1;
-        let t442 = rate_3_leg1 + minus_rate_2_leg2;
-        let t447 = rate_3_leg1 + minus_rate_2_leg3;
+        let t339 = t297 + t33 * rate_dot_3_leg1 - t207;
+        let t343 = t291 + t38 * rate_dot_3_leg1 + t210;
+        let t347 = t219 * t339 + t214 * t343 + 0.2 * t227;
+        let minus_rate_dot_2_leg2 = t65 * (t347 + t224 * t229);
+        let minus_g2_wz_leg2 = t38 * minus_g2_vy_leg2 + t33 * minus_g2_vx_leg2;
+        let t359 = t291 + t37 * rate_dot_3_leg1 - t237;
+        let t363 = t297 - t32 * rate_dot_3_leg1 - t240;
+        let t367 = t244 * t359 + t249 * t363 + 0.2 * t257;
+        let minus_rate_dot_2_leg3 = t101 * (t367 + t254 * t259);
+        let g2_wz_leg3 = t32 * minus_g2_vx_leg3 - t37 * minus_g2_vy_leg3;
+        let t379 = 5.0 * (t197 + t17 * t204);
+        let t381 = 5.0 * t327;
+        let t394 = t70 * t343 - t63 * t339 - t225;
+        let t406 = t106 * t363 - t99 * t359 + t255;
+        let t417 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t425 = -(minus_rate_2_leg2 + actuator_velocities[1]);
+        let t433 = -(minus_rate_2_leg3 + actuator_velocities[2]);
+        let t439 = minus_rate_2_leg1 + rate_3_leg1;
+        let t444 = rate_3_leg1 + minus_rate_2_leg2;
+        let t449 = rate_3_leg1 + minus_rate_2_leg3;
         Ok([
             [
-                0.0, -t283, t286, t295, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
+                0.0, -t285, t288, t297, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
                 g1_vx_leg2 * actuator_accelerations[1], g1_vx_leg3 * actuator_accelerations[2],
-                -t71, t70, t98, -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
+                -t153, t152, t155,
+                -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(g1_vx_leg3, actuator_velocities[2]), -minus_g1_vx_leg1,
                 g1_vx_leg2, g1_vx_leg3, minus_g2_vx_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vx_leg2 * minus_rate_dot_2_leg2, minus_g2_vx_leg3 * minus_rate_dot_2_leg3,
-                minus_g2_vx_leg1 * t377 - minus_g1_vx_leg1 * t379,
-                g1_vx_leg2 * t345 - minus_g2_vx_leg2 * t392,
-                minus_g2_vx_leg3 * t404 + g1_vx_leg3 * t365,
-                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t415),
-                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t423),
-                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t431),
-                ::overact::math::signed(minus_g2_vx_leg1, t437),
-                ::overact::math::signed(minus_g2_vx_leg2, t442),
-                ::overact::math::signed(minus_g2_vx_leg3, t447),
+                minus_g2_vx_leg1 * t379 - minus_g1_vx_leg1 * t381,
+                g1_vx_leg2 * t347 - minus_g2_vx_leg2 * t394,
+                minus_g2_vx_leg3 * t406 + g1_vx_leg3 * t367,
+                -::overact::math::signed(minus_g1_vx_leg1 - minus_g2_vx_leg1, t417),
+                -::overact::math::signed(g1_vx_leg2 + minus_g2_vx_leg2, t425),
+                -::overact::math::signed(g1_vx_leg3 + minus_g2_vx_leg3, t433),
+                ::overact::math::signed(minus_g2_vx_leg1, t439),
+                ::overact::math::signed(minus_g2_vx_leg2, t444),
+                ::overact::math::signed(minus_g2_vx_leg3, t449),
             ],
             [
-                0.0, -t286, -t283, t289, g1_vy_leg1 * actuator_accelerations[0],
+                0.0, -t288, -t285, t291, g1_vy_leg1 * actuator_accelerations[0],
                 -(minus_g1_vy_leg2 * actuator_accelerations[1]),
-                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t121, -t122, -t124,
+                -(minus_g1_vy_leg3 * actuator_accelerations[2]), t158, -t159, -t161,
                 ::overact::math::signed(g1_vy_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_g1_vy_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_vy_leg3, actuator_velocities[2]), g1_vy_leg1,
                 -minus_g1_vy_leg2, -minus_g1_vy_leg3, minus_g2_vy_leg1 * minus_rate_dot_2_leg1,
                 minus_g2_vy_leg2 * minus_rate_dot_2_leg2, minus_g2_vy_leg3 * minus_rate_dot_2_leg3,
-                g1_vy_leg1 * t379 + minus_g2_vy_leg1 * t377,
-                -(minus_g2_vy_leg2 * t392 + minus_g1_vy_leg2 * t345),
-                minus_g2_vy_leg3 * t404 - minus_g1_vy_leg3 * t365,
-                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t415),
-                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t423),
-                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t431),
-                ::overact::math::signed(minus_g2_vy_leg1, t437),
-                ::overact::math::signed(minus_g2_vy_leg2, t442),
-                ::overact::math::signed(minus_g2_vy_leg3, t447),
+                g1_vy_leg1 * t381 + minus_g2_vy_leg1 * t379,
+                -(minus_g2_vy_leg2 * t394 + minus_g1_vy_leg2 * t347),
+                minus_g2_vy_leg3 * t406 - minus_g1_vy_leg3 * t367,
+                ::overact::math::signed(g1_vy_leg1 + minus_g2_vy_leg1, t417),
+                ::overact::math::signed(minus_g1_vy_leg2 - minus_g2_vy_leg2, t425),
+                ::overact::math::signed(minus_g1_vy_leg3 - minus_g2_vy_leg3, t433),
+                ::overact::math::signed(minus_g2_vy_leg1, t439),
+                ::overact::math::signed(minus_g2_vy_leg2, t444),
+                ::overact::math::signed(minus_g2_vy_leg3, t449),
             ],
             [
-                rate_dot_3_leg1, c_phi * t289 - s_phi * t295, -(s_phi * t289 + c_phi * t295), 0.0,
+                rate_dot_3_leg1, c_phi * t291 - s_phi * t297, -(s_phi * t291 + c_phi * t297), 0.0,
                 g1_wz_leg1 * actuator_accelerations[0], g1_wz_leg2 * actuator_accelerations[1],
-                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t157, t158, -t160,
+                -(minus_g1_wz_leg3 * actuator_accelerations[2]), t166, t167, -t169,
                 ::overact::math::signed(g1_wz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(g1_wz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_g1_wz_leg3, actuator_velocities[2]), g1_wz_leg1,
                 g1_wz_leg2, -minus_g1_wz_leg3, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 minus_g2_wz_leg2 * minus_rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g1_wz_leg1 * t379 - g2_wz_leg1 * t377, g1_wz_leg2 * t345 - minus_g2_wz_leg2 * t392,
-                -(minus_g1_wz_leg3 * t365 + g2_wz_leg3 * t404),
-                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t415),
-                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t423),
-                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t431),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t437),
-                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t442),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t447),
+                g1_wz_leg1 * t381 - g2_wz_leg1 * t379, g1_wz_leg2 * t347 - minus_g2_wz_leg2 * t394,
+                -(minus_g1_wz_leg3 * t367 + g2_wz_leg3 * t406),
+                -::overact::math::signed(g2_wz_leg1 - g1_wz_leg1, t417),
+                -::overact::math::signed(minus_g2_wz_leg2 + g1_wz_leg2, t425),
+                ::overact::math::signed(minus_g1_wz_leg3 + g2_wz_leg3, t433),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t439),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t444),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t449),
             ],
         ])
     }
@@ -3359,7 +3357,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 426 operations (163 additions, 256 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 395 intermediates.
+    /// 430 operations (163 additions, 260 multiplications, 7 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 399 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3369,210 +3367,210 @@ impl Planar3Rrr {
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
+        let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
+        let t6 = pose[0] + t4 + 0.3031088913245535;
+        let t10 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
+        let t12 = pose[1] - t10 + 0.175;
+        let t14 = 0.8660254037844386 * t6 + 0.5 * t12;
+        let t17 = 0.5 * t6 - 0.8660254037844386 * t12;
+        let t20 = t14 * t14 + t17 * t17;
+        let t22 = 0.04 / t20 - 0.25;
+        ::overact::guard::reach(t22, "leg2")?;
+        let t23 = ::overact::math::sqrt(t22);
+        let t26 = t17 * t23 - 0.5 * t14;
+        let t27 = t14 + t26;
+        let t31 = 0.5 * t17 + t14 * t23;
+        let t32 = t17 - t31;
+        let t34 = 4.330127018922193 * t27 + 2.5 * t32;
+        let t35 = t20 * t23;
+        ::overact::guard::leg(t35, 0.03903123748998999, "leg2")?;
+        let t36 = 0.2 / t35;
+        let g1_vx_leg2 = t34 * t36;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
-        let t5 = 0.1 * minus_c123_leg2;
-        let t6 = 0.1 * s_phi;
-        let t7 = t6 - t5;
-        let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t41 = 0.1 * minus_c123_leg2;
+        let t43 = pose[0] + t41 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t14 = 0.1 * minus_s123_leg2;
-        let t15 = 0.1 * c_phi;
-        let t16 = t14 + t15;
-        let t18 = pose[1] - t16 + 0.175;
-        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
-        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
-        let t26 = t20 * t20 + t23 * t23;
-        let t28 = 0.04 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t32 = t23 * t29 - 0.5 * t20;
-        let t33 = t20 + t32;
-        let t37 = 0.5 * t23 + t20 * t29;
-        let t38 = t23 - t37;
-        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
-        let t41 = t26 * t29;
-        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
-        let t42 = 0.2 / t41;
-        let g1_vx_leg2 = t40 * t42;
-        let t45 = pose[0] + t5 - 0.3031088913245535;
-        let t48 = pose[1] + t14 + 0.175;
-        let t50 = 0.8660254037844386 * t45 - 0.5 * t48;
-        let t54 = 0.5 * t45 + 0.8660254037844386 * t48;
-        let t57 = t50 * t50 + t54 * t54;
-        let t59 = 0.04 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg3")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t50 + t54 * t60;
-        let t63 = t50 - t62;
-        let t67 = 0.5 * t54 - t50 * t60;
-        let t68 = t54 - t67;
-        let t70 = 2.5 * t63 - 4.330127018922193 * t68;
-        let t71 = t57 * t60;
-        ::overact::guard::leg(t71, 0.03903123748998999, "leg3")?;
-        let t72 = 0.2 / t71;
-        let minus_g1_vy_leg3 = t70 * t72;
-        let t77 = 4.330127018922193 * t38 - 2.5 * t33;
-        let minus_g1_vy_leg2 = t77 * t42;
-        let t81 = 4.330127018922193 * t63 + 2.5 * t68;
-        let g1_vx_leg3 = t81 * t72;
-        let t86 = pose[1] + t15 - 0.35;
-        let t88 = pose[0] - t6;
-        let t91 = t86 * t86 + t88 * t88;
-        let t93 = 0.04 / t91 - 0.25;
-        ::overact::guard::reach(t93, "leg1")?;
-        let t94 = ::overact::math::sqrt(t93);
-        let t96 = 0.5 * t86 - t88 * t94;
-        let t97 = t86 - t96;
-        let t98 = t91 * t94;
-        ::overact::guard::leg(t98, 0.03903123748998999, "leg1")?;
-        let t99 = 1.0 / t98;
-        let g1_vy_leg1 = t97 * t99;
-        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
-        let t107 = 0.5 * t88 + t86 * t94;
-        let t108 = t107 - t88;
-        let minus_g1_vx_leg1 = t108 * t99;
-        let g1_wz_leg1 = t15 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
-        let t114 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t118 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
-        let t126 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t128 = g1_vx_leg3 * t114 - minus_g1_vy_leg3 * t118 - minus_g1_wz_leg3 * t126;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t129;
-        let t135 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t129;
-        let t137 = t126 * t129;
-        let t142 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t129;
-        let t143 = t15 * twist[2];
-        let t146 = twist[2] * t143 + t6 * acceleration[2];
-        let t147 = 10.0 * t146;
-        let t152 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t129;
-        let t153 = t6 * twist[2];
-        let t156 = twist[2] * t153 - t15 * acceleration[2];
-        let t157 = 10.0 * t156;
-        let t162 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t168 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t129;
-        let t173 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t129;
-        let t179 = t114 * t129;
-        let t181 = t118 * t129;
-        let t190 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t212 = acceleration[1] - t146;
-        let t214 = t156 + acceleration[0];
-        let minus_g2_vx_leg1 = t107 * t99;
-        let t218 = twist[0] - t143;
-        let minus_g2_vy_leg1 = t96 * t99;
-        let t221 = twist[1] - t153;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t218 + minus_g2_vy_leg1 * t221;
-        let t224 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t226 = t97 * t212 - t108 * t214 + 0.04 * t224;
-        let rate_1_leg1 = g1_vy_leg1 * t221 - minus_g1_vx_leg1 * t218;
-        let t230 = rate_1_leg1 * rate_1_leg1;
-        let t232 = 0.5 * (t91 - 0.08);
-        let rate_dot_1_leg1 = t99 * (t226 + t230 * t232);
-        let t238 = t16 * twist[2];
-        let t240 = acceleration[1] + t7 * acceleration[2] + twist[2] * t238;
-        let t244 = t7 * twist[2];
-        let t246 = acceleration[0] + t16 * acceleration[2] - twist[2] * t244;
-        let t251 = 4.330127018922193 * t37 + 2.5 * t32;
-        let g2_vy_leg2 = t251 * t42;
-        let t253 = twist[1] + t244;
-        let t257 = 2.5 * t37 - 4.330127018922193 * t32;
-        let minus_g2_vx_leg2 = t257 * t42;
-        let t259 = twist[0] + t238;
-        let rate_2_leg2 = g2_vy_leg2 * t253 - minus_g2_vx_leg2 * t259;
-        let t262 = rate_2_leg2 * rate_2_leg2;
-        let t264 = t77 * t240 - t40 * t246 - 0.2 * t262;
-        let rate_1_leg2 = g1_vx_leg2 * t259 - minus_g1_vy_leg2 * t253;
-        let t268 = rate_1_leg2 * rate_1_leg2;
-        let t270 = 2.5 * (t26 - 0.08);
-        let minus_rate_dot_1_leg2 = t42 * (t264 - t268 * t270);
-        let t276 = t5 * twist[2];
-        let t278 = acceleration[0] - t14 * acceleration[2] - twist[2] * t276;
-        let t282 = t14 * twist[2];
-        let t284 = acceleration[1] + t5 * acceleration[2] - twist[2] * t282;
-        let t289 = 2.5 * t62 - 4.330127018922193 * t67;
-        let g2_vy_leg3 = t289 * t72;
-        let t291 = twist[1] + t276;
-        let t295 = 4.330127018922193 * t62 + 2.5 * t67;
-        let minus_g2_vx_leg3 = t295 * t72;
-        let t297 = twist[0] - t282;
-        let rate_2_leg3 = g2_vy_leg3 * t291 - minus_g2_vx_leg3 * t297;
-        let t300 = rate_2_leg3 * rate_2_leg3;
-        let t302 = t81 * t278 - t70 * t284 + 0.2 * t300;
-        let rate_1_leg3 = g1_vx_leg3 * t297 - minus_g1_vy_leg3 * t291;
-        let t306 = rate_1_leg3 * rate_1_leg3;
-        let t308 = 2.5 * (t57 - 0.08);
-        let rate_dot_1_leg3 = t72 * (t302 + t306 * t308);
-        let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t15 * minus_g2_vx_leg1;
-        let t322 = minus_g2_vx_leg1 * t142 + minus_g2_vy_leg1 * t152 + g2_wz_leg1 * t130;
-        let t327 = t107 * t214 + t96 * t212 + 0.04 * t230;
-        let minus_rate_dot_2_leg1 = t99 * (t327 + t224 * t232);
-        let t336 = minus_g2_vy_leg1 * t168 - minus_g2_vx_leg1 * t173 + g2_wz_leg1 * t135;
-        let t342 = g2_wz_leg1 * t137
-            - (minus_g2_vx_leg1 * t179 + minus_g2_vy_leg1 * t181);
-        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
-        let t351 = g2_vy_leg2 * t152 - minus_g2_vx_leg2 * t142 - g2_wz_leg2 * t130;
-        let t356 = t257 * t246 - t251 * t240 + 0.2 * t268;
-        let minus_rate_dot_2_leg2 = t42 * (t356 + t262 * t270);
-        let t365 = g2_wz_leg2 * t135 - (minus_g2_vx_leg2 * t173 + g2_vy_leg2 * t168);
-        let t371 = g2_vy_leg2 * t181 - minus_g2_vx_leg2 * t179 + g2_wz_leg2 * t137;
-        let g2_wz_leg3 = t5 * g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t380 = g2_vy_leg3 * t152 - minus_g2_vx_leg3 * t142 - g2_wz_leg3 * t130;
-        let t385 = t289 * t284 - t295 * t278 - 0.2 * t306;
-        let rate_dot_2_leg3 = t72 * (t385 - t300 * t308);
-        let t394 = g2_wz_leg3 * t135 - (minus_g2_vx_leg3 * t173 + g2_vy_leg3 * t168);
-        let t400 = g2_vy_leg3 * t181 - minus_g2_vx_leg3 * t179 + g2_wz_leg3 * t137;
-        let t403 = 5.0 * t226;
-        let t417 = rate_1_leg1 + minus_rate_2_leg1;
-        let t421 = rate_2_leg2 - rate_1_leg2;
-        let t426 = rate_2_leg3 - rate_1_leg3;
-        let t432 = minus_rate_2_leg1 + twist[2];
-        let t439 = twist[2] - rate_2_leg2;
-        let t446 = twist[2] - rate_2_leg3;
+        let t48 = 0.1 * minus_s123_leg2;
+        let t50 = pose[1] + t48 + 0.175;
+        let t52 = 0.8660254037844386 * t43 - 0.5 * t50;
+        let t56 = 0.5 * t43 + 0.8660254037844386 * t50;
+        let t59 = t52 * t52 + t56 * t56;
+        let t61 = 0.04 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg3")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.5 * t52 + t56 * t62;
+        let t65 = t52 - t64;
+        let t69 = 0.5 * t56 - t52 * t62;
+        let t70 = t56 - t69;
+        let t72 = 2.5 * t65 - 4.330127018922193 * t70;
+        let t73 = t59 * t62;
+        ::overact::guard::leg(t73, 0.03903123748998999, "leg3")?;
+        let t74 = 0.2 / t73;
+        let minus_g1_vy_leg3 = t72 * t74;
+        let t79 = 4.330127018922193 * t32 - 2.5 * t27;
+        let minus_g1_vy_leg2 = t79 * t36;
+        let t83 = 4.330127018922193 * t65 + 2.5 * t70;
+        let g1_vx_leg3 = t83 * t74;
+        let t87 = 0.1 * c_phi;
+        let t89 = pose[1] + t87 - 0.35;
+        let t91 = 0.1 * s_phi;
+        let t92 = pose[0] - t91;
+        let t95 = t89 * t89 + t92 * t92;
+        let t97 = 0.04 / t95 - 0.25;
+        ::overact::guard::reach(t97, "leg1")?;
+        let t98 = ::overact::math::sqrt(t97);
+        let t100 = 0.5 * t89 - t92 * t98;
+        let t101 = t89 - t100;
+        let t102 = t95 * t98;
+        ::overact::guard::leg(t102, 0.03903123748998999, "leg1")?;
+        let t103 = 1.0 / t102;
+        let g1_vy_leg1 = t101 * t103;
+        let g1_wz_leg2 = t10 * g1_vx_leg2 - t4 * minus_g1_vy_leg2;
+        let t111 = 0.5 * t92 + t89 * t98;
+        let t112 = t111 - t92;
+        let minus_g1_vx_leg1 = t112 * t103;
+        let g1_wz_leg1 = t87 * minus_g1_vx_leg1 - t91 * g1_vy_leg1;
+        let t118 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t122 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg3 = t41 * minus_g1_vy_leg3 + t48 * g1_vx_leg3;
+        let t130 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t132 = g1_vx_leg3 * t118 - minus_g1_vy_leg3 * t122 - minus_g1_wz_leg3 * t130;
+        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t132, 27.286461953085094, "kept actuators")?;
+        let t133 = 1.0 / t132;
+        let t134 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t133;
+        let t139 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t133;
+        let t141 = t130 * t133;
+        let t146 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t133;
+        let t147 = t87 * twist[2];
+        let t150 = twist[2] * t147 + t91 * acceleration[2];
+        let t151 = 10.0 * t150;
+        let t156 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t133;
+        let t157 = t91 * twist[2];
+        let t160 = twist[2] * t157 - t87 * acceleration[2];
+        let t161 = 10.0 * t160;
+        let t166 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t172 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t133;
+        let t177 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
+            * t133;
+        let t183 = t118 * t133;
+        let t185 = t122 * t133;
+        let t194 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t216 = acceleration[1] - t150;
+        let t218 = t160 + acceleration[0];
+        let minus_g2_vx_leg1 = t111 * t103;
+        let t222 = twist[0] - t147;
+        let minus_g2_vy_leg1 = t100 * t103;
+        let t225 = twist[1] - t157;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * t222 + minus_g2_vy_leg1 * t225;
+        let t228 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t230 = t101 * t216 - t112 * t218 + 0.04 * t228;
+        let rate_1_leg1 = g1_vy_leg1 * t225 - minus_g1_vx_leg1 * t222;
+        let t234 = rate_1_leg1 * rate_1_leg1;
+        let t236 = 0.5 * (t95 - 0.08);
+        let rate_dot_1_leg1 = t103 * (t230 + t234 * t236);
+        let t242 = t10 * twist[2];
+        let t244 = acceleration[1] + t4 * acceleration[2] + twist[2] * t242;
+        let t248 = t4 * twist[2];
+        let t250 = acceleration[0] + t10 * acceleration[2] - twist[2] * t248;
+        let t255 = 4.330127018922193 * t31 + 2.5 * t26;
+        let g2_vy_leg2 = t255 * t36;
+        let t257 = twist[1] + t248;
+        let t261 = 2.5 * t31 - 4.330127018922193 * t26;
+        let minus_g2_vx_leg2 = t261 * t36;
+        let t263 = twist[0] + t242;
+        let rate_2_leg2 = g2_vy_leg2 * t257 - minus_g2_vx_leg2 * t263;
+        let t266 = rate_2_leg2 * rate_2_leg2;
+        let t268 = t79 * t244 - t34 * t250 - 0.2 * t266;
+        let rate_1_leg2 = g1_vx_leg2 * t263 - minus_g1_vy_leg2 * t257;
+        let t272 = rate_1_leg2 * rate_1_leg2;
+        let t274 = 2.5 * (t20 - 0.08);
+        let minus_rate_dot_1_leg2 = t36 * (t268 - t272 * t274);
+        let t280 = t41 * twist[2];
+        let t282 = acceleration[0] - t48 * acceleration[2] - twist[2] * t280;
+        let t286 = t48 * twist[2];
+        let t288 = acceleration[1] + t41 * acceleration[2] - twist[2] * t286;
+        let t293 = 2.5 * t64 - 4.330127018922193 * t69;
+        let g2_vy_leg3 = t293 * t74;
+        let t295 = twist[1] + t280;
+        let t299 = 4.330127018922193 * t64 + 2.5 * t69;
+        let minus_g2_vx_leg3 = t299 * t74;
+        let t301 = twist[0] - t286;
+        let rate_2_leg3 = g2_vy_leg3 * t295 - minus_g2_vx_leg3 * t301;
+        let t304 = rate_2_leg3 * rate_2_leg3;
+        let t306 = t83 * t282 - t72 * t288 + 0.2 * t304;
+        let rate_1_leg3 = g1_vx_leg3 * t301 - minus_g1_vy_leg3 * t295;
+        let t310 = rate_1_leg3 * rate_1_leg3;
+        let t312 = 2.5 * (t59 - 0.08);
+        let rate_dot_1_leg3 = t74 * (t306 + t310 * t312);
+        let g2_wz_leg1 = t91 * minus_g2_vy_leg1 + t87 * minus_g2_vx_leg1;
+        let t326 = minus_g2_vx_leg1 * t146 + minus_g2_vy_leg1 * t156 + g2_wz_leg1 * t134;
+        let t331 = t111 * t218 + t100 * t216 + 0.04 * t234;
+        let minus_rate_dot_2_leg1 = t103 * (t331 + t228 * t236);
+        let t340 = minus_g2_vy_leg1 * t172 - minus_g2_vx_leg1 * t177 + g2_wz_leg1 * t139;
+        let t346 = g2_wz_leg1 * t141
+            - (minus_g2_vx_leg1 * t183 + minus_g2_vy_leg1 * t185);
+        let g2_wz_leg2 = t4 * g2_vy_leg2 - t10 * minus_g2_vx_leg2;
+        let t355 = g2_vy_leg2 * t156 - minus_g2_vx_leg2 * t146 - g2_wz_leg2 * t134;
+        let t360 = t261 * t250 - t255 * t244 + 0.2 * t272;
+        let minus_rate_dot_2_leg2 = t36 * (t360 + t266 * t274);
+        let t369 = g2_wz_leg2 * t139 - (minus_g2_vx_leg2 * t177 + g2_vy_leg2 * t172);
+        let t375 = g2_vy_leg2 * t185 - minus_g2_vx_leg2 * t183 + g2_wz_leg2 * t141;
+        let g2_wz_leg3 = t41 * g2_vy_leg3 + t48 * minus_g2_vx_leg3;
+        let t384 = g2_vy_leg3 * t156 - minus_g2_vx_leg3 * t146 - g2_wz_leg3 * t134;
+        let t389 = t293 * t288 - t299 * t282 - 0.2 * t310;
+        let rate_dot_2_leg3 = t74 * (t389 - t304 * t312);
+        let t398 = g2_wz_leg3 * t139 - (minus_g2_vx_leg3 * t177 + g2_vy_leg3 * t172);
+        let t404 = g2_vy_leg3 * t185 - minus_g2_vx_leg3 * t183 + g2_wz_leg3 * t141;
+        let t407 = 5.0 * t230;
+        let t421 = rate_1_leg1 + minus_rate_2_leg1;
+        let t425 = rate_2_leg2 - rate_1_leg2;
+        let t430 = rate_2_leg3 - rate_1_leg3;
+        let t436 = minus_rate_2_leg1 + twist[2];
+        let t443 = twist[2] - rate_2_leg2;
+        let t450 = twist[2] - rate_2_leg3;
         Ok([
             [
-                -(t130 * acceleration[2]), -(t142 * t147 + t152 * t157 + t130 * t162),
-                t142 * t157 - t152 * t147 + t130 * t190,
-                t142 * acceleration[0] + t152 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
+                -(t134 * acceleration[2]), -(t146 * t151 + t156 * t161 + t134 * t166),
+                t146 * t161 - t156 * t151 + t134 * t194,
+                t146 * acceleration[0] + t156 * acceleration[1], rate_dot_1_leg1, 0.0, 0.0,
                 rate_1_leg1, 0.0, 0.0, ::overact::math::sign(rate_1_leg1), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t322 * minus_rate_dot_2_leg1, -(t351 * minus_rate_dot_2_leg2),
-                t380 * rate_dot_2_leg3, 5.0 * t327 + t322 * t403, t351 * t264, -(t380 * t302),
-                ::overact::math::signed(1.0 + t322, t417), ::overact::math::signed(t351, t421),
-                ::overact::math::signed(t380, t426), ::overact::math::signed(t322 - t130, t432),
-                -::overact::math::signed(t351 + t130, t439),
-                -::overact::math::signed(t380 + t130, t446),
+                t326 * minus_rate_dot_2_leg1, -(t355 * minus_rate_dot_2_leg2),
+                t384 * rate_dot_2_leg3, 5.0 * t331 + t326 * t407, t355 * t268, -(t384 * t306),
+                ::overact::math::signed(1.0 + t326, t421), ::overact::math::signed(t355, t425),
+                ::overact::math::signed(t384, t430), ::overact::math::signed(t326 - t134, t436),
+                -::overact::math::signed(t355 + t134, t443),
+                -::overact::math::signed(t384 + t134, t450),
             ],
             [
-                t135 * acceleration[2], t168 * t157 - t173 * t147 + t135 * t162,
-                t173 * t157 + t168 * t147 - t135 * t190,
-                t173 * acceleration[0] - t168 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
+                t139 * acceleration[2], t172 * t161 - t177 * t151 + t139 * t166,
+                t177 * t161 + t172 * t151 - t139 * t194,
+                t177 * acceleration[0] - t172 * acceleration[1], 0.0, -minus_rate_dot_1_leg2, 0.0,
                 0.0, rate_1_leg2, 0.0, 0.0, ::overact::math::sign(rate_1_leg2), 0.0, 0.0, 1.0, 0.0,
-                -(t336 * minus_rate_dot_2_leg1), -(t365 * minus_rate_dot_2_leg2),
-                t394 * rate_dot_2_leg3, -(t336 * t403), t356 + t365 * t264, -(t394 * t302),
-                -::overact::math::signed(t336, t417), ::overact::math::signed(t365 - 1.0, t421),
-                ::overact::math::signed(t394, t426), ::overact::math::signed(t135 - t336, t432),
-                ::overact::math::signed(t135 - t365, t439),
-                ::overact::math::signed(t135 - t394, t446),
+                -(t340 * minus_rate_dot_2_leg1), -(t369 * minus_rate_dot_2_leg2),
+                t398 * rate_dot_2_leg3, -(t340 * t407), t360 + t369 * t268, -(t398 * t306),
+                -::overact::math::signed(t340, t421), ::overact::math::signed(t369 - 1.0, t425),
+                ::overact::math::signed(t398, t430), ::overact::math::signed(t139 - t340, t436),
+                ::overact::math::signed(t139 - t369, t443),
+                ::overact::math::signed(t139 - t398, t450),
             ],
             [
-                t137 * acceleration[2], t137 * t162 - (t179 * t147 + t181 * t157),
-                t179 * t157 - t181 * t147 - t137 * t190,
-                t179 * acceleration[0] + t181 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3, 0.0,
+                t141 * acceleration[2], t141 * t166 - (t183 * t151 + t185 * t161),
+                t183 * t161 - t185 * t151 - t141 * t194,
+                t183 * acceleration[0] + t185 * acceleration[1], 0.0, 0.0, rate_dot_1_leg3, 0.0,
                 0.0, rate_1_leg3, 0.0, 0.0, ::overact::math::sign(rate_1_leg3), 0.0, 0.0, 1.0,
-                -(t342 * minus_rate_dot_2_leg1), -(t371 * minus_rate_dot_2_leg2),
-                t400 * rate_dot_2_leg3, -(t342 * t403), t371 * t264, -(t385 + t400 * t302),
-                -::overact::math::signed(t342, t417), ::overact::math::signed(t371, t421),
-                ::overact::math::signed(t400 - 1.0, t426),
-                ::overact::math::signed(t137 - t342, t432),
-                ::overact::math::signed(t137 - t371, t439),
-                ::overact::math::signed(t137 - t400, t446),
+                -(t346 * minus_rate_dot_2_leg1), -(t375 * minus_rate_dot_2_leg2),
+                t404 * rate_dot_2_leg3, -(t346 * t407), t375 * t268, -(t389 + t404 * t306),
+                -::overact::math::signed(t346, t421), ::overact::math::signed(t375, t425),
+                ::overact::math::signed(t404 - 1.0, t430),
+                ::overact::math::signed(t141 - t346, t436),
+                ::overact::math::signed(t141 - t375, t443),
+                ::overact::math::signed(t141 - t404, t450),
             ],
         ])
     }
@@ -3784,7 +3782,7 @@ impl Planar3Rrr {
     /// Output: 3 x 28.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 536 operations (209 additions, 317 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 511 intermediates.
+    /// 538 operations (209 additions, 319 multiplications, 10 divisions), 3 square roots, 1 trigonometric pairs, 21 signs, 513 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3801,251 +3799,251 @@ impl Planar3Rrr {
         let t6 = 0.1 * s_phi;
         let t7 = t6 - t5;
         let t9 = pose[0] + t7 + 0.3031088913245535;
+        let t13 = 0.08660254037844387 * s_phi + 0.05 * c_phi;
+        let t15 = pose[1] - t13 + 0.175;
+        let t17 = 0.8660254037844386 * t9 + 0.5 * t15;
+        let t20 = 0.5 * t9 - 0.8660254037844386 * t15;
+        let t23 = t17 * t17 + t20 * t20;
+        let t25 = 0.04 / t23 - 0.25;
+        ::overact::guard::reach(t25, "leg2")?;
+        let t26 = ::overact::math::sqrt(t25);
+        let t29 = t20 * t26 - 0.5 * t17;
+        let t30 = t17 + t29;
+        let t34 = 0.5 * t20 + t17 * t26;
+        let t35 = t20 - t34;
+        let t37 = 4.330127018922193 * t30 + 2.5 * t35;
+        let t38 = t23 * t26;
+        ::overact::guard::leg(t38, 0.03903123748998999, "leg2")?;
+        let t39 = 0.2 / t38;
+        let g1_vx_leg2 = t37 * t39;
+        let t42 = pose[0] + t5 - 0.3031088913245535;
         let minus_s123_leg2 = 0.8660254037844386 * s_phi - 0.5 * c_phi;
-        let t14 = 0.1 * minus_s123_leg2;
-        let t15 = 0.1 * c_phi;
-        let t16 = t14 + t15;
-        let t18 = pose[1] - t16 + 0.175;
-        let t20 = 0.8660254037844386 * t9 + 0.5 * t18;
-        let t23 = 0.5 * t9 - 0.8660254037844386 * t18;
-        let t26 = t20 * t20 + t23 * t23;
-        let t28 = 0.04 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t32 = t23 * t29 - 0.5 * t20;
-        let t33 = t20 + t32;
-        let t37 = 0.5 * t23 + t20 * t29;
-        let t38 = t23 - t37;
-        let t40 = 4.330127018922193 * t33 + 2.5 * t38;
-        let t41 = t26 * t29;
-        ::overact::guard::leg(t41, 0.03903123748998999, "leg2")?;
-        let t42 = 0.2 / t41;
-        let g1_vx_leg2 = t40 * t42;
-        let t45 = pose[0] + t5 - 0.3031088913245535;
-        let t48 = pose[1] + t14 + 0.175;
-        let t50 = 0.8660254037844386 * t45 - 0.5 * t48;
-        let t54 = 0.5 * t45 + 0.8660254037844386 * t48;
-        let t57 = t50 * t50 + t54 * t54;
-        let t59 = 0.04 / t57 - 0.25;
-        ::overact::guard::reach(t59, "leg3")?;
-        let t60 = ::overact::math::sqrt(t59);
-        let t62 = 0.5 * t50 + t54 * t60;
-        let t63 = t50 - t62;
-        let t67 = 0.5 * t54 - t50 * t60;
-        let t68 = t54 - t67;
-        let t70 = 2.5 * t63 - 4.330127018922193 * t68;
-        let t71 = t57 * t60;
-        ::overact::guard::leg(t71, 0.03903123748998999, "leg3")?;
-        let t72 = 0.2 / t71;
-        let minus_g1_vy_leg3 = t70 * t72;
-        let t77 = 4.330127018922193 * t38 - 2.5 * t33;
-        let minus_g1_vy_leg2 = t77 * t42;
-        let t81 = 4.330127018922193 * t63 + 2.5 * t68;
-        let g1_vx_leg3 = t81 * t72;
-        let t86 = pose[1] + t15 - 0.35;
-        let t88 = pose[0] - t6;
-        let t91 = t86 * t86 + t88 * t88;
-        let t93 = 0.04 / t91 - 0.25;
-        ::overact::guard::reach(t93, "leg1")?;
-        let t94 = ::overact::math::sqrt(t93);
-        let t96 = 0.5 * t86 - t88 * t94;
-        let t97 = t86 - t96;
-        let t98 = t91 * t94;
-        ::overact::guard::leg(t98, 0.03903123748998999, "leg1")?;
-        let t99 = 1.0 / t98;
-        let g1_vy_leg1 = t97 * t99;
-        let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
-        let t107 = 0.5 * t88 + t86 * t94;
-        let t108 = t107 - t88;
-        let minus_g1_vx_leg1 = t108 * t99;
-        let g1_wz_leg1 = t15 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
-        let t114 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
-        let t118 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
-        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t14 * g1_vx_leg3;
-        let t126 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
-        let t128 = g1_vx_leg3 * t114 - minus_g1_vy_leg3 * t118 - minus_g1_wz_leg3 * t126;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        ::overact::guard::platform(t128, 27.286461953085094, "kept actuators")?;
-        let t129 = 1.0 / t128;
-        let t130 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
-            * t129;
-        let t140 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
+        let t47 = 0.1 * minus_s123_leg2;
+        let t49 = pose[1] + t47 + 0.175;
+        let t51 = 0.8660254037844386 * t42 - 0.5 * t49;
+        let t55 = 0.5 * t42 + 0.8660254037844386 * t49;
+        let t58 = t51 * t51 + t55 * t55;
+        let t60 = 0.04 / t58 - 0.25;
+        ::overact::guard::reach(t60, "leg3")?;
+        let t61 = ::overact::math::sqrt(t60);
+        let t63 = 0.5 * t51 + t55 * t61;
+        let t64 = t51 - t63;
+        let t68 = 0.5 * t55 - t51 * t61;
+        let t69 = t55 - t68;
+        let t71 = 2.5 * t64 - 4.330127018922193 * t69;
+        let t72 = t58 * t61;
+        ::overact::guard::leg(t72, 0.03903123748998999, "leg3")?;
+        let t73 = 0.2 / t72;
+        let minus_g1_vy_leg3 = t71 * t73;
+        let t78 = 4.330127018922193 * t35 - 2.5 * t30;
+        let minus_g1_vy_leg2 = t78 * t39;
+        let t82 = 4.330127018922193 * t64 + 2.5 * t69;
+        let g1_vx_leg3 = t82 * t73;
+        let t86 = 0.1 * c_phi;
+        let t88 = pose[1] + t86 - 0.35;
+        let t90 = pose[0] - t6;
+        let t93 = t88 * t88 + t90 * t90;
+        let t95 = 0.04 / t93 - 0.25;
+        ::overact::guard::reach(t95, "leg1")?;
+        let t96 = ::overact::math::sqrt(t95);
+        let t98 = 0.5 * t88 - t90 * t96;
+        let t99 = t88 - t98;
+        let t100 = t93 * t96;
+        ::overact::guard::leg(t100, 0.03903123748998999, "leg1")?;
+        let t101 = 1.0 / t100;
+        let g1_vy_leg1 = t99 * t101;
+        let g1_wz_leg2 = t13 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
+        let t109 = 0.5 * t90 + t88 * t96;
+        let t110 = t109 - t90;
+        let minus_g1_vx_leg1 = t110 * t101;
+        let g1_wz_leg1 = t86 * minus_g1_vx_leg1 - t6 * g1_vy_leg1;
+        let t116 = g1_vy_leg1 * g1_wz_leg2 + g1_wz_leg1 * minus_g1_vy_leg2;
+        let t120 = minus_g1_vx_leg1 * g1_wz_leg2 + g1_wz_leg1 * g1_vx_leg2;
+        let minus_g1_wz_leg3 = t5 * minus_g1_vy_leg3 + t47 * g1_vx_leg3;
+        let t128 = minus_g1_vx_leg1 * minus_g1_vy_leg2 - g1_vy_leg1 * g1_vx_leg2;
+        let t130 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t120 - minus_g1_wz_leg3 * t128;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        ::overact::guard::platform(t130, 27.286461953085094, "kept actuators")?;
+        let t131 = 1.0 / t130;
+        let t132 = (g1_vx_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_vx_leg3)
+            * t131;
+        let t142 = g1_vx_leg2 * g1_wz_leg2 - minus_g1_vx_leg1 * g1_wz_leg1
             - g1_vx_leg3 * minus_g1_wz_leg3;
-        let t145 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
+        let t147 = minus_g1_vx_leg1 * minus_g1_vx_leg1 + g1_vx_leg2 * g1_vx_leg2
             + g1_vx_leg3 * g1_vx_leg3;
-        ::overact::guard::platform(t145, 39.38461538461539, "actuators")?;
-        ::overact::guard::platform(t145, 39.38461538461539, "actuators")?;
-        let t146 = 1.0 / t145;
-        let t147 = t140 * t146;
-        let t159 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
+        ::overact::guard::platform(t147, 39.38461538461539, "actuators")?;
+        ::overact::guard::platform(t147, 39.38461538461539, "actuators")?;
+        let t148 = 1.0 / t147;
+        let t149 = t142 * t148;
+        let t161 = minus_g1_vx_leg1 * g1_vy_leg1 + g1_vx_leg2 * minus_g1_vy_leg2
             + g1_vx_leg3 * minus_g1_vy_leg3;
-        let t161 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t159 * t147;
-        let t167 = t159 * t146;
-        let t169 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t159 * t167;
-        ::overact::guard::platform(t169, 39.384615384615394, "actuators")?;
-        ::overact::guard::platform(t169, 39.384615384615394, "actuators")?;
-        let t170 = 1.0 / t169;
-        let t171 = t161 * t170;
-        let t173 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t140 * t147 - t161 * t171;
-        ::overact::guard::platform(t173, 0.4800000000000003, "actuators")?;
-        ::overact::guard::platform(t173, 0.4800000000000003, "actuators")?;
-        let t174 = 1.0 / t173;
-        let minus_g2_vx_leg1 = t107 * t99;
-        let t180 = g1_vx_leg2 * actuator_velocities[1]
+        let t163 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            + minus_g1_vy_leg3 * minus_g1_wz_leg3 + t161 * t149;
+        let t169 = t161 * t148;
+        let t171 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 - t161 * t169;
+        ::overact::guard::platform(t171, 39.384615384615394, "actuators")?;
+        ::overact::guard::platform(t171, 39.384615384615394, "actuators")?;
+        let t172 = 1.0 / t171;
+        let t173 = t163 * t172;
+        let t175 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + minus_g1_wz_leg3 * minus_g1_wz_leg3 - t142 * t149 - t163 * t173;
+        ::overact::guard::platform(t175, 0.4800000000000003, "actuators")?;
+        ::overact::guard::platform(t175, 0.4800000000000003, "actuators")?;
+        let t176 = 1.0 / t175;
+        let minus_g2_vx_leg1 = t109 * t101;
+        let t182 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
             + g1_vx_leg3 * actuator_velocities[2];
-        let t188 = g1_vy_leg1 * actuator_velocities[0]
+        let t190 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
-            - minus_g1_vy_leg3 * actuator_velocities[2] + t180 * t167;
-        let rate_3_leg1 = t174
+            - minus_g1_vy_leg3 * actuator_velocities[2] + t182 * t169;
+        let rate_3_leg1 = t176
             * (g1_wz_leg1 * actuator_velocities[0] + g1_wz_leg2 * actuator_velocities[1]
-                - minus_g1_wz_leg3 * actuator_velocities[2] - t180 * t147 - t171 * t188);
-        let t201 = t170 * t188 - t171 * rate_3_leg1;
-        let t205 = t180 * t146 + t167 * t201 - t147 * rate_3_leg1;
-        let t206 = t15 * rate_3_leg1;
-        let minus_g2_vy_leg1 = t96 * t99;
-        let t210 = t6 * rate_3_leg1;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t205 - t206)
-            + minus_g2_vy_leg1 * (t201 - t210);
-        let t214 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t215 = 0.04 * t214;
-        let t216 = rate_3_leg1 * t210;
-        let t218 = rate_3_leg1 * t206;
-        let t222 = actuator_velocities[0] * actuator_velocities[0];
-        let t224 = 0.5 * (t91 - 0.08);
-        let rate_dot_1_leg1 = t99 * (t215 - (t108 * t216 + t97 * t218) + t222 * t224);
-        let t228 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t230 = t7 * rate_3_leg1;
-        let t231 = rate_3_leg1 * t230;
-        let t233 = t16 * rate_3_leg1;
-        let t234 = rate_3_leg1 * t233;
-        let t239 = 4.330127018922193 * t37 + 2.5 * t32;
-        let g2_vy_leg2 = t239 * t42;
-        let t245 = 2.5 * t37 - 4.330127018922193 * t32;
-        let minus_g2_vx_leg2 = t245 * t42;
-        let rate_2_leg2 = g2_vy_leg2 * (t201 + t230) - minus_g2_vx_leg2 * (t205 + t233);
-        let t250 = rate_2_leg2 * rate_2_leg2;
-        let t251 = 0.2 * t250;
-        let t253 = actuator_velocities[1] * actuator_velocities[1];
-        let t255 = 2.5 * (t26 - 0.08);
-        let minus_rate_dot_1_leg2 = t42 * (t40 * t231 + t77 * t234 - t251 - t253 * t255);
-        let t259 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let t262 = t14 * rate_3_leg1;
-        let t263 = rate_3_leg1 * t262;
-        let t265 = t5 * rate_3_leg1;
-        let t266 = rate_3_leg1 * t265;
-        let t271 = 2.5 * t62 - 4.330127018922193 * t67;
-        let g2_vy_leg3 = t271 * t72;
-        let t277 = 4.330127018922193 * t62 + 2.5 * t67;
-        let minus_g2_vx_leg3 = t277 * t72;
-        let rate_2_leg3 = g2_vy_leg3 * (t201 + t265) - minus_g2_vx_leg3 * (t205 - t262);
-        let t282 = rate_2_leg3 * rate_2_leg3;
-        let t283 = 0.2 * t282;
-        let t285 = actuator_velocities[2] * actuator_velocities[2];
-        let t287 = 2.5 * (t57 - 0.08);
-        let rate_dot_1_leg3 = t72 * (t70 * t263 - t81 * t266 + t283 + t285 * t287);
-        let t291 = actuator_accelerations[2] - rate_dot_1_leg3;
-        let t298 = g1_vx_leg2 * t259 - minus_g1_vx_leg1 * t228 + g1_vx_leg3 * t291;
-        let t307 = g1_vy_leg1 * t228 - minus_g1_vy_leg2 * t259 - minus_g1_vy_leg3 * t291
-            + t167 * t298;
-        let rate_dot_3_leg1 = t174
-            * (g1_wz_leg1 * t228 + g1_wz_leg2 * t259 - minus_g1_wz_leg3 * t291
-                - t147 * t298 - t171 * t307);
-        let t315 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
-            * t129;
-        let t317 = t126 * t129;
-        let t322 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
-            * t129;
-        let t324 = t218 + t6 * rate_dot_3_leg1;
-        let t325 = 10.0 * t324;
-        let t330 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t129;
-        let t332 = t216 - t15 * rate_dot_3_leg1;
-        let t333 = 10.0 * t332;
-        let t338 = t170 * t307 - t171 * rate_dot_3_leg1;
-        let t344 = t146 * t298 + t167 * t338 - t147 * rate_dot_3_leg1;
-        let t346 = c_phi * t338 - s_phi * t344;
-        let t352 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
-            * t129;
-        let t357 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
-            * t129;
-        let t363 = t114 * t129;
-        let t365 = t118 * t129;
-        let t374 = s_phi * t338 + c_phi * t344;
-        let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t15 * minus_g2_vx_leg1;
-        let t406 = minus_g2_vx_leg1 * t322 + minus_g2_vy_leg1 * t330 + g2_wz_leg1 * t130;
-        let t407 = t332 + t344;
-        let t409 = t338 - t324;
-        let t413 = t107 * t407 + t96 * t409 + 0.04 * t222;
-        let minus_rate_dot_2_leg1 = t99 * (t413 + t214 * t224);
-        let t422 = minus_g2_vy_leg1 * t352 - minus_g2_vx_leg1 * t357 + g2_wz_leg1 * t315;
-        let t428 = g2_wz_leg1 * t317
-            - (minus_g2_vx_leg1 * t363 + minus_g2_vy_leg1 * t365);
-        let g2_wz_leg2 = t7 * g2_vy_leg2 - t16 * minus_g2_vx_leg2;
-        let t437 = g2_vy_leg2 * t330 - minus_g2_vx_leg2 * t322 - g2_wz_leg2 * t130;
-        let t440 = t344 + t16 * rate_dot_3_leg1 - t231;
-        let t444 = t338 + t7 * rate_dot_3_leg1 + t234;
-        let t448 = t245 * t440 - t239 * t444 + 0.2 * t253;
-        let minus_rate_dot_2_leg2 = t42 * (t448 + t250 * t255);
-        let t457 = g2_wz_leg2 * t315 - (minus_g2_vx_leg2 * t357 + g2_vy_leg2 * t352);
-        let t463 = g2_vy_leg2 * t365 - minus_g2_vx_leg2 * t363 + g2_wz_leg2 * t317;
-        let g2_wz_leg3 = t5 * g2_vy_leg3 + t14 * minus_g2_vx_leg3;
-        let t472 = g2_vy_leg3 * t330 - minus_g2_vx_leg3 * t322 - g2_wz_leg3 * t130;
-        let t475 = t338 + t5 * rate_dot_3_leg1 - t263;
-        let t479 = t344 - t14 * rate_dot_3_leg1 - t266;
-        let t483 = t271 * t475 - t277 * t479 - 0.2 * t285;
-        let rate_dot_2_leg3 = t72 * (t483 - t282 * t287);
-        let t492 = g2_wz_leg3 * t315 - (minus_g2_vx_leg3 * t357 + g2_vy_leg3 * t352);
-        let t498 = g2_vy_leg3 * t365 - minus_g2_vx_leg3 * t363 + g2_wz_leg3 * t317;
-        let t505 = 5.0 * (t97 * t409 - t108 * t407 + t215);
-        let t513 = t77 * t444 - t40 * t440 - t251;
-        let t521 = t81 * t479 - t70 * t475 + t283;
-        let t527 = actuator_velocities[0] + minus_rate_2_leg1;
-        let t531 = rate_2_leg2 - actuator_velocities[1];
-        let t536 = rate_2_leg3 - actuator_velocities[2];
-        let t542 = minus_rate_2_leg1 + rate_3_leg1;
-        let t549 = rate_3_leg1 - rate_2_leg2;
-        let t556 = rate_3_leg1 - rate_2_leg3;
+                - minus_g1_wz_leg3 * actuator_velocities[2] - t182 * t149 - t173 * t190);
+        let t203 = t172 * t190 - t173 * rate_3_leg1;
+        let t207 = t182 * t148 + t169 * t203 - t149 * rate_3_leg1;
+        let t208 = t86 * rate_3_leg1;
+        let minus_g2_vy_leg1 = t98 * t101;
+        let t212 = t6 * rate_3_leg1;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t207 - t208)
+            + minus_g2_vy_leg1 * (t203 - t212);
+        let t216 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t217 = 0.04 * t216;
+        let t218 = rate_3_leg1 * t212;
+        let t220 = rate_3_leg1 * t208;
+        let t224 = actuator_velocities[0] * actuator_velocities[0];
+        let t226 = 0.5 * (t93 - 0.08);
+        let rate_dot_1_leg1 = t101 * (t217 - (t110 * t218 + t99 * t220) + t224 * t226);
+        let t230 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let t232 = t7 * rate_3_leg1;
+        let t233 = rate_3_leg1 * t232;
+        let t235 = t13 * rate_3_leg1;
+        let t236 = rate_3_leg1 * t235;
+        let t241 = 4.330127018922193 * t34 + 2.5 * t29;
+        let g2_vy_leg2 = t241 * t39;
+        let t247 = 2.5 * t34 - 4.330127018922193 * t29;
+        let minus_g2_vx_leg2 = t247 * t39;
+        let rate_2_leg2 = g2_vy_leg2 * (t203 + t232) - minus_g2_vx_leg2 * (t207 + t235);
+        let t252 = rate_2_leg2 * rate_2_leg2;
+        let t253 = 0.2 * t252;
+        let t255 = actuator_velocities[1] * actuator_velocities[1];
+        let t257 = 2.5 * (t23 - 0.08);
+        let minus_rate_dot_1_leg2 = t39 * (t37 * t233 + t78 * t236 - t253 - t255 * t257);
+        let t261 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let t264 = t47 * rate_3_leg1;
+        let t265 = rate_3_leg1 * t264;
+        let t267 = t5 * rate_3_leg1;
+        let t268 = rate_3_leg1 * t267;
+        let t273 = 2.5 * t63 - 4.330127018922193 * t68;
+        let g2_vy_leg3 = t273 * t73;
+        let t279 = 4.330127018922193 * t63 + 2.5 * t68;
+        let minus_g2_vx_leg3 = t279 * t73;
+        let rate_2_leg3 = g2_vy_leg3 * (t203 + t267) - minus_g2_vx_leg3 * (t207 - t264);
+        let t284 = rate_2_leg3 * rate_2_leg3;
+        let t285 = 0.2 * t284;
+        let t287 = actuator_velocities[2] * actuator_velocities[2];
+        let t289 = 2.5 * (t58 - 0.08);
+        let rate_dot_1_leg3 = t73 * (t71 * t265 - t82 * t268 + t285 + t287 * t289);
+        let t293 = actuator_accelerations[2] - rate_dot_1_leg3;
+        let t300 = g1_vx_leg2 * t261 - minus_g1_vx_leg1 * t230 + g1_vx_leg3 * t293;
+        let t309 = g1_vy_leg1 * t230 - minus_g1_vy_leg2 * t261 - minus_g1_vy_leg3 * t293
+            + t169 * t300;
+        let rate_dot_3_leg1 = t176
+            * (g1_wz_leg1 * t230 + g1_wz_leg2 * t261 - minus_g1_wz_leg3 * t293
+                - t149 * t300 - t173 * t309);
+        let t317 = (g1_vy_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_vy_leg3)
+            * t131;
+        let t319 = t128 * t131;
+        let t324 = (g1_wz_leg2 * minus_g1_vy_leg3 + minus_g1_vy_leg2 * minus_g1_wz_leg3)
+            * t131;
+        let t326 = t220 + t6 * rate_dot_3_leg1;
+        let t327 = 10.0 * t326;
+        let t332 = (g1_wz_leg2 * g1_vx_leg3 + g1_vx_leg2 * minus_g1_wz_leg3) * t131;
+        let t334 = t218 - t86 * rate_dot_3_leg1;
+        let t335 = 10.0 * t334;
+        let t340 = t172 * t309 - t173 * rate_dot_3_leg1;
+        let t346 = t148 * t300 + t169 * t340 - t149 * rate_dot_3_leg1;
+        let t348 = c_phi * t340 - s_phi * t346;
+        let t354 = (g1_wz_leg1 * g1_vx_leg3 - minus_g1_vx_leg1 * minus_g1_wz_leg3)
+            * t131;
+        let t359 = (g1_vy_leg1 * minus_g1_wz_leg3 - g1_wz_leg1 * minus_g1_vy_leg3)
+            * t131;
+        let t365 = t116 * t131;
+        let t367 = t120 * t131;
+        let t376 = s_phi * t340 + c_phi * t346;
+        let g2_wz_leg1 = t6 * minus_g2_vy_leg1 + t86 * minus_g2_vx_leg1;
+        let t408 = minus_g2_vx_leg1 * t324 + minus_g2_vy_leg1 * t332 + g2_wz_leg1 * t132;
+        let t409 = t334 + t346;
+        let t411 = t340 - t326;
+        let t415 = t109 * t409 + t98 * t411 + 0.04 * t224;
+        let minus_rate_dot_2_leg1 = t101 * (t415 + t216 * t226);
+        let t424 = minus_g2_vy_leg1 * t354 - minus_g2_vx_leg1 * t359 + g2_wz_leg1 * t317;
+        let t430 = g2_wz_leg1 * t319
+            - (minus_g2_vx_leg1 * t365 + minus_g2_vy_leg1 * t367);
+        let g2_wz_leg2 = t7 * g2_vy_leg2 - t13 * minus_g2_vx_leg2;
+        let t439 = g2_vy_leg2 * t332 - minus_g2_vx_leg2 * t324 - g2_wz_leg2 * t132;
+        let t442 = t346 + t13 * rate_dot_3_leg1 - t233;
+        let t446 = t340 + t7 * rate_dot_3_leg1 + t236;
+        let t450 = t247 * t442 - t241 * t446 + 0.2 * t255;
+        let minus_rate_dot_2_leg2 = t39 * (t450 + t252 * t257);
+        let t459 = g2_wz_leg2 * t317 - (minus_g2_vx_leg2 * t359 + g2_vy_leg2 * t354);
+        let t465 = g2_vy_leg2 * t367 - minus_g2_vx_leg2 * t365 + g2_wz_leg2 * t319;
+        let g2_wz_leg3 = t5 * g2_vy_leg3 + t47 * minus_g2_vx_leg3;
+        let t474 = g2_vy_leg3 * t332 - minus_g2_vx_leg3 * t324 - g2_wz_leg3 * t132;
+        let t477 = t340 + t5 * rate_dot_3_leg1 - t265;
+        let t481 = t346 - t47 * rate_dot_3_leg1 - t268;
+        let t485 = t273 * t477 - t279 * t481 - 0.2 * t287;
+        let rate_dot_2_leg3 = t73 * (t485 - t284 * t289);
+        let t494 = g2_wz_leg3 * t317 - (minus_g2_vx_leg3 * t359 + g2_vy_leg3 * t354);
+        let t500 = g2_vy_leg3 * t367 - minus_g2_vx_leg3 * t365 + g2_wz_leg3 * t319;
+        let t507 = 5.0 * (t99 * t411 - t110 * t409 + t217);
+        let t515 = t78 * t446 - t37 * t442 - t253;
+        let t523 = t82 * t481 - t71 * t477 + t285;
+        let t529 = actuator_velocities[0] + minus_rate_2_leg1;
+        let t533 = rate_2_leg2 - actuator_velocities[1];
+        let t538 = rate_2_leg3 - actuator_velocities[2];
+        let t544 = minus_rate_2_leg1 + rate_3_leg1;
+        let t551 = rate_3_leg1 - rate_2_leg2;
+        let t558 = rate_3_leg1 - rate_2_leg3;
         Ok([
             [
-                -(t130 * rate_dot_3_leg1), -(t322 * t325 + t330 * t333 + t130 * t346),
-                t322 * t333 - t330 * t325 + t130 * t374, t322 * t344 + t330 * t338,
+                -(t132 * rate_dot_3_leg1), -(t324 * t327 + t332 * t335 + t132 * t348),
+                t324 * t335 - t332 * t327 + t132 * t376, t324 * t346 + t332 * t340,
                 actuator_accelerations[0], 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 1.0, 0.0, 0.0,
-                t406 * minus_rate_dot_2_leg1, -(t437 * minus_rate_dot_2_leg2),
-                t472 * rate_dot_2_leg3, 5.0 * t413 + t406 * t505, t437 * t513, -(t472 * t521),
-                ::overact::math::signed(1.0 + t406, t527), ::overact::math::signed(t437, t531),
-                ::overact::math::signed(t472, t536), ::overact::math::signed(t406 - t130, t542),
-                -::overact::math::signed(t437 + t130, t549),
-                -::overact::math::signed(t472 + t130, t556),
+                t408 * minus_rate_dot_2_leg1, -(t439 * minus_rate_dot_2_leg2),
+                t474 * rate_dot_2_leg3, 5.0 * t415 + t408 * t507, t439 * t515, -(t474 * t523),
+                ::overact::math::signed(1.0 + t408, t529), ::overact::math::signed(t439, t533),
+                ::overact::math::signed(t474, t538), ::overact::math::signed(t408 - t132, t544),
+                -::overact::math::signed(t439 + t132, t551),
+                -::overact::math::signed(t474 + t132, t558),
             ],
             [
-                t315 * rate_dot_3_leg1, t352 * t333 - t357 * t325 + t315 * t346,
-                t357 * t333 + t352 * t325 - t315 * t374, t357 * t344 - t352 * t338, 0.0,
+                t317 * rate_dot_3_leg1, t354 * t335 - t359 * t327 + t317 * t348,
+                t359 * t335 + t354 * t327 - t317 * t376, t359 * t346 - t354 * t340, 0.0,
                 actuator_accelerations[1], 0.0, 0.0, actuator_velocities[1], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 1.0, 0.0,
-                -(t422 * minus_rate_dot_2_leg1), -(t457 * minus_rate_dot_2_leg2),
-                t492 * rate_dot_2_leg3, -(t422 * t505), t448 + t457 * t513, -(t492 * t521),
-                -::overact::math::signed(t422, t527), ::overact::math::signed(t457 - 1.0, t531),
-                ::overact::math::signed(t492, t536), ::overact::math::signed(t315 - t422, t542),
-                ::overact::math::signed(t315 - t457, t549),
-                ::overact::math::signed(t315 - t492, t556),
+                -(t424 * minus_rate_dot_2_leg1), -(t459 * minus_rate_dot_2_leg2),
+                t494 * rate_dot_2_leg3, -(t424 * t507), t450 + t459 * t515, -(t494 * t523),
+                -::overact::math::signed(t424, t529), ::overact::math::signed(t459 - 1.0, t533),
+                ::overact::math::signed(t494, t538), ::overact::math::signed(t317 - t424, t544),
+                ::overact::math::signed(t317 - t459, t551),
+                ::overact::math::signed(t317 - t494, t558),
             ],
             [
-                t317 * rate_dot_3_leg1, t317 * t346 - (t363 * t325 + t365 * t333),
-                t363 * t333 - t365 * t325 - t317 * t374, t363 * t344 + t365 * t338, 0.0, 0.0,
+                t319 * rate_dot_3_leg1, t319 * t348 - (t365 * t327 + t367 * t335),
+                t365 * t335 - t367 * t327 - t319 * t376, t365 * t346 + t367 * t340, 0.0, 0.0,
                 actuator_accelerations[2], 0.0, 0.0, actuator_velocities[2], 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 1.0,
-                -(t428 * minus_rate_dot_2_leg1), -(t463 * minus_rate_dot_2_leg2),
-                t498 * rate_dot_2_leg3, -(t428 * t505), t463 * t513, -(t483 + t498 * t521),
-                -::overact::math::signed(t428, t527), ::overact::math::signed(t463, t531),
-                ::overact::math::signed(t498 - 1.0, t536),
-                ::overact::math::signed(t317 - t428, t542),
-                ::overact::math::signed(t317 - t463, t549),
-                ::overact::math::signed(t317 - t498, t556),
+                -(t430 * minus_rate_dot_2_leg1), -(t465 * minus_rate_dot_2_leg2),
+                t500 * rate_dot_2_leg3, -(t430 * t507), t465 * t515, -(t485 + t500 * t523),
+                -::overact::math::signed(t430, t529), ::overact::math::signed(t465, t533),
+                ::overact::math::signed(t500 - 1.0, t538),
+                ::overact::math::signed(t319 - t430, t544),
+                ::overact::math::signed(t319 - t465, t551),
+                ::overact::math::signed(t319 - t500, t558),
             ],
         ])
     }

@@ -883,7 +883,7 @@ impl Planar4Prr {
     ///
     /// Output: 12.
     ///
-    /// 179 operations (87 additions, 88 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 173 intermediates.
+    /// 183 operations (91 additions, 88 multiplications, 4 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 177 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -893,102 +893,101 @@ impl Planar4Prr {
         acceleration: &[f64; 3],
     ) -> Result<[f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
-        let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = pose[0] - t3 + 0.21213203435596426;
-        let t7 = 0.05656854249492381 * (s_phi + c_phi);
-        let t9 = pose[1] - t7 + 0.21213203435596426;
+        let t3 = 0.05656854249492381 * (s_phi + c_phi);
+        let t5 = pose[1] + t3 - 0.21213203435596426;
+        let t7 = 0.05656854249492381 * (c_phi - s_phi);
+        let t9 = pose[0] + t7 - 0.21213203435596426;
         let t10 = t5 - t9;
-        let t12 = pose[0] + t7 - 0.21213203435596426;
-        let t13 = t12 - t10;
-        let t14 = t5 + t9;
-        let t16 = pose[1] - t3 + 0.21213203435596426;
-        let t17 = t14 - t16;
-        let t18 = t13 - t17;
-        let t19 = t18 + t5;
-        let t20 = t17 + t13;
-        let t21 = t20 - t9;
-        let t22 = t19 - t21;
-        let t30 = 8.650519031141869
-            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
-        ::overact::guard::reach(t30, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        let t18 = 8.650519031141869 * (0.5 * (t10 * t10) - (t9 * t9 + t5 * t5 - 0.1156));
+        ::overact::guard::reach(t18, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t32 = 1.0 / minus_s2_leg1;
-        let t33 = 0.7071067811865476 * minus_s2_leg1;
-        let t34 = t21 + t19;
-        let t35 = 1.4705882352941178 * t34;
-        let t37 = t7 * acceleration[2];
-        let t39 = t3 * twist[2];
-        let t40 = twist[2] * t39;
-        let t41 = acceleration[0] + t37 + t40;
-        let t42 = t3 * acceleration[2];
-        let t44 = t7 * twist[2];
-        let t45 = twist[2] * t44;
-        let t46 = acceleration[1] - t42 + t45;
-        let t47 = t41 + t46;
-        let t49 = acceleration[1] + t37 + t40;
-        let t50 = t47 - t49;
-        let t52 = acceleration[1] - t37 - t40;
-        let t53 = t50 - t52;
-        let t54 = t41 - t53;
-        let t58 = acceleration[0] + t42 - t45;
-        let t59 = t49 - t58;
-        let t60 = t46 - t59;
-        let g2_vx_leg1 = 2.079725827019258 * t32;
-        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t44) + g2_vx_leg1 * (twist[1] + t39);
-        let t69 = rate_2_leg1 * rate_2_leg1;
-        let rate_dot_1_leg1 = t32 * ((t33 - t35) * t54 - (t35 + t33) * t60 - 0.34 * t69);
-        let rate_dot_2_leg1 = 2.9411764705882355 * t32
-            * (0.7071067811865476 * (t60 + t54) + 0.7071067811865476 * t34 * t69);
-        let t88 = 8.650519031141869
-            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
-        ::overact::guard::reach(t88, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t88);
+        let t20 = 1.0 / minus_s2_leg1;
+        let t21 = 0.7071067811865476 * minus_s2_leg1;
+        let t22 = t9 + t5;
+        let t23 = 1.4705882352941178 * t22;
+        let t25 = t3 * acceleration[2];
+        let t27 = t7 * twist[2];
+        let t28 = twist[2] * t27;
+        let t29 = acceleration[0] + t25 + t28;
+        let t30 = t7 * acceleration[2];
+        let t32 = t3 * twist[2];
+        let t33 = twist[2] * t32;
+        let t34 = acceleration[1] - t30 + t33;
+        let t35 = t29 + t34;
+        let t37 = acceleration[1] + t25 + t28;
+        let t38 = t35 - t37;
+        let t40 = acceleration[1] - t25 - t28;
+        let t41 = t38 - t40;
+        let t42 = t29 - t41;
+        let t46 = acceleration[0] + t30 - t33;
+        let t47 = t37 - t46;
+        let t48 = t34 - t47;
+        let g2_vx_leg1 = 2.079725827019258 * t20;
+        let rate_2_leg1 = g2_vx_leg1 * (twist[0] - t32) + g2_vx_leg1 * (twist[1] + t27);
+        let t57 = rate_2_leg1 * rate_2_leg1;
+        let rate_dot_1_leg1 = t20 * ((t21 - t23) * t42 - (t23 + t21) * t48 - 0.34 * t57);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t20
+            * (0.7071067811865476 * (t48 + t42) + 0.7071067811865476 * t22 * t57);
+        let t70 = pose[0] - t3 + 0.21213203435596426;
+        let t72 = pose[1] + t7 - 0.21213203435596426;
+        let t73 = t70 + t72;
+        let t81 = 8.650519031141869
+            * (0.5 * (t73 * t73) - (t70 * t70 + t72 * t72 - 0.1156));
+        ::overact::guard::reach(t81, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t81);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t90 = 1.0 / minus_s2_leg2;
-        let t91 = 0.7071067811865476 * minus_s2_leg2;
-        let t92 = 1.4705882352941178 * t18;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t90;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t44)
-            - minus_g2_vx_leg2 * (twist[0] - t39);
-        let t104 = rate_2_leg2 * rate_2_leg2;
-        let minus_rate_dot_1_leg2 = t90
-            * ((t91 - t92) * t50 + (t91 + t92) * t52 + 0.34 * t104);
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t90
-            * (0.7071067811865476 * t53 - 0.7071067811865476 * t18 * t104);
-        let t122 = 8.650519031141869
-            * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t122, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t122);
+        let t83 = 1.0 / minus_s2_leg2;
+        let t84 = 0.7071067811865476 * minus_s2_leg2;
+        let t85 = t72 - t70;
+        let t86 = 1.4705882352941178 * t85;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t83;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (twist[1] - t32)
+            - minus_g2_vx_leg2 * (twist[0] - t27);
+        let t98 = rate_2_leg2 * rate_2_leg2;
+        let minus_rate_dot_1_leg2 = t83
+            * ((t84 - t86) * t38 + (t84 + t86) * t40 + 0.34 * t98);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t83
+            * (0.7071067811865476 * t41 - 0.7071067811865476 * t85 * t98);
+        let t110 = pose[0] - t7 + 0.21213203435596426;
+        let t112 = pose[1] - t3 + 0.21213203435596426;
+        let t113 = t110 - t112;
+        let t121 = 8.650519031141869
+            * (0.5 * (t113 * t113) - (t110 * t110 + t112 * t112 - 0.1156));
+        ::overact::guard::reach(t121, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t121);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t124 = 1.0 / minus_s2_leg3;
-        let t125 = 1.4705882352941178 * t14;
+        let t123 = 1.0 / minus_s2_leg3;
+        let t124 = t110 + t112;
+        let t125 = 1.4705882352941178 * t124;
         let t126 = 0.7071067811865476 * minus_s2_leg3;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t124;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t44)
-            + minus_g2_vx_leg3 * (twist[1] - t39);
+        let minus_g2_vx_leg3 = 2.079725827019258 * t123;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (twist[0] + t32)
+            + minus_g2_vx_leg3 * (twist[1] - t27);
         let t138 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t124
-            * ((t125 - t126) * t41 + (t126 + t125) * t46 + 0.34 * t138);
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t124
-            * (0.7071067811865476 * t47 + 0.7071067811865476 * t14 * t138);
-        let t149 = t12 + t16;
-        let t157 = 8.650519031141869
-            * (0.5 * (t149 * t149) - (t12 * t12 + t16 * t16 - 0.1156));
-        ::overact::guard::reach(t157, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t157);
+        let minus_rate_dot_1_leg3 = t123
+            * ((t125 - t126) * t29 + (t126 + t125) * t34 + 0.34 * t138);
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t123
+            * (0.7071067811865476 * t35 + 0.7071067811865476 * t124 * t138);
+        let t150 = pose[0] + t3 - 0.21213203435596426;
+        let t152 = pose[1] - t7 + 0.21213203435596426;
+        let t153 = t150 + t152;
+        let t161 = 8.650519031141869
+            * (0.5 * (t153 * t153) - (t150 * t150 + t152 * t152 - 0.1156));
+        ::overact::guard::reach(t161, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t161);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t159 = 1.0 / minus_s2_leg4;
-        let t160 = t12 - t16;
-        let t161 = 1.4705882352941178 * t160;
-        let t162 = 0.7071067811865476 * minus_s2_leg4;
-        let g2_vx_leg4 = 2.079725827019258 * t159;
-        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t39) - g2_vx_leg4 * (twist[1] + t44);
-        let t174 = rate_2_leg4 * rate_2_leg4;
-        let minus_rate_dot_1_leg4 = t159
-            * ((t161 - t162) * t58 - (t162 + t161) * t49 + 0.34 * t174);
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t159
-            * (0.7071067811865476 * t59 - 0.7071067811865476 * t160 * t174);
+        let t163 = 1.0 / minus_s2_leg4;
+        let t164 = t150 - t152;
+        let t165 = 1.4705882352941178 * t164;
+        let t166 = 0.7071067811865476 * minus_s2_leg4;
+        let g2_vx_leg4 = 2.079725827019258 * t163;
+        let rate_2_leg4 = g2_vx_leg4 * (twist[0] + t27) - g2_vx_leg4 * (twist[1] + t32);
+        let t178 = rate_2_leg4 * rate_2_leg4;
+        let minus_rate_dot_1_leg4 = t163
+            * ((t165 - t166) * t46 - (t166 + t165) * t37 + 0.34 * t178);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t163
+            * (0.7071067811865476 * t47 - 0.7071067811865476 * t164 * t178);
         Ok([
             rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
@@ -1267,7 +1266,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 307 operations (112 additions, 187 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 241 intermediates.
+    /// 334 operations (126 additions, 196 multiplications, 12 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 268 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1278,235 +1277,245 @@ impl Planar4Prr {
     ) -> Result<[[f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t4 = 0.21213203435596426 - t3;
-        let t8 = 0.05656854249492381 * (c_phi - s_phi);
-        let t9 = t8 - t3;
-        let t11 = pose[0] - t4 - (pose[1] + t4 - t9);
-        let t13 = t11 + pose[1] + pose[1];
-        let t14 = 1.4705882352941178 * t13;
-        let c2_leg1 = 2.079725827019258 * t13;
-        let t17 = 1.0 - c2_leg1 * c2_leg1;
-        ::overact::guard::reach(t17, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        let t4 = s_phi + s_phi;
+        let t5 = 0.05656854249492381 * t4;
+        let t6 = t3 - t5;
+        let t8 = pose[0] + t6 - 0.21213203435596426;
+        let t10 = pose[1] + t3 - 0.21213203435596426;
+        let c2_leg1 = 2.079725827019258 * (t8 + t10);
+        let t13 = 0.7071067811865476 * c2_leg1;
+        let t14 = t10 - t8;
+        let t22 = 8.650519031141869
+            * (0.5 * (t14 * t14) - (t8 * t8 + t10 * t10 - 0.1156));
+        ::overact::guard::reach(t22, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t19 = 0.7071067811865476 * minus_s2_leg1;
-        let t20 = t14 + t19;
-        let minus_g1_vx_leg1 = t20 / minus_s2_leg1;
-        let t22 = t19 - t14;
-        let t23 = twist[2] * twist[2];
-        let t26 = c_phi * t23 + s_phi * acceleration[2];
-        let t29 = s_phi * t23 - c_phi * acceleration[2];
-        let t31 = 0.05656854249492381 * (t26 - t29);
-        let t32 = acceleration[0] + t31;
-        let t35 = t3 * twist[2];
-        let t37 = acceleration[1] - t8 * acceleration[2] + twist[2] * t35;
-        let t38 = t32 + t37;
-        let t39 = acceleration[1] + t31;
-        let t40 = t38 - t39;
-        let t41 = acceleration[1] + acceleration[0];
-        let t42 = t41 - t40;
-        let t44 = t41 - t39;
+        let t24 = 0.7071067811865476 * minus_s2_leg1;
+        let t25 = t13 + t24;
+        let minus_g1_vx_leg1 = t25 / minus_s2_leg1;
+        let t27 = t24 - t13;
+        let t28 = twist[2] * twist[2];
+        let t31 = c_phi * t28 + s_phi * acceleration[2];
+        let t34 = s_phi * t28 - c_phi * acceleration[2];
+        let t36 = 0.05656854249492381 * (t31 + t34);
+        let t37 = acceleration[1] - t36;
+        let t40 = 0.05656854249492381 * (t31 - t34);
+        let t41 = acceleration[0] - t40;
         let g2_vx_leg1 = 2.079725827019258 / minus_s2_leg1;
-        let t48 = twist[1] - t35;
-        let t49 = t8 * twist[2];
-        let t50 = twist[0] + t49;
-        let rate_2_leg1 = g2_vx_leg1 * (t48 + t50);
-        let t53 = rate_2_leg1 * rate_2_leg1;
-        let t54 = 0.34 * t53;
-        let t55 = t22 * t42 - t20 * t44 - t54;
-        let rate_dot_1_leg1 = t55 / minus_s2_leg1;
-        let t57 = minus_g1_vx_leg1 * rate_dot_1_leg1;
-        let g1_vy_leg1 = t22 / minus_s2_leg1;
-        let t59 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = t8 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let t63 = g1_wz_leg1 * rate_dot_1_leg1;
-        let t64 = twist[1] + t49;
-        let t66 = twist[0] - t35;
-        let rate_1_leg1 = g1_vy_leg1 * t64 - minus_g1_vx_leg1 * t66;
-        let t76 = t44 + t42;
+        let t45 = t3 * twist[2];
+        let t46 = twist[0] - t45;
+        let t48 = t6 * twist[2];
+        let t49 = twist[1] + t48;
+        let rate_2_leg1 = g2_vx_leg1 * t46 + g2_vx_leg1 * t49;
+        let t52 = rate_2_leg1 * rate_2_leg1;
+        let t53 = 0.34 * t52;
+        let t54 = t27 * t37 - t25 * t41 - t53;
+        let rate_dot_1_leg1 = t54 / minus_s2_leg1;
+        let t56 = minus_g1_vx_leg1 * rate_dot_1_leg1;
+        let g1_vy_leg1 = t27 / minus_s2_leg1;
+        let t58 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = t6 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
+        let t62 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vy_leg1 * t49 - minus_g1_vx_leg1 * t46;
+        let t73 = t41 + t37;
         let rate_dot_2_leg1 = 2.9411764705882355 / minus_s2_leg1
-            * (0.7071067811865476 * t76 + t54 * c2_leg1);
-        let t81 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = g2_vx_leg1 * t9;
-        let t84 = c2_leg1 * rate_dot_1_leg1;
-        let t85 = g2_vx_leg1 * t84;
-        let t88 = minus_s2_leg1 * t53 + c2_leg1 * rate_dot_2_leg1;
-        let t96 = g2_vx_leg1 * t55;
-        let t97 = 2.079725827019258 * t76;
-        let t105 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t107 = twist[2] - rate_2_leg1;
-        let t108 = ::overact::math::signed(g2_vx_leg1, t107);
-        let t111 = pose[0] + pose[0];
-        let t112 = t13 - t111;
-        let c2_leg2 = 2.079725827019258 * t112;
-        let t115 = 1.0 - c2_leg2 * c2_leg2;
-        ::overact::guard::reach(t115, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t115);
+            * (0.7071067811865476 * t73 + t53 * c2_leg1);
+        let t78 = g2_vx_leg1 * rate_dot_2_leg1;
+        let minus_g2_wz_leg1 = g2_vx_leg1 * t5;
+        let t81 = c2_leg1 * rate_dot_1_leg1;
+        let t82 = g2_vx_leg1 * t81;
+        let t85 = minus_s2_leg1 * t52 + c2_leg1 * rate_dot_2_leg1;
+        let t93 = g2_vx_leg1 * t54;
+        let t94 = 2.079725827019258 * t73;
+        let t102 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t104 = twist[2] - rate_2_leg1;
+        let t105 = ::overact::math::signed(g2_vx_leg1, t104);
+        let t109 = pose[0] - t6 + 0.21213203435596426;
+        let t111 = pose[1] - t3 + 0.21213203435596426;
+        let minus_c2_leg3 = 2.079725827019258 * (t109 + t111);
+        let t114 = t8 - t111;
+        let c2_leg4 = 2.079725827019258 * t114;
+        let c2_leg2 = c2_leg1 - (minus_c2_leg3 + c2_leg4);
+        let t119 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t119, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t119);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t117 = 0.7071067811865476 * minus_s2_leg2;
-        let t118 = 1.4705882352941178 * t112;
-        let t119 = t117 - t118;
-        let t120 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = t119 * t120;
-        let t123 = t117 + t118;
-        let t124 = acceleration[1] - t31;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t120;
-        let t128 = twist[0] + t35;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t64 - t128);
-        let t131 = rate_2_leg2 * rate_2_leg2;
-        let t132 = 0.34 * t131;
-        let t133 = t119 * t40 + t123 * t124 + t132;
-        let minus_rate_dot_1_leg2 = t120 * t133;
-        let t135 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t123 * t120;
-        let t137 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
-        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t8 * minus_g1_vx_leg2;
-        let t141 = g1_wz_leg2 * minus_rate_dot_1_leg2;
-        let t142 = twist[0] - t49;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t142 + minus_g1_vy_leg2 * t48;
-        let t153 = t40 - t124;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t120
-            * (0.7071067811865476 * t153 - t132 * c2_leg2);
-        let t158 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t9;
-        let t161 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t162 = minus_g2_vx_leg2 * t161;
-        let t165 = minus_s2_leg2 * t131 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t173 = 2.079725827019258 * t153;
-        let t175 = minus_g2_vx_leg2 * t133;
-        let t182 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t184 = twist[2] - rate_2_leg2;
-        let t185 = ::overact::math::signed(minus_g2_vx_leg2, t184);
-        let t188 = t111 - t11;
-        let t189 = 1.4705882352941178 * t188;
-        let minus_c2_leg3 = 2.079725827019258 * t188;
-        let t192 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
-        ::overact::guard::reach(t192, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t192);
+        let t121 = 0.7071067811865476 * minus_s2_leg2;
+        let t122 = 0.7071067811865476 * c2_leg2;
+        let t123 = t121 - t122;
+        let t124 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t123 * t124;
+        let t126 = acceleration[0] + t36;
+        let t128 = t121 + t122;
+        let t129 = acceleration[1] - t40;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t124;
+        let t133 = twist[1] - t45;
+        let t134 = twist[0] - t48;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t133 - t134);
+        let t137 = rate_2_leg2 * rate_2_leg2;
+        let t138 = 0.34 * t137;
+        let t139 = t123 * t126 + t128 * t129 + t138;
+        let minus_rate_dot_1_leg2 = t124 * t139;
+        let t141 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t128 * t124;
+        let t143 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2;
+        let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
+        let t147 = g1_wz_leg2 * minus_rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t134 + minus_g1_vy_leg2 * t133;
+        let t158 = t126 - t129;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t124
+            * (0.7071067811865476 * t158 - t138 * c2_leg2);
+        let t163 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let minus_g2_wz_leg2 = minus_g2_vx_leg2 * t5;
+        let t166 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t167 = minus_g2_vx_leg2 * t166;
+        let t170 = minus_s2_leg2 * t137 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t178 = 2.079725827019258 * t158;
+        let t180 = minus_g2_vx_leg2 * t139;
+        let t187 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t189 = twist[2] - rate_2_leg2;
+        let t190 = ::overact::math::signed(minus_g2_vx_leg2, t189);
+        let t193 = 0.7071067811865476 * minus_c2_leg3;
+        let t194 = t109 - t111;
+        let t202 = 8.650519031141869
+            * (0.5 * (t194 * t194) - (t109 * t109 + t111 * t111 - 0.1156));
+        ::overact::guard::reach(t202, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t202);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t194 = 0.7071067811865476 * minus_s2_leg3;
-        let t195 = t189 - t194;
-        let t196 = 1.0 / minus_s2_leg3;
-        let minus_g1_vx_leg3 = t195 * t196;
-        let t199 = t194 + t189;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t196;
-        let t203 = twist[1] + t35;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t142 + t203);
-        let t206 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t207 = 0.34 * t206;
-        let t208 = t195 * t32 + t199 * t37 + t207;
-        let minus_rate_dot_1_leg3 = t196 * t208;
-        let t210 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t199 * t196;
-        let t212 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t8 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t216 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let t218 = twist[1] - t49;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t128 + minus_g1_vy_leg3 * t218;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t196
-            * (0.7071067811865476 * t38 + t207 * minus_c2_leg3);
-        let t232 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t9;
-        let t237 = minus_s2_leg3 * t206 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t239 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t240 = minus_g2_vx_leg3 * t239;
-        let t247 = 2.079725827019258 * t38;
-        let t249 = minus_g2_vx_leg3 * t208;
-        let t256 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t258 = minus_rate_2_leg3 + twist[2];
-        let t259 = ::overact::math::signed(minus_g2_vx_leg3, t258);
-        let t262 = 1.4705882352941178 * t11;
-        let c2_leg4 = 2.079725827019258 * t11;
-        let t265 = 1.0 - c2_leg4 * c2_leg4;
-        ::overact::guard::reach(t265, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t265);
+        let t204 = 0.7071067811865476 * minus_s2_leg3;
+        let t205 = t193 - t204;
+        let minus_g1_vx_leg3 = t205 / minus_s2_leg3;
+        let t207 = acceleration[0] + t40;
+        let t209 = t204 + t193;
+        let t210 = acceleration[1] + t36;
+        let t213 = 2.9411764705882355 / minus_s2_leg3;
+        let minus_g2_vx_leg3 = 0.7071067811865476 * t213;
+        let t215 = twist[0] + t45;
+        let t217 = twist[1] - t48;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t215 + minus_g2_vx_leg3 * t217;
+        let t220 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t221 = 0.34 * t220;
+        let t222 = t205 * t207 + t209 * t210 + t221;
+        let minus_rate_dot_1_leg3 = t222 / minus_s2_leg3;
+        let t224 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t209 / minus_s2_leg3;
+        let t226 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t6 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
+        let t230 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t215 + minus_g1_vy_leg3 * t217;
+        let t240 = t207 + t210;
+        let minus_rate_dot_2_leg3 = t213
+            * (0.7071067811865476 * t240 + t221 * minus_c2_leg3);
+        let t245 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let minus_g2_wz_leg3 = 0.11764705882352941 * (t4 / minus_s2_leg3);
+        let t251 = minus_s2_leg3 * t220 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t253 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t254 = minus_g2_vx_leg3 * t253;
+        let t261 = 2.079725827019258 * t240;
+        let t263 = minus_g2_vx_leg3 * t222;
+        let t270 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t272 = minus_rate_2_leg3 + twist[2];
+        let t273 = ::overact::math::signed(minus_g2_vx_leg3, t272);
+        let t276 = 0.7071067811865476 * c2_leg4;
+        let t277 = t10 + t109;
+        let t281 = pose[0] + t3 - 0.21213203435596426;
+        let t282 = t281 * t281;
+        let t288 = 8.650519031141869
+            * (0.5 * (t277 * t277) - (t282 + t282 - t114 * t277 - 0.1156));
+        ::overact::guard::reach(t288, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t288);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t267 = 0.7071067811865476 * minus_s2_leg4;
-        let t268 = t262 - t267;
-        let t269 = 1.0 / minus_s2_leg4;
-        let minus_g1_vx_leg4 = t268 * t269;
-        let t271 = t41 - t37;
-        let t273 = t267 + t262;
-        let g2_vx_leg4 = 2.079725827019258 * t269;
-        let rate_2_leg4 = g2_vx_leg4 * (t66 - t218);
-        let t279 = rate_2_leg4 * rate_2_leg4;
-        let t280 = 0.34 * t279;
-        let t281 = t268 * t271 - t273 * t39 + t280;
-        let minus_rate_dot_1_leg4 = t269 * t281;
-        let t283 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
-        let g1_vy_leg4 = t273 * t269;
-        let t285 = g1_vy_leg4 * minus_rate_dot_1_leg4;
-        let g1_wz_leg4 = t3 * g1_vy_leg4 - t8 * minus_g1_vx_leg4;
-        let t289 = g1_wz_leg4 * minus_rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vy_leg4 * t203 - minus_g1_vx_leg4 * t50;
-        let t300 = t39 - t271;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t269
-            * (0.7071067811865476 * t300 - t280 * c2_leg4);
-        let t305 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t9;
-        let t310 = minus_s2_leg4 * t279 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t312 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t313 = g2_vx_leg4 * t312;
-        let t320 = 2.079725827019258 * t300;
-        let t322 = g2_vx_leg4 * t281;
-        let t329 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t331 = twist[2] - rate_2_leg4;
-        let t332 = ::overact::math::signed(g2_vx_leg4, t331);
+        let t290 = 0.7071067811865476 * minus_s2_leg4;
+        let t291 = t276 - t290;
+        let t292 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t291 * t292;
+        let t294 = t240 - t126;
+        let t295 = t210 - t41;
+        let t298 = t290 + t276;
+        let g2_vx_leg4 = 2.079725827019258 * t292;
+        let t302 = twist[0] + t48;
+        let t304 = twist[1] + t45;
+        let rate_2_leg4 = g2_vx_leg4 * t302 - g2_vx_leg4 * t304;
+        let t307 = rate_2_leg4 * rate_2_leg4;
+        let t308 = 0.34 * t307;
+        let t309 = t291 * (t294 - t295) - t298 * t294 + t308;
+        let minus_rate_dot_1_leg4 = t292 * t309;
+        let t311 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4;
+        let g1_vy_leg4 = t298 * t292;
+        let t313 = g1_vy_leg4 * minus_rate_dot_1_leg4;
+        let g1_wz_leg4 = t3 * g1_vy_leg4 - t6 * minus_g1_vx_leg4;
+        let t317 = g1_wz_leg4 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t304 - minus_g1_vx_leg4 * t302;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t292
+            * (0.7071067811865476 * t295 - t308 * c2_leg4);
+        let t332 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let minus_g2_wz_leg4 = g2_vx_leg4 * t5;
+        let t337 = minus_s2_leg4 * t307 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t339 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t340 = g2_vx_leg4 * t339;
+        let t347 = 2.079725827019258 * t295;
+        let t349 = g2_vx_leg4 * t309;
+        let t356 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t358 = twist[2] - rate_2_leg4;
+        let t359 = ::overact::math::signed(g2_vx_leg4, t358);
         Ok([
             [
-                -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t81,
-                t85 - minus_g1_vx_leg1 * t88, t96 - minus_g1_vx_leg1 * t97, -t57, t105, -t108, t135,
-                t135, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t56, -t56, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t78,
+                t82 - minus_g1_vx_leg1 * t85, t93 - minus_g1_vx_leg1 * t94, -t56, t102, -t105, t141,
+                t141, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t158, t162 - minus_g1_vx_leg2 * t165, minus_g1_vx_leg2 * t173 + t175, t135, -t182,
-                t185, t210, t210, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t163, t167 - minus_g1_vx_leg2 * t170, minus_g1_vx_leg2 * t178 + t180, t141, -t187,
+                t190, t224, t224, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t232, -(minus_g1_vx_leg3 * t237 + t240), minus_g1_vx_leg3 * t247 + t249, t210, t256,
-                t259, t283, t283, -(minus_g1_vx_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t305,
-                -(minus_g1_vx_leg4 * t310 + t313), minus_g1_vx_leg4 * t320 - t322, t283, t329,
-                -t332, 0.0, -t26, t29, acceleration[0],
+                t245, -(minus_g1_vx_leg3 * t251 + t254), minus_g1_vx_leg3 * t261 + t263, t224, t270,
+                t273, t311, t311, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t332,
+                -(minus_g1_vx_leg4 * t337 + t340), minus_g1_vx_leg4 * t347 - t349, t311, t356,
+                -t359, 0.0, -t31, t34, acceleration[0],
             ],
             [
-                t59, t59, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t81,
-                g1_vy_leg1 * t88 + t85, g1_vy_leg1 * t97 + t96, t59, t105, -t108, t137, t137,
+                t58, t58, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t78,
+                g1_vy_leg1 * t85 + t82, g1_vy_leg1 * t94 + t93, t58, t102, -t105, t143, t143,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t158, -(minus_g1_vy_leg2 * t165 + t162), minus_g1_vy_leg2 * t173 - t175, t137,
-                t182, -t185, t212, t212, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                -t163, -(minus_g1_vy_leg2 * t170 + t167), minus_g1_vy_leg2 * t178 - t180, t143,
+                t187, -t190, t226, t226, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t232, -(minus_g1_vy_leg3 * t237 + t240), minus_g1_vy_leg3 * t247 + t249, t212, t256,
-                t259, -t285, -t285, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t305,
-                g1_vy_leg4 * t310 + t313, t322 - g1_vy_leg4 * t320, -t285, -t329, t332, 0.0, -t29,
-                -t26, acceleration[1],
+                t245, -(minus_g1_vy_leg3 * t251 + t254), minus_g1_vy_leg3 * t261 + t263, t226, t270,
+                t273, -t313, -t313, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t332,
+                g1_vy_leg4 * t337 + t340, t349 - g1_vy_leg4 * t347, -t313, -t356, t359, 0.0, -t34,
+                -t31, acceleration[1],
             ],
             [
-                t63, t63, g1_wz_leg1 * rate_1_leg1,
+                t62, t62, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t88 + g2_wz_leg1 * t84,
-                g1_wz_leg1 * t97 + g2_wz_leg1 * t55, t63,
-                ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t107), -t141, -t141,
+                -(minus_g2_wz_leg1 * rate_dot_2_leg1), g1_wz_leg1 * t85 - minus_g2_wz_leg1 * t81,
+                g1_wz_leg1 * t94 - minus_g2_wz_leg1 * t54, t62,
+                -::overact::math::signed(minus_g2_wz_leg1, rate_2_leg1),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg1, t104), -t147, -t147,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t165 - g2_wz_leg2 * t161,
-                -(g1_wz_leg2 * t173 + g2_wz_leg2 * t133), -t141,
-                ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t184), -t216, -t216,
+                minus_g2_wz_leg2 * minus_rate_dot_2_leg2,
+                g1_wz_leg2 * t170 + minus_g2_wz_leg2 * t166,
+                -(g1_wz_leg2 * t178 - minus_g2_wz_leg2 * t139), -t147,
+                -::overact::math::signed(minus_g2_wz_leg2, rate_2_leg2),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg2, t189), -t230, -t230,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t237 + g2_wz_leg3 * t239,
-                -(g1_wz_leg3 * t247 + g2_wz_leg3 * t208), -t216,
-                -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t258), -t289, -t289,
+                minus_g2_wz_leg3 * minus_rate_dot_2_leg3,
+                g1_wz_leg3 * t251 - minus_g2_wz_leg3 * t253,
+                -(g1_wz_leg3 * t261 - minus_g2_wz_leg3 * t222), -t230,
+                ::overact::math::signed(minus_g2_wz_leg3, minus_rate_2_leg3),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg3, t272), -t317, -t317,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
-                g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
-                g1_wz_leg4 * t310 - g2_wz_leg4 * t312, -(g1_wz_leg4 * t320 + g2_wz_leg4 * t281),
-                -t289, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t331), acceleration[2],
+                g1_wz_leg4, minus_g2_wz_leg4 * minus_rate_dot_2_leg4,
+                g1_wz_leg4 * t337 + minus_g2_wz_leg4 * t339,
+                -(g1_wz_leg4 * t347 - minus_g2_wz_leg4 * t309), -t317,
+                -::overact::math::signed(minus_g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 + minus_g2_wz_leg4, t358), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -1523,7 +1532,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 281 operations (100 additions, 173 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 221 intermediates.
+    /// 281 operations (99 additions, 176 multiplications, 6 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 221 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1542,136 +1551,136 @@ impl Planar4Prr {
         ::overact::guard::leg(s2_leg3, 0.7624400821657589, "leg3")?;
         ::overact::guard::leg(s2_leg4, 0.7624400821657589, "leg4")?;
         let t2 = c2_leg1 - s2_leg1;
-        let t3 = 0.7071067811865476 / s2_leg1;
-        let g1_vx_leg1 = t2 * t3;
-        let t7 = twist[2] * twist[2];
-        let t10 = c_phi * t7 + s_phi * acceleration[2];
-        let t13 = s_phi * t7 - c_phi * acceleration[2];
-        let t15 = 0.05656854249492381 * (t10 - t13);
-        let t16 = acceleration[1] + t15;
-        let t17 = acceleration[0] + acceleration[1];
-        let t18 = t17 - t16;
         let minus_g2_vx_leg1 = 2.079725827019258 / s2_leg1;
-        let t21 = 0.05656854249492381 * (s_phi + c_phi);
-        let t22 = t21 * twist[2];
-        let t23 = twist[0] - t22;
-        let t25 = 0.05656854249492381 * (c_phi - s_phi);
-        let t26 = t25 * twist[2];
-        let t27 = twist[1] + t26;
-        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t23 + t27);
-        let t30 = minus_rate_2_leg1 * minus_rate_2_leg1;
-        let t31 = 0.2404163056034262 * t30;
-        let t33 = t18 + t2 * t31;
-        let t35 = s2_leg1 + c2_leg1;
-        let g1_vy_leg1 = t35 * t3;
-        let t37 = acceleration[0] + t15;
-        let t41 = acceleration[1] - t25 * acceleration[2] + twist[2] * t22;
-        let t42 = t37 + t41;
-        let t43 = t42 - t16;
-        let t44 = t17 - t43;
-        let t46 = t44 + t35 * t31;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t33 + g1_vy_leg1 * t46;
-        let t49 = g1_vx_leg1 * rate_dot_1_leg1;
-        let t50 = g1_vy_leg1 * rate_dot_1_leg1;
-        let g1_wz_leg1 = g1_vy_leg1 * t25 - g1_vx_leg1 * t21;
-        let t54 = g1_wz_leg1 * rate_dot_1_leg1;
-        let rate_1_leg1 = g1_vx_leg1 * t23 + g1_vy_leg1 * t27;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t33 + t46);
-        let t66 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t67 = t21 - t25;
-        let g2_wz_leg1 = minus_g2_vx_leg1 * t67;
-        let t72 = s2_leg1 * t30 + c2_leg1 * minus_rate_dot_2_leg1;
-        let t74 = c2_leg1 * rate_dot_1_leg1;
-        let t75 = minus_g2_vx_leg1 * t74;
-        let t83 = 2.079725827019258 * (t18 + t44);
-        let t85 = 2.079725827019258 * rate_dot_1_leg1;
-        let t92 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t94 = minus_rate_2_leg1 + twist[2];
-        let t95 = ::overact::math::signed(minus_g2_vx_leg1, t94);
-        let t100 = c2_leg2 + s2_leg2;
-        let t101 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = t100 * t101;
-        let t103 = 0.2404163056034262 + 0.2404163056034262;
-        let g2_vx_leg2 = t101 * 2.9411764705882355;
-        let t105 = twist[0] + t22;
-        let minus_rate_2_leg2 = g2_vx_leg2 * (t27 - t105);
-        let t108 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t111 = s2_leg2 - c2_leg2;
-        let t112 = t17 - t37;
-        let rate_dot_1_leg2 = t101 * (t103 * t108 - (t100 * t43 + t111 * t112));
-        let t117 = minus_g1_vx_leg2 * rate_dot_1_leg2;
-        let minus_g1_vy_leg2 = t111 * t101;
-        let t119 = minus_g1_vy_leg2 * rate_dot_1_leg2;
-        let g1_wz_leg2 = t21 * minus_g1_vy_leg2 + t25 * minus_g1_vx_leg2;
-        let t123 = g1_wz_leg2 * rate_dot_1_leg2;
-        let t124 = twist[0] - t26;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t124
-            + minus_g1_vy_leg2 * (twist[1] - t22);
-        let t136 = t43 - t112;
-        let rate_dot_2_leg2 = 2.9411764705882355 / s2_leg2
-            * (0.7071067811865476 * t136 - t108 * (0.34 * c2_leg2));
+        let t4 = minus_g2_vx_leg1 * 0.34;
+        let g1_vx_leg1 = t2 * t4;
+        let t8 = twist[2] * twist[2];
+        let t11 = c_phi * t8 + s_phi * acceleration[2];
+        let t14 = s_phi * t8 - c_phi * acceleration[2];
+        let t16 = 0.05656854249492381 * (t11 - t14);
+        let t17 = acceleration[0] - t16;
+        let t19 = 0.05656854249492381 * (s_phi + c_phi);
+        let t20 = t19 * twist[2];
+        let t21 = twist[1] - t20;
+        let t23 = 0.05656854249492381 * (c_phi - s_phi);
+        let t24 = t23 * twist[2];
+        let t25 = twist[0] + t24;
+        let minus_rate_2_leg1 = minus_g2_vx_leg1 * (t21 + t25);
+        let t28 = minus_rate_2_leg1 * minus_rate_2_leg1;
+        let t29 = 0.2404163056034262 * t28;
+        let t31 = t17 + t2 * t29;
+        let t33 = s2_leg1 + c2_leg1;
+        let g1_vy_leg1 = t33 * t4;
+        let t35 = acceleration[0] + t16;
+        let t39 = acceleration[1] - t23 * acceleration[2] + twist[2] * t20;
+        let t40 = t35 + t39;
+        let t41 = acceleration[1] + t16;
+        let t42 = t40 - t41;
+        let t43 = acceleration[1] - t16;
+        let t44 = t42 - t43;
+        let t45 = t35 - t44;
+        let t47 = t45 + t33 * t29;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t31 + g1_vy_leg1 * t47;
+        let t50 = g1_vx_leg1 * rate_dot_1_leg1;
+        let t51 = g1_vy_leg1 * rate_dot_1_leg1;
+        let g1_wz_leg1 = g1_vy_leg1 * t23 - g1_vx_leg1 * t19;
+        let t55 = g1_wz_leg1 * rate_dot_1_leg1;
+        let rate_1_leg1 = g1_vx_leg1 * (twist[0] - t20) + g1_vy_leg1 * (twist[1] + t24);
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t31 + t47);
+        let t69 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t70 = t19 - t23;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t70;
+        let t75 = s2_leg1 * t28 + c2_leg1 * minus_rate_dot_2_leg1;
+        let t77 = c2_leg1 * rate_dot_1_leg1;
+        let t78 = minus_g2_vx_leg1 * t77;
+        let t85 = t17 + t45;
+        let t86 = 2.079725827019258 * t85;
+        let t88 = s2_leg1 * rate_dot_1_leg1;
+        let t89 = minus_g2_vx_leg1 * t88;
+        let t96 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t98 = minus_rate_2_leg1 + twist[2];
+        let t99 = ::overact::math::signed(minus_g2_vx_leg1, t98);
+        let t104 = c2_leg2 + s2_leg2;
+        let t105 = 2.9411764705882355 / s2_leg2;
+        let t106 = 0.2404163056034262 * t105;
+        let minus_g1_vx_leg2 = t104 * t106;
+        let t108 = 0.2404163056034262 + 0.2404163056034262;
+        let g2_vx_leg2 = 0.7071067811865476 * t105;
+        let t110 = twist[0] - t24;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t21 - t110);
+        let t113 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t116 = s2_leg2 - c2_leg2;
+        let rate_dot_1_leg2 = t106 * (t108 * t113 - (t104 * t42 + t116 * t43));
+        let t121 = minus_g1_vx_leg2 * rate_dot_1_leg2;
+        let minus_g1_vy_leg2 = t116 * t106;
+        let t123 = minus_g1_vy_leg2 * rate_dot_1_leg2;
+        let g1_wz_leg2 = t19 * minus_g1_vy_leg2 + t23 * minus_g1_vx_leg2;
+        let t127 = g1_wz_leg2 * rate_dot_1_leg2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t110 + minus_g1_vy_leg2 * t21;
+        let rate_dot_2_leg2 = t105
+            * (0.7071067811865476 * t44 - t113 * (0.34 * c2_leg2));
         let t142 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = g2_vx_leg2 * t67;
+        let g2_wz_leg2 = g2_vx_leg2 * t70;
         let t145 = c2_leg2 * rate_dot_1_leg2;
         let t146 = g2_vx_leg2 * t145;
-        let t149 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t108;
-        let t157 = 2.079725827019258 * t136;
+        let t149 = c2_leg2 * rate_dot_2_leg2 - s2_leg2 * t113;
+        let t157 = 2.079725827019258 * t44;
         let t159 = 2.079725827019258 * rate_dot_1_leg2;
         let t166 = -minus_rate_2_leg2;
         let t167 = ::overact::math::signed(g2_vx_leg2, t166);
         let t169 = twist[2] + minus_rate_2_leg2;
         let t170 = ::overact::math::signed(g2_vx_leg2, t169);
         let t175 = s2_leg3 - c2_leg3;
-        let t176 = 2.9411764705882355 / s2_leg3;
-        let t177 = 0.2404163056034262 * t176;
-        let g1_vx_leg3 = t175 * t177;
-        let t179 = s2_leg3 + c2_leg3;
-        let g2_vx_leg3 = 2.079725827019258 / s2_leg3;
-        let t184 = twist[1] + t22;
-        let rate_2_leg3 = g2_vx_leg3 * (t124 + t184);
-        let t187 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t177 * (t179 * t41 - t175 * t37 - t103 * t187);
-        let t191 = g1_vx_leg3 * minus_rate_dot_1_leg3;
-        let minus_g1_vy_leg3 = t179 * t177;
-        let t193 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
-        let g1_wz_leg3 = t25 * minus_g1_vy_leg3 + t21 * g1_vx_leg3;
-        let t197 = g1_wz_leg3 * minus_rate_dot_1_leg3;
-        let rate_1_leg3 = g1_vx_leg3 * t105 - minus_g1_vy_leg3 * (twist[1] - t26);
-        let minus_rate_dot_2_leg3 = t176
-            * (t187 * (0.34 * c2_leg3) - 0.7071067811865476 * t42);
+        let t176 = 0.7071067811865476 / s2_leg3;
+        let g1_vx_leg3 = t175 * t176;
+        let t178 = s2_leg3 + c2_leg3;
+        let t182 = 2.9411764705882355 / s2_leg3;
+        let g2_vx_leg3 = 0.7071067811865476 * t182;
+        let t184 = twist[0] + t20;
+        let t185 = twist[1] - t24;
+        let rate_2_leg3 = g2_vx_leg3 * (t184 + t185);
+        let t188 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t176 * (t178 * t39 - t175 * t35 - t108 * t188);
+        let t192 = g1_vx_leg3 * minus_rate_dot_1_leg3;
+        let minus_g1_vy_leg3 = t178 * t176;
+        let t194 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3;
+        let g1_wz_leg3 = t23 * minus_g1_vy_leg3 + t19 * g1_vx_leg3;
+        let t198 = g1_wz_leg3 * minus_rate_dot_1_leg3;
+        let rate_1_leg3 = g1_vx_leg3 * t184 - minus_g1_vy_leg3 * t185;
+        let minus_rate_dot_2_leg3 = t182
+            * (t188 * (0.34 * c2_leg3) - 0.7071067811865476 * t40);
         let t213 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = g2_vx_leg3 * t67;
-        let t218 = s2_leg3 * t187 + c2_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t70;
+        let t218 = s2_leg3 * t188 + c2_leg3 * minus_rate_dot_2_leg3;
         let t220 = c2_leg3 * minus_rate_dot_1_leg3;
         let t221 = g2_vx_leg3 * t220;
         let t228 = 2.079725827019258 * minus_rate_dot_1_leg3;
-        let t229 = 2.079725827019258 * t42;
+        let t229 = 2.079725827019258 * t40;
         let t237 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
         let t239 = twist[2] - rate_2_leg3;
         let t240 = ::overact::math::signed(g2_vx_leg3, t239);
         let t245 = c2_leg4 + s2_leg4;
-        let t246 = 2.9411764705882355 / s2_leg4;
-        let t247 = 0.2404163056034262 * t246;
-        let g1_vx_leg4 = t245 * t247;
-        let t249 = t17 - t41;
-        let t251 = c2_leg4 - s2_leg4;
-        let minus_g2_vx_leg4 = 2.079725827019258 / s2_leg4;
-        let t255 = twist[0] + t26;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t255 - t184);
-        let t258 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let rate_dot_1_leg4 = t247 * (t245 * t249 - t251 * t16 + t103 * t258);
-        let t262 = g1_vx_leg4 * rate_dot_1_leg4;
-        let minus_g1_vy_leg4 = t251 * t247;
-        let t264 = minus_g1_vy_leg4 * rate_dot_1_leg4;
-        let g1_wz_leg4 = t25 * g1_vx_leg4 - t21 * minus_g1_vy_leg4;
-        let t268 = g1_wz_leg4 * rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vx_leg4 * t255 - minus_g1_vy_leg4 * t184;
-        let t278 = t16 - t249;
-        let rate_dot_2_leg4 = t246
-            * (0.7071067811865476 * t278 - t258 * (0.34 * c2_leg4));
+        let t246 = 0.7071067811865476 / s2_leg4;
+        let g1_vx_leg4 = t245 * t246;
+        let t248 = t85 - t43;
+        let t250 = c2_leg4 - s2_leg4;
+        let minus_g2_vx_leg4 = 2.9411764705882355 * t246;
+        let t254 = twist[1] + t20;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t25 - t254);
+        let t257 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t246 * (t245 * t248 - t250 * t41 + t108 * t257);
+        let t261 = g1_vx_leg4 * rate_dot_1_leg4;
+        let minus_g1_vy_leg4 = t250 * t246;
+        let t263 = minus_g1_vy_leg4 * rate_dot_1_leg4;
+        let g1_wz_leg4 = t23 * g1_vx_leg4 - t19 * minus_g1_vy_leg4;
+        let t267 = g1_wz_leg4 * rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vx_leg4 * t25 - minus_g1_vy_leg4 * t254;
+        let t278 = t41 - t248;
+        let rate_dot_2_leg4 = 2.9411764705882355 / s2_leg4
+            * (0.7071067811865476 * t278 - t257 * (0.34 * c2_leg4));
         let t284 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = minus_g2_vx_leg4 * t67;
-        let t289 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t258;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t70;
+        let t289 = c2_leg4 * rate_dot_2_leg4 - s2_leg4 * t257;
         let t291 = c2_leg4 * rate_dot_1_leg4;
         let t292 = minus_g2_vx_leg4 * t291;
         let t299 = 2.079725827019258 * rate_dot_1_leg4;
@@ -1682,54 +1691,54 @@ impl Planar4Prr {
         let t312 = ::overact::math::signed(minus_g2_vx_leg4, t311);
         Ok([
             [
-                t49, t49, g1_vx_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t66,
-                -(g1_vx_leg1 * t72 + t75), g1_vx_leg1 * t83 + t85, t49, t92, t95, -t117, -t117,
+                t50, t50, g1_vx_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t69,
+                -(g1_vx_leg1 * t75 + t78), g1_vx_leg1 * t86 + t89, t50, t96, t99, -t121, -t121,
                 minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t142, t146 - minus_g1_vx_leg2 * t149, minus_g1_vx_leg2 * t157 - t159, -t117, t167,
-                -t170, -t191, -t191, g1_vx_leg3 * rate_1_leg3,
+                t142, t146 - minus_g1_vx_leg2 * t149, minus_g1_vx_leg2 * t157 - t159, -t121, t167,
+                -t170, -t192, -t192, g1_vx_leg3 * rate_1_leg3,
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3), g1_vx_leg3, -t213,
-                -(g1_vx_leg3 * t218 + t221), t228 - g1_vx_leg3 * t229, -t191, t237, -t240, t262,
-                t262, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
-                g1_vx_leg4, -t284, g1_vx_leg4 * t289 - t292, t299 - g1_vx_leg4 * t300, t262, -t309,
-                t312, 0.0, -t10, t13, acceleration[0],
+                -(g1_vx_leg3 * t218 + t221), t228 - g1_vx_leg3 * t229, -t192, t237, -t240, t261,
+                t261, g1_vx_leg4 * rate_1_leg4, ::overact::math::signed(g1_vx_leg4, rate_1_leg4),
+                g1_vx_leg4, -t284, g1_vx_leg4 * t289 - t292, t299 - g1_vx_leg4 * t300, t261, -t309,
+                t312, 0.0, -t11, t14, acceleration[0],
             ],
             [
-                t50, t50, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t66,
-                -(g1_vy_leg1 * t72 + t75), g1_vy_leg1 * t83 + t85, t50, t92, t95, -t119, -t119,
+                t51, t51, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t69,
+                -(g1_vy_leg1 * t75 + t78), g1_vy_leg1 * t86 + t89, t51, t96, t99, -t123, -t123,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t142, -(minus_g1_vy_leg2 * t149 + t146), minus_g1_vy_leg2 * t157 + t159, -t119,
-                -t167, t170, t193, t193, -(minus_g1_vy_leg3 * rate_1_leg3),
+                -t142, -(minus_g1_vy_leg2 * t149 + t146), minus_g1_vy_leg2 * t157 + t159, -t123,
+                -t167, t170, t194, t194, -(minus_g1_vy_leg3 * rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3), -minus_g1_vy_leg3, -t213,
-                minus_g1_vy_leg3 * t218 - t221, minus_g1_vy_leg3 * t229 + t228, t193, t237, -t240,
-                -t264, -t264, -(minus_g1_vy_leg4 * rate_1_leg4),
+                minus_g1_vy_leg3 * t218 - t221, minus_g1_vy_leg3 * t229 + t228, t194, t237, -t240,
+                -t263, -t263, -(minus_g1_vy_leg4 * rate_1_leg4),
                 -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), -minus_g1_vy_leg4, t284,
-                t292 - minus_g1_vy_leg4 * t289, minus_g1_vy_leg4 * t300 - t299, -t264, t309, -t312,
-                0.0, -t13, -t10, acceleration[1],
+                t292 - minus_g1_vy_leg4 * t289, minus_g1_vy_leg4 * t300 - t299, -t263, t309, -t312,
+                0.0, -t14, -t11, acceleration[1],
             ],
             [
-                t54, t54, g1_wz_leg1 * rate_1_leg1,
+                t55, t55, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t74 - g1_wz_leg1 * t72,
-                g1_wz_leg1 * t83 - t85 * t67, t54,
+                -(g2_wz_leg1 * minus_rate_dot_2_leg1), g2_wz_leg1 * t77 - g1_wz_leg1 * t75,
+                g1_wz_leg1 * t86 - g2_wz_leg1 * t88, t55,
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t94), t123, t123,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t98), t127, t127,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
                 g2_wz_leg2 * rate_dot_2_leg2, g1_wz_leg2 * t149 + g2_wz_leg2 * t145,
-                -(g1_wz_leg2 * t157 + t159 * t67), t123, ::overact::math::signed(g2_wz_leg2, t166),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t169), -t197, -t197,
+                -(g1_wz_leg2 * t157 + t159 * t70), t127, ::overact::math::signed(g2_wz_leg2, t166),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t169), -t198, -t198,
                 g1_wz_leg3 * rate_1_leg3, ::overact::math::signed(g1_wz_leg3, rate_1_leg3),
                 g1_wz_leg3, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g1_wz_leg3 * t218 + g2_wz_leg3 * t220), t228 * t67 - g1_wz_leg3 * t229, -t197,
+                -(g1_wz_leg3 * t218 + g2_wz_leg3 * t220), t228 * t70 - g1_wz_leg3 * t229, -t198,
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t239), t268, t268,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t239), t267, t267,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg4 * t289 + g2_wz_leg4 * t291,
-                -(g1_wz_leg4 * t300 + t299 * t67), t268, ::overact::math::signed(g2_wz_leg4, t308),
+                -(g1_wz_leg4 * t300 + t299 * t70), t267, ::overact::math::signed(g2_wz_leg4, t308),
                 ::overact::math::signed(1.0 - g2_wz_leg4, t311), acceleration[2],
                 c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
@@ -1747,7 +1756,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 455 operations (174 additions, 263 multiplications, 18 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 386 intermediates.
+    /// 464 operations (179 additions, 278 multiplications, 7 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 395 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1760,290 +1769,295 @@ impl Planar4Prr {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
-        let t4 = 0.21213203435596426 - t3;
+        let t5 = pose[0] - t3 + 0.21213203435596426;
         let t7 = 0.05656854249492381 * (c_phi - s_phi);
         let t8 = t7 - t3;
-        let t10 = pose[1] + t4 - t8 + t4;
-        let t11 = pose[0] - t10;
-        let t12 = pose[1] + pose[1];
-        let t13 = t11 + t12;
-        let t14 = 1.4705882352941178 * t13;
-        let c2_leg1 = 2.079725827019258 * t13;
-        let t17 = 1.0 - c2_leg1 * c2_leg1;
-        ::overact::guard::reach(t17, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t17);
+        let t11 = pose[1] - t3 + 0.21213203435596426;
+        let t12 = t5 - t8 + t11;
+        let minus_c2_leg3 = 2.079725827019258 * t12;
+        let t16 = pose[1] + t7 - 0.21213203435596426 - t5;
+        let c2_leg2 = 2.079725827019258 * t16;
+        let t20 = pose[0] + t7 - 0.21213203435596426 - t11;
+        let c2_leg4 = 2.079725827019258 * t20;
+        let c2_leg1 = minus_c2_leg3 + c2_leg2 + c2_leg4;
+        let t24 = 0.7071067811865476 * c2_leg1;
+        let t26 = 1.0 - c2_leg1 * c2_leg1;
+        ::overact::guard::reach(t26, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t26);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t19 = 0.7071067811865476 * minus_s2_leg1;
-        let t20 = t14 + t19;
-        let t21 = 1.0 / minus_s2_leg1;
-        let minus_g1_vx_leg1 = t20 * t21;
-        let t23 = t19 - t14;
-        let g1_vy_leg1 = t23 * t21;
+        let t28 = 0.7071067811865476 * minus_s2_leg1;
+        let t29 = t24 + t28;
+        let t30 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t29 * t30;
+        let t32 = t28 - t24;
+        let g1_vy_leg1 = t32 * t30;
         let g1_wz_leg1 = t7 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
-        let t29 = pose[0] + t10;
-        let t30 = t12 - t29;
-        let c2_leg2 = 2.079725827019258 * t30;
-        let t33 = 1.0 - c2_leg2 * c2_leg2;
-        ::overact::guard::reach(t33, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t33);
+        let t39 = 1.0 - c2_leg2 * c2_leg2;
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t35 = 0.7071067811865476 * minus_s2_leg2;
-        let t36 = 1.4705882352941178 * t30;
-        let t37 = t35 + t36;
-        let t38 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t37 * t38;
-        let t41 = t35 - t36;
-        let minus_g1_vx_leg2 = t41 * t38;
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = 1.4705882352941178 * t16;
+        let t43 = t41 - t42;
+        let t44 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t43 * t44;
+        let t46 = t41 + t42;
+        let minus_g1_vy_leg2 = t46 * t44;
         let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t7 * minus_g1_vx_leg2;
-        let minus_c2_leg3 = 2.079725827019258 * t29;
-        let t49 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
-        ::overact::guard::reach(t49, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t49);
+        let t53 = 1.4705882352941178 * t12;
+        let t55 = 1.0 - minus_c2_leg3 * minus_c2_leg3;
+        ::overact::guard::reach(t55, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t55);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t51 = 0.7071067811865476 * minus_s2_leg3;
-        let t52 = 1.4705882352941178 * t29;
-        let t53 = t51 + t52;
-        let minus_g1_vy_leg3 = t53 / minus_s2_leg3;
-        let t56 = t52 - t51;
-        let minus_g1_vx_leg3 = t56 / minus_s2_leg3;
+        let t57 = 0.7071067811865476 * minus_s2_leg3;
+        let t58 = t53 - t57;
+        let t59 = 1.0 / minus_s2_leg3;
+        let minus_g1_vx_leg3 = t58 * t59;
+        let t61 = t57 + t53;
+        let minus_g1_vy_leg3 = t61 * t59;
         let g1_wz_leg3 = t7 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let c2_leg4 = 2.079725827019258 * t11;
-        let t64 = 1.0 - c2_leg4 * c2_leg4;
-        ::overact::guard::reach(t64, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t64);
+        let t68 = 1.4705882352941178 * t20;
+        let t70 = 1.0 - c2_leg4 * c2_leg4;
+        ::overact::guard::reach(t70, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t70);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t66 = 0.7071067811865476 * minus_s2_leg4;
-        let t67 = 1.4705882352941178 * t11;
-        let t68 = t66 + t67;
-        let t69 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t68 * t69;
-        let t72 = t67 - t66;
-        let minus_g1_vx_leg4 = t72 * t69;
+        let t72 = 0.7071067811865476 * minus_s2_leg4;
+        let t73 = t68 - t72;
+        let t74 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t73 * t74;
+        let t76 = t72 + t68;
+        let g1_vy_leg4 = t76 * t74;
         let g1_wz_leg4 = t3 * g1_vy_leg4 - t7 * minus_g1_vx_leg4;
-        let t84 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t82 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
+        let t89 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
+            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
+        ::overact::guard::platform(t89, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t89, 3.440476190476192, "actuators")?;
+        let t90 = 1.0 / t89;
+        let t91 = t82 * t90;
+        let t114 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
+        let t116 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t114 * t91;
+        let t124 = t114 * t90;
+        let t126 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
+            - t114 * t124;
+        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t126, 3.440476190476192, "actuators")?;
+        let t127 = 1.0 / t126;
+        let t128 = t116 * t127;
+        let t130 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t82 * t91
+            - t116 * t128;
+        ::overact::guard::platform(t130, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t130, 0.02560000000000001, "actuators")?;
+        let t131 = 1.0 / t130;
+        let t145 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t91 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
-            + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1
-            + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
-            + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
-        let t99 = t91 / t98;
-        let t115 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
-            + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t117 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t115 * t99;
-        let t125 = t115 / t98;
-        let t127 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
-            + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t115 * t125;
-        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
-        let t128 = t117 / t127;
-        let t137 = g1_vy_leg1 * actuator_velocities[0]
+        let t156 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t84 * t125;
-        let t139 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t145 * t124;
+        let t158 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t84 * t99 - t128 * t137;
-        let t150 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t91 * t99
-            - t117 * t128;
-        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
-        let rate_3_leg1 = t139 / t150;
-        let t152 = t7 * rate_3_leg1;
-        let t153 = rate_3_leg1 * t152;
-        let t155 = t3 * rate_3_leg1;
-        let t156 = rate_3_leg1 * t155;
-        let g2_vx_leg1 = 2.079725827019258 * t21;
-        let t164 = t137 / t127 - t128 * rate_3_leg1;
-        let t167 = t99 * rate_3_leg1 - (t84 / t98 + t125 * t164);
-        let t168 = t167 - t155;
-        let t169 = t164 + t152;
-        let rate_2_leg1 = g2_vx_leg1 * (t168 + t169);
-        let t172 = rate_2_leg1 * rate_2_leg1;
-        let t173 = 0.34 * t172;
-        let rate_dot_1_leg1 = t21 * (t20 * t153 - t23 * t156 - t173);
-        let t176 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t38;
-        let t182 = t167 + t155;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t169 - t182);
-        let t185 = rate_2_leg2 * rate_2_leg2;
-        let t186 = 0.34 * t185;
-        let minus_rate_dot_1_leg2 = t38 * (t41 * t156 - t37 * t153 + t186);
-        let t189 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 / minus_s2_leg3;
-        let t196 = t164 - t152;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t182 + t196);
-        let t199 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t200 = 0.34 * t199;
-        let minus_rate_dot_1_leg3 = (t56 * t153 + t53 * t156 + t200) / minus_s2_leg3;
-        let t203 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 * t69;
-        let rate_2_leg4 = g2_vx_leg4 * (t168 - t196);
-        let t209 = rate_2_leg4 * rate_2_leg4;
-        let t210 = 0.34 * t209;
-        let minus_rate_dot_1_leg4 = t69 * (t210 - (t72 * t156 + t68 * t153));
-        let t216 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t225 = minus_g1_vx_leg1 * t176 + minus_g1_vx_leg2 * t189
-            + minus_g1_vx_leg3 * t203 + minus_g1_vx_leg4 * t216;
-        let t227 = g1_vy_leg1 * t176 - minus_g1_vy_leg2 * t189 - minus_g1_vy_leg3 * t203
-            + g1_vy_leg4 * t216 + t125 * t225;
-        let t239 = g1_wz_leg1 * t176 + g1_wz_leg2 * t189 + g1_wz_leg3 * t203
-            + g1_wz_leg4 * t216 - t99 * t225 - t128 * t227;
-        let rate_dot_3_leg1 = t239 / t150;
-        let t242 = t227 / t127 - t128 * rate_dot_3_leg1;
-        let t244 = t156 - t7 * rate_dot_3_leg1;
-        let t245 = t242 - t244;
-        let t247 = t242 + t244;
-        let t249 = t153 + t3 * rate_dot_3_leg1;
-        let t250 = t242 + t249;
-        let t255 = t99 * rate_dot_3_leg1 - (t225 / t98 + t125 * t242);
-        let t256 = t255 - t244;
-        let t257 = t250 - t256;
-        let t258 = t247 - t257;
-        let t261 = t23 * t245 - t20 * t258 - t173;
-        let rate_dot_1_leg1_2 = t21 * t261;
-        let t263 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
-        let t264 = g1_vy_leg1 * rate_dot_1_leg1_2;
-        let t265 = g1_wz_leg1 * rate_dot_1_leg1_2;
-        let rate_1_leg1 = g1_vy_leg1 * t169 - minus_g1_vx_leg1 * t168;
-        let t276 = t258 + t245;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t21
-            * (0.7071067811865476 * t276 + t173 * c2_leg1);
-        let t281 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = g2_vx_leg1 * t8;
-        let t284 = c2_leg1 * rate_dot_1_leg1_2;
-        let t285 = g2_vx_leg1 * t284;
-        let t288 = minus_s2_leg1 * t172 + c2_leg1 * rate_dot_2_leg1;
-        let t296 = g2_vx_leg1 * t261;
-        let t297 = 2.079725827019258 * t276;
-        let t305 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t307 = rate_3_leg1 - rate_2_leg1;
-        let t308 = ::overact::math::signed(g2_vx_leg1, t307);
-        let t311 = t276 - t256;
-        let t312 = t255 + t249;
-        let t313 = t312 - t245;
-        let t318 = t41 * (t311 + t313) + t37 * t311 + t186;
-        let minus_rate_dot_1_leg2_2 = t38 * t318;
-        let t320 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
-        let t321 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
-        let t322 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (t167 - t152)
-            + minus_g1_vy_leg2 * (t164 - t155);
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t38
-            * (0.7071067811865476 * t313 - t186 * c2_leg2);
-        let t339 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+            + g1_wz_leg4 * actuator_velocities[3] - t145 * t91 - t128 * t156;
+        let rate_3_leg1 = t131 * t158;
+        let t160 = t7 * rate_3_leg1;
+        let t161 = rate_3_leg1 * t160;
+        let t163 = t3 * rate_3_leg1;
+        let t164 = rate_3_leg1 * t163;
+        let g2_vx_leg1 = 2.079725827019258 * t30;
+        let t172 = t127 * t156 - t128 * rate_3_leg1;
+        let t175 = t91 * rate_3_leg1 - (t145 * t90 + t124 * t172);
+        let t176 = t175 - t163;
+        let t177 = t172 + t160;
+        let rate_2_leg1 = g2_vx_leg1 * (t176 + t177);
+        let t180 = rate_2_leg1 * rate_2_leg1;
+        let t181 = 0.34 * t180;
+        let rate_dot_1_leg1 = t30 * (t29 * t161 - t32 * t164 - t181);
+        let t184 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t44;
+        let t190 = t175 + t163;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t177 - t190);
+        let t193 = rate_2_leg2 * rate_2_leg2;
+        let t194 = 0.34 * t193;
+        let minus_rate_dot_1_leg2 = t44 * (t43 * t164 - t46 * t161 + t194);
+        let t197 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t59;
+        let t204 = t175 - t160;
+        let t205 = t172 + t163;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t204 + t205);
+        let t208 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t209 = 0.34 * t208;
+        let minus_rate_dot_1_leg3 = t59 * (t58 * t161 + t61 * t164 + t209);
+        let t212 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t74;
+        let t216 = t172 - t160;
+        let rate_2_leg4 = g2_vx_leg4 * (t176 - t216);
+        let t219 = rate_2_leg4 * rate_2_leg4;
+        let t220 = 0.34 * t219;
+        let minus_rate_dot_1_leg4 = t74 * (t220 - (t73 * t164 + t76 * t161));
+        let t226 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t235 = minus_g1_vx_leg1 * t184 + minus_g1_vx_leg2 * t197
+            + minus_g1_vx_leg3 * t212 + minus_g1_vx_leg4 * t226;
+        let t246 = g1_vy_leg1 * t184 - minus_g1_vy_leg2 * t197 - minus_g1_vy_leg3 * t212
+            + g1_vy_leg4 * t226 + t124 * t235;
+        let t248 = g1_wz_leg1 * t184 + g1_wz_leg2 * t197 + g1_wz_leg3 * t212
+            + g1_wz_leg4 * t226 - t91 * t235 - t128 * t246;
+        let rate_dot_3_leg1 = t131 * t248;
+        let t254 = t127 * t246 - t128 * rate_dot_3_leg1;
+        let t257 = t91 * rate_dot_3_leg1 - (t90 * t235 + t124 * t254);
+        let t259 = t161 + t3 * rate_dot_3_leg1;
+        let t260 = t257 + t259;
+        let t262 = t164 - t7 * rate_dot_3_leg1;
+        let t263 = t254 + t262;
+        let t264 = t260 + t263;
+        let t265 = t254 + t259;
+        let t266 = t264 - t265;
+        let t267 = t254 - t259;
+        let t268 = t266 - t267;
+        let t269 = t260 - t268;
+        let t271 = t257 - t262;
+        let t272 = t265 - t271;
+        let t273 = t263 - t272;
+        let t276 = t32 * t269 - t29 * t273 - t181;
+        let rate_dot_1_leg1_2 = t30 * t276;
+        let t278 = minus_g1_vx_leg1 * rate_dot_1_leg1_2;
+        let t279 = g1_vy_leg1 * rate_dot_1_leg1_2;
+        let t280 = g1_wz_leg1 * rate_dot_1_leg1_2;
+        let rate_1_leg1 = g1_vy_leg1 * t177 - minus_g1_vx_leg1 * t176;
+        let t291 = t273 + t269;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t30
+            * (0.7071067811865476 * t291 + t181 * c2_leg1);
+        let t296 = g2_vx_leg1 * rate_dot_2_leg1;
         let g2_wz_leg2 = minus_g2_vx_leg2 * t8;
-        let t342 = c2_leg2 * minus_rate_dot_1_leg2_2;
-        let t343 = minus_g2_vx_leg2 * t342;
-        let t346 = minus_s2_leg2 * t185 - c2_leg2 * minus_rate_dot_2_leg2;
-        let t354 = 2.079725827019258 * t313;
-        let t356 = minus_g2_vx_leg2 * t318;
-        let t363 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t365 = rate_3_leg1 - rate_2_leg2;
-        let t366 = ::overact::math::signed(minus_g2_vx_leg2, t365);
-        let t372 = t56 * t312 + t53 * t247 + t200;
-        let minus_rate_dot_1_leg3_2 = t372 / minus_s2_leg3;
-        let t374 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
-        let t375 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
-        let t376 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t182 + minus_g1_vy_leg3 * t196;
-        let t387 = t312 + t247;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 / minus_s2_leg3
-            * (0.7071067811865476 * t387 + t200 * minus_c2_leg3);
-        let t392 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg1 = t30 * (minus_s2_leg2 * g2_wz_leg2);
+        let t301 = c2_leg1 * rate_dot_1_leg1_2;
+        let t302 = g2_vx_leg1 * t301;
+        let t305 = minus_s2_leg1 * t180 + c2_leg1 * rate_dot_2_leg1;
+        let t313 = g2_vx_leg1 * t276;
+        let t314 = 2.079725827019258 * t291;
+        let t322 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t324 = rate_3_leg1 - rate_2_leg1;
+        let t325 = ::overact::math::signed(g2_vx_leg1, t324);
+        let t331 = t43 * t266 + t46 * t267 + t194;
+        let minus_rate_dot_1_leg2_2 = t44 * t331;
+        let t333 = minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2;
+        let t334 = minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2;
+        let t335 = g1_wz_leg2 * minus_rate_dot_1_leg2_2;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t204
+            + minus_g1_vy_leg2 * (t172 - t163);
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t44
+            * (0.7071067811865476 * t268 - t194 * c2_leg2);
+        let t351 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let t353 = c2_leg2 * minus_rate_dot_1_leg2_2;
+        let t354 = minus_g2_vx_leg2 * t353;
+        let t357 = minus_s2_leg2 * t193 - c2_leg2 * minus_rate_dot_2_leg2;
+        let t365 = 2.079725827019258 * t268;
+        let t367 = minus_g2_vx_leg2 * t331;
+        let t374 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t376 = rate_3_leg1 - rate_2_leg2;
+        let t377 = ::overact::math::signed(minus_g2_vx_leg2, t376);
+        let t383 = t58 * t260 + t61 * t263 + t209;
+        let minus_rate_dot_1_leg3_2 = t59 * t383;
+        let t385 = minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2;
+        let t386 = minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2;
+        let t387 = g1_wz_leg3 * minus_rate_dot_1_leg3_2;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t190 + minus_g1_vy_leg3 * t216;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t59
+            * (0.7071067811865476 * t264 + t209 * minus_c2_leg3);
+        let t402 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         let g2_wz_leg3 = minus_g2_vx_leg3 * t8;
-        let t397 = minus_s2_leg3 * t199 + minus_c2_leg3 * minus_rate_dot_2_leg3;
-        let t399 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
-        let t400 = minus_g2_vx_leg3 * t399;
-        let t407 = 2.079725827019258 * t387;
-        let t409 = minus_g2_vx_leg3 * t372;
-        let t416 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t418 = minus_rate_2_leg3 + rate_3_leg1;
-        let t419 = ::overact::math::signed(minus_g2_vx_leg3, t418);
-        let t425 = t72 * t256 - t68 * t250 + t210;
-        let minus_rate_dot_1_leg4_2 = t69 * t425;
-        let t427 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
-        let t428 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
-        let t429 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
-        let rate_1_leg4 = g1_vy_leg4 * (t164 + t155) - minus_g1_vx_leg4 * (t167 + t152);
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t69
-            * (0.7071067811865476 * t257 - t210 * c2_leg4);
-        let t446 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let t407 = minus_s2_leg3 * t208 + minus_c2_leg3 * minus_rate_dot_2_leg3;
+        let t409 = minus_c2_leg3 * minus_rate_dot_1_leg3_2;
+        let t410 = minus_g2_vx_leg3 * t409;
+        let t417 = 2.079725827019258 * t264;
+        let t419 = minus_g2_vx_leg3 * t383;
+        let t426 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t428 = minus_rate_2_leg3 + rate_3_leg1;
+        let t429 = ::overact::math::signed(minus_g2_vx_leg3, t428);
+        let t435 = t73 * t271 - t76 * t265 + t220;
+        let minus_rate_dot_1_leg4_2 = t74 * t435;
+        let t437 = minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2;
+        let t438 = g1_vy_leg4 * minus_rate_dot_1_leg4_2;
+        let t439 = g1_wz_leg4 * minus_rate_dot_1_leg4_2;
+        let rate_1_leg4 = g1_vy_leg4 * t205 - minus_g1_vx_leg4 * (t175 + t160);
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t74
+            * (0.7071067811865476 * t272 - t220 * c2_leg4);
+        let t455 = g2_vx_leg4 * minus_rate_dot_2_leg4;
         let g2_wz_leg4 = g2_vx_leg4 * t8;
-        let t451 = minus_s2_leg4 * t209 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t453 = c2_leg4 * minus_rate_dot_1_leg4_2;
-        let t454 = g2_vx_leg4 * t453;
-        let t461 = 2.079725827019258 * t257;
-        let t463 = g2_vx_leg4 * t425;
-        let t470 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t472 = rate_3_leg1 - rate_2_leg4;
-        let t473 = ::overact::math::signed(g2_vx_leg4, t472);
-        let t476 = rate_3_leg1 * rate_3_leg1;
-        let t479 = c_phi * t476 + s_phi * rate_dot_3_leg1;
-        let t482 = s_phi * t476 - c_phi * rate_dot_3_leg1;
+        let t460 = minus_s2_leg4 * t219 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t462 = c2_leg4 * minus_rate_dot_1_leg4_2;
+        let t463 = g2_vx_leg4 * t462;
+        let t470 = 2.079725827019258 * t272;
+        let t472 = g2_vx_leg4 * t435;
+        let t479 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t481 = rate_3_leg1 - rate_2_leg4;
+        let t482 = ::overact::math::signed(g2_vx_leg4, t481);
+        let t485 = rate_3_leg1 * rate_3_leg1;
+        let t488 = c_phi * t485 + s_phi * rate_dot_3_leg1;
+        let t491 = s_phi * t485 - c_phi * rate_dot_3_leg1;
         Ok([
             [
-                -t263, -t263, -(minus_g1_vx_leg1 * rate_1_leg1),
-                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t281,
-                t285 - minus_g1_vx_leg1 * t288, t296 - minus_g1_vx_leg1 * t297, -t263, t305, -t308,
-                t320, t320, minus_g1_vx_leg2 * minus_rate_1_leg2,
+                -t278, -t278, -(minus_g1_vx_leg1 * rate_1_leg1),
+                -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t296,
+                t302 - minus_g1_vx_leg1 * t305, t313 - minus_g1_vx_leg1 * t314, -t278, t322, -t325,
+                t333, t333, minus_g1_vx_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2), -minus_g1_vx_leg2,
-                t339, t343 - minus_g1_vx_leg2 * t346, minus_g1_vx_leg2 * t354 + t356, t320, -t363,
-                t366, t374, t374, minus_g1_vx_leg3 * minus_rate_1_leg3,
+                t351, t354 - minus_g1_vx_leg2 * t357, minus_g1_vx_leg2 * t365 + t367, t333, -t374,
+                t377, t385, t385, minus_g1_vx_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3), -minus_g1_vx_leg3,
-                t392, -(minus_g1_vx_leg3 * t397 + t400), minus_g1_vx_leg3 * t407 + t409, t374, t416,
-                t419, t427, t427, -(minus_g1_vx_leg4 * rate_1_leg4),
-                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t446,
-                -(minus_g1_vx_leg4 * t451 + t454), minus_g1_vx_leg4 * t461 - t463, t427, t470,
-                -t473, 0.0, -t479, t482, t255,
+                t402, -(minus_g1_vx_leg3 * t407 + t410), minus_g1_vx_leg3 * t417 + t419, t385, t426,
+                t429, t437, t437, -(minus_g1_vx_leg4 * rate_1_leg4),
+                -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg4, -t455,
+                -(minus_g1_vx_leg4 * t460 + t463), minus_g1_vx_leg4 * t470 - t472, t437, t479,
+                -t482, 0.0, -t488, t491, t257,
             ],
             [
-                t264, t264, g1_vy_leg1 * rate_1_leg1,
-                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t281,
-                g1_vy_leg1 * t288 + t285, g1_vy_leg1 * t297 + t296, t264, t305, -t308, t321, t321,
+                t279, t279, g1_vy_leg1 * rate_1_leg1,
+                ::overact::math::signed(g1_vy_leg1, rate_1_leg1), g1_vy_leg1, t296,
+                g1_vy_leg1 * t305 + t302, g1_vy_leg1 * t314 + t313, t279, t322, -t325, t334, t334,
                 minus_g1_vy_leg2 * minus_rate_1_leg2,
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2), -minus_g1_vy_leg2,
-                -t339, -(minus_g1_vy_leg2 * t346 + t343), minus_g1_vy_leg2 * t354 - t356, t321,
-                t363, -t366, t375, t375, minus_g1_vy_leg3 * minus_rate_1_leg3,
+                -t351, -(minus_g1_vy_leg2 * t357 + t354), minus_g1_vy_leg2 * t365 - t367, t334,
+                t374, -t377, t386, t386, minus_g1_vy_leg3 * minus_rate_1_leg3,
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3), -minus_g1_vy_leg3,
-                t392, -(minus_g1_vy_leg3 * t397 + t400), minus_g1_vy_leg3 * t407 + t409, t375, t416,
-                t419, -t428, -t428, g1_vy_leg4 * rate_1_leg4,
-                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t446,
-                g1_vy_leg4 * t451 + t454, t463 - g1_vy_leg4 * t461, -t428, -t470, t473, 0.0, -t482,
-                -t479, t242,
+                t402, -(minus_g1_vy_leg3 * t407 + t410), minus_g1_vy_leg3 * t417 + t419, t386, t426,
+                t429, -t438, -t438, g1_vy_leg4 * rate_1_leg4,
+                ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg4, t455,
+                g1_vy_leg4 * t460 + t463, t472 - g1_vy_leg4 * t470, -t438, -t479, t482, 0.0, -t491,
+                -t488, t254,
             ],
             [
-                t265, t265, g1_wz_leg1 * rate_1_leg1,
+                t280, t280, g1_wz_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_wz_leg1, rate_1_leg1), g1_wz_leg1,
-                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t288 + g2_wz_leg1 * t284,
-                g1_wz_leg1 * t297 + g2_wz_leg1 * t261, t265,
+                g2_wz_leg1 * rate_dot_2_leg1, g1_wz_leg1 * t305 + g2_wz_leg1 * t301,
+                g1_wz_leg1 * t314 + g2_wz_leg1 * t276, t280,
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t307), -t322, -t322,
+                ::overact::math::signed(1.0 - g2_wz_leg1, t324), -t335, -t335,
                 -(g1_wz_leg2 * minus_rate_1_leg2),
                 -::overact::math::signed(g1_wz_leg2, minus_rate_1_leg2), g1_wz_leg2,
-                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t346 - g2_wz_leg2 * t342,
-                -(g1_wz_leg2 * t354 + g2_wz_leg2 * t318), -t322,
+                -(g2_wz_leg2 * minus_rate_dot_2_leg2), g1_wz_leg2 * t357 - g2_wz_leg2 * t353,
+                -(g1_wz_leg2 * t365 + g2_wz_leg2 * t331), -t335,
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t365), -t376, -t376,
+                ::overact::math::signed(1.0 - g2_wz_leg2, t376), -t387, -t387,
                 -(g1_wz_leg3 * minus_rate_1_leg3),
                 -::overact::math::signed(g1_wz_leg3, minus_rate_1_leg3), g1_wz_leg3,
-                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t397 + g2_wz_leg3 * t399,
-                -(g1_wz_leg3 * t407 + g2_wz_leg3 * t372), -t376,
+                -(g2_wz_leg3 * minus_rate_dot_2_leg3), g1_wz_leg3 * t407 + g2_wz_leg3 * t409,
+                -(g1_wz_leg3 * t417 + g2_wz_leg3 * t383), -t387,
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t418), -t429, -t429,
+                ::overact::math::signed(1.0 - g2_wz_leg3, t428), -t439, -t439,
                 g1_wz_leg4 * rate_1_leg4, ::overact::math::signed(g1_wz_leg4, rate_1_leg4),
                 g1_wz_leg4, -(g2_wz_leg4 * minus_rate_dot_2_leg4),
-                g1_wz_leg4 * t451 - g2_wz_leg4 * t453, -(g1_wz_leg4 * t461 + g2_wz_leg4 * t425),
-                -t429, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t472), rate_dot_3_leg1,
-                c_phi * t242 - s_phi * t255, -(s_phi * t242 + c_phi * t255), 0.0,
+                g1_wz_leg4 * t460 - g2_wz_leg4 * t462, -(g1_wz_leg4 * t470 + g2_wz_leg4 * t435),
+                -t439, ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t481), rate_dot_3_leg1,
+                c_phi * t254 - s_phi * t257, -(s_phi * t254 + c_phi * t257), 0.0,
             ],
         ])
     }
@@ -2057,7 +2071,7 @@ impl Planar4Prr {
     /// Output: 3 x 48.
     /// Columns: `PARAMETERS`.
     ///
-    /// 491 operations (187 additions, 299 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 434 intermediates.
+    /// 492 operations (188 additions, 299 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 30 signs, 435 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2076,267 +2090,267 @@ impl Planar4Prr {
         let t10 = t5 - t9;
         let t12 = pose[0] + t7 - 0.21213203435596426;
         let t13 = t12 - t10;
-        let t14 = t5 + t9;
-        let t16 = pose[1] - t3 + 0.21213203435596426;
-        let t17 = t14 - t16;
-        let t18 = t13 - t17;
-        let t19 = t18 + t5;
-        let t20 = t17 + t13;
-        let t21 = t20 - t9;
-        let t22 = t19 - t21;
-        let t30 = 8.650519031141869
-            * (0.5 * (t22 * t22) - (t21 * t21 + t19 * t19 - 0.1156));
-        ::overact::guard::reach(t30, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t30);
+        let t15 = pose[0] - t7 + 0.21213203435596426;
+        let t16 = t13 - t15;
+        let t17 = t16 + t5;
+        let t18 = t15 + t13;
+        let t19 = t18 - t9;
+        let t20 = t17 - t19;
+        let t28 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t19 * t19 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t28, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t28);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t32 = 1.0 / minus_s2_leg1;
-        let t33 = 0.7071067811865476 * minus_s2_leg1;
-        let t34 = t21 + t19;
-        let t35 = 1.4705882352941178 * t34;
-        let t36 = t33 - t35;
-        let t37 = t7 * acceleration[2];
-        let t39 = t3 * twist[2];
-        let t40 = twist[2] * t39;
-        let t41 = acceleration[0] + t37 + t40;
-        let t42 = t3 * acceleration[2];
-        let t44 = t7 * twist[2];
-        let t45 = twist[2] * t44;
-        let t46 = acceleration[1] - t42 + t45;
-        let t47 = t41 + t46;
-        let t49 = acceleration[1] + t37 + t40;
-        let t50 = t47 - t49;
-        let t52 = acceleration[1] - t37 - t40;
-        let t53 = t50 - t52;
-        let t54 = t41 - t53;
-        let t56 = t35 + t33;
-        let t58 = acceleration[0] + t42 - t45;
-        let t59 = t49 - t58;
-        let t60 = t46 - t59;
-        let g2_vx_leg1 = 2.079725827019258 * t32;
-        let t64 = twist[0] - t44;
-        let t66 = twist[1] + t39;
-        let rate_2_leg1 = g2_vx_leg1 * t64 + g2_vx_leg1 * t66;
-        let t69 = rate_2_leg1 * rate_2_leg1;
-        let t70 = 0.34 * t69;
-        let t71 = t36 * t54 - t56 * t60 - t70;
-        let rate_dot_1_leg1 = t32 * t71;
-        let g1_vy_leg1 = t36 * t32;
-        let minus_g1_vx_leg1 = t56 * t32;
-        let rate_1_leg1 = g1_vy_leg1 * t66 - minus_g1_vx_leg1 * t64;
-        let t86 = 8.650519031141869
-            * (0.5 * (t20 * t20) - (t17 * t17 + t13 * t13 - 0.1156));
-        ::overact::guard::reach(t86, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t86);
+        let t30 = 1.0 / minus_s2_leg1;
+        let t31 = 0.7071067811865476 * minus_s2_leg1;
+        let t32 = t19 + t17;
+        let t33 = 1.4705882352941178 * t32;
+        let t34 = t31 - t33;
+        let t35 = t7 * acceleration[2];
+        let t37 = t3 * twist[2];
+        let t38 = twist[2] * t37;
+        let t39 = acceleration[0] + t35 + t38;
+        let t40 = t3 * acceleration[2];
+        let t42 = t7 * twist[2];
+        let t43 = twist[2] * t42;
+        let t44 = acceleration[1] - t40 + t43;
+        let t45 = t39 + t44;
+        let t47 = acceleration[1] + t35 + t38;
+        let t48 = t45 - t47;
+        let t50 = acceleration[1] - t35 - t38;
+        let t51 = t48 - t50;
+        let t52 = t39 - t51;
+        let t54 = t33 + t31;
+        let t56 = acceleration[0] + t40 - t43;
+        let t57 = t47 - t56;
+        let t58 = t44 - t57;
+        let g2_vx_leg1 = 2.079725827019258 * t30;
+        let t62 = twist[0] - t42;
+        let t64 = twist[1] + t37;
+        let rate_2_leg1 = g2_vx_leg1 * t62 + g2_vx_leg1 * t64;
+        let t67 = rate_2_leg1 * rate_2_leg1;
+        let t68 = 0.34 * t67;
+        let t69 = t34 * t52 - t54 * t58 - t68;
+        let rate_dot_1_leg1 = t30 * t69;
+        let g1_vy_leg1 = t34 * t30;
+        let minus_g1_vx_leg1 = t54 * t30;
+        let rate_1_leg1 = g1_vy_leg1 * t64 - minus_g1_vx_leg1 * t62;
+        let t84 = 8.650519031141869
+            * (0.5 * (t18 * t18) - (t15 * t15 + t13 * t13 - 0.1156));
+        ::overact::guard::reach(t84, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t84);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t88 = 0.7071067811865476 * minus_s2_leg2;
-        let t89 = 1.4705882352941178 * t18;
-        let t90 = t88 + t89;
-        let t91 = 1.0 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t90 * t91;
-        let t94 = t88 - t89;
-        let minus_g1_vx_leg2 = t94 * t91;
+        let t86 = 0.7071067811865476 * minus_s2_leg2;
+        let t87 = 1.4705882352941178 * t16;
+        let t88 = t86 + t87;
+        let t89 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t88 * t89;
+        let t92 = t86 - t87;
+        let minus_g1_vx_leg2 = t92 * t89;
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t105 = 8.650519031141869
+        let t103 = 8.650519031141869
             * (0.5 * (t10 * t10) - (t5 * t5 + t9 * t9 - 0.1156));
-        ::overact::guard::reach(t105, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t105);
+        ::overact::guard::reach(t103, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t103);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t107 = 0.7071067811865476 * minus_s2_leg3;
-        let t108 = 1.4705882352941178 * t14;
-        let t109 = t107 + t108;
-        let t110 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t109 * t110;
-        let t114 = t108 - t107;
-        let minus_g1_vx_leg3 = t114 * t110;
+        let t105 = 0.7071067811865476 * minus_s2_leg3;
+        let t106 = t5 + t9;
+        let t107 = 1.4705882352941178 * t106;
+        let t108 = t105 + t107;
+        let t109 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t108 * t109;
+        let t113 = t107 - t105;
+        let minus_g1_vx_leg3 = t113 * t109;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
         let g1_wz_leg1 = t3 * g1_vy_leg1 + t7 * minus_g1_vx_leg1;
-        let t125 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t129 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
-        let t134 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t136 = minus_g1_vx_leg2 * t125 + minus_g1_vy_leg2 * t129 - g1_wz_leg2 * t134;
-        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t136, 0.2752380952380954, "kept actuators")?;
-        let t137 = 1.0 / t136;
-        let t138 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
-            * t137;
-        let t143 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
-            * t137;
-        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t32 - t6 * t32);
-        let t153 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
-            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t137;
-        let t155 = g2_vx_leg1 * t138 - g2_vx_leg1 * t143 + g2_wz_leg1 * t153;
-        let t157 = t60 + t54;
-        let c2_leg1 = 2.079725827019258 * t34;
-        let rate_dot_2_leg1 = 2.9411764705882355 * t32
-            * (0.7071067811865476 * t157 + t70 * c2_leg1);
-        let t164 = t125 * t137;
-        let t166 = t129 * t137;
-        let t169 = t134 * t137;
-        let t171 = g2_vx_leg1 * t164 + g2_vx_leg1 * t166 + g2_wz_leg1 * t169;
-        let t176 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t137;
-        let t181 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
-            * t137;
-        let t187 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
-            * t137;
-        let t189 = g2_vx_leg1 * t176 + g2_vx_leg1 * t181 + g2_wz_leg1 * t187;
-        let t194 = c2_leg1 * rate_dot_1_leg1;
-        let t208 = twist[2] - rate_2_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 * t91;
-        let t218 = twist[1] - t44;
-        let t220 = twist[0] - t39;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t218 - minus_g2_vx_leg2 * t220;
-        let t223 = rate_2_leg2 * rate_2_leg2;
-        let t224 = 0.34 * t223;
-        let t225 = t94 * t50 + t90 * t52 + t224;
-        let minus_rate_dot_1_leg2 = t91 * t225;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t220 + minus_g1_vy_leg2 * t218;
-        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t91 - t6 * t91);
-        let t239 = g2_wz_leg2 * t153
-            - (minus_g2_vx_leg2 * t138 + minus_g2_vx_leg2 * t143);
-        let c2_leg2 = 2.079725827019258 * t18;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t91
-            * (0.7071067811865476 * t53 - c2_leg2 * t224);
-        let t251 = minus_g2_vx_leg2 * t164 - minus_g2_vx_leg2 * t166 - g2_wz_leg2 * t169;
-        let t257 = minus_g2_vx_leg2 * t181 - minus_g2_vx_leg2 * t176 + g2_wz_leg2 * t187;
-        let t259 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t276 = twist[2] - rate_2_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 * t110;
-        let t286 = twist[0] + t44;
-        let t288 = twist[1] - t39;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t286 + minus_g2_vx_leg3 * t288;
-        let t291 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t292 = 0.34 * t291;
-        let t293 = t114 * t41 + t109 * t46 + t292;
-        let minus_rate_dot_1_leg3 = t110 * t293;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t286 + minus_g1_vy_leg3 * t288;
-        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t110 - t6 * t110);
-        let t307 = minus_g2_vx_leg3 * t143 - minus_g2_vx_leg3 * t138 + g2_wz_leg3 * t153;
-        let minus_c2_leg3 = 2.079725827019258 * t14;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t110
-            * (0.7071067811865476 * t47 + minus_c2_leg3 * t292);
-        let t319 = minus_g2_vx_leg3 * t164 + minus_g2_vx_leg3 * t166 - g2_wz_leg3 * t169;
-        let t325 = g2_wz_leg3 * t187
-            - (minus_g2_vx_leg3 * t176 + minus_g2_vx_leg3 * t181);
-        let t327 = minus_c2_leg3 * minus_rate_dot_1_leg3;
-        let t344 = minus_rate_2_leg3 + twist[2];
-        let t350 = t12 + t16;
-        let t358 = 8.650519031141869
-            * (0.5 * (t350 * t350) - (t12 * t12 + t16 * t16 - 0.1156));
-        ::overact::guard::reach(t358, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t358);
+        let t124 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t128 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t133 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t135 = minus_g1_vx_leg2 * t124 + minus_g1_vy_leg2 * t128 - g1_wz_leg2 * t133;
+        ::overact::guard::platform(t135, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t135, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t135, 0.2752380952380954, "kept actuators")?;
+        let t136 = 1.0 / t135;
+        let t137 = (g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3)
+            * t136;
+        let t142 = (g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
+            * t136;
+        let g2_wz_leg1 = 0.11764705882352941 * (t2 * t30 - t6 * t30);
+        let t152 = (minus_g1_vx_leg2 * minus_g1_vy_leg3
+            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t136;
+        let t154 = g2_vx_leg1 * t137 - g2_vx_leg1 * t142 + g2_wz_leg1 * t152;
+        let t156 = t58 + t52;
+        let c2_leg1 = 2.079725827019258 * t32;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t30
+            * (0.7071067811865476 * t156 + t68 * c2_leg1);
+        let t163 = t124 * t136;
+        let t165 = t128 * t136;
+        let t168 = t133 * t136;
+        let t170 = g2_vx_leg1 * t163 + g2_vx_leg1 * t165 + g2_wz_leg1 * t168;
+        let t175 = (g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t136;
+        let t180 = (minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2)
+            * t136;
+        let t186 = (g1_vy_leg1 * minus_g1_vx_leg2 + minus_g1_vx_leg1 * minus_g1_vy_leg2)
+            * t136;
+        let t188 = g2_vx_leg1 * t175 + g2_vx_leg1 * t180 + g2_wz_leg1 * t186;
+        let t193 = c2_leg1 * rate_dot_1_leg1;
+        let t207 = twist[2] - rate_2_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t89;
+        let t217 = twist[1] - t42;
+        let t219 = twist[0] - t37;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t217 - minus_g2_vx_leg2 * t219;
+        let t222 = rate_2_leg2 * rate_2_leg2;
+        let t223 = 0.34 * t222;
+        let t224 = t92 * t48 + t88 * t50 + t223;
+        let minus_rate_dot_1_leg2 = t89 * t224;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t219 + minus_g1_vy_leg2 * t217;
+        let g2_wz_leg2 = 0.11764705882352941 * (t2 * t89 - t6 * t89);
+        let t238 = g2_wz_leg2 * t152
+            - (minus_g2_vx_leg2 * t137 + minus_g2_vx_leg2 * t142);
+        let c2_leg2 = 2.079725827019258 * t16;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t89
+            * (0.7071067811865476 * t51 - c2_leg2 * t223);
+        let t250 = minus_g2_vx_leg2 * t163 - minus_g2_vx_leg2 * t165 - g2_wz_leg2 * t168;
+        let t256 = minus_g2_vx_leg2 * t180 - minus_g2_vx_leg2 * t175 + g2_wz_leg2 * t186;
+        let t258 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t275 = twist[2] - rate_2_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t109;
+        let t285 = twist[0] + t42;
+        let t287 = twist[1] - t37;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t285 + minus_g2_vx_leg3 * t287;
+        let t290 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t291 = 0.34 * t290;
+        let t292 = t113 * t39 + t108 * t44 + t291;
+        let minus_rate_dot_1_leg3 = t109 * t292;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t285 + minus_g1_vy_leg3 * t287;
+        let g2_wz_leg3 = 0.11764705882352941 * (t2 * t109 - t6 * t109);
+        let t306 = minus_g2_vx_leg3 * t142 - minus_g2_vx_leg3 * t137 + g2_wz_leg3 * t152;
+        let minus_c2_leg3 = 2.079725827019258 * t106;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t109
+            * (0.7071067811865476 * t45 + minus_c2_leg3 * t291);
+        let t318 = minus_g2_vx_leg3 * t163 + minus_g2_vx_leg3 * t165 - g2_wz_leg3 * t168;
+        let t324 = g2_wz_leg3 * t186
+            - (minus_g2_vx_leg3 * t175 + minus_g2_vx_leg3 * t180);
+        let t326 = minus_c2_leg3 * minus_rate_dot_1_leg3;
+        let t343 = minus_rate_2_leg3 + twist[2];
+        let t350 = pose[1] - t3 + 0.21213203435596426;
+        let t351 = t12 + t350;
+        let t359 = 8.650519031141869
+            * (0.5 * (t351 * t351) - (t12 * t12 + t350 * t350 - 0.1156));
+        ::overact::guard::reach(t359, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t359);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t360 = 0.7071067811865476 * minus_s2_leg4;
-        let t361 = t12 - t16;
-        let t362 = 1.4705882352941178 * t361;
-        let t363 = t360 + t362;
-        let t364 = 1.0 / minus_s2_leg4;
-        let g1_vy_leg4 = t363 * t364;
-        let t367 = t362 - t360;
-        let minus_g1_vx_leg4 = t367 * t364;
+        let t361 = 0.7071067811865476 * minus_s2_leg4;
+        let t362 = t12 - t350;
+        let t363 = 1.4705882352941178 * t362;
+        let t364 = t361 + t363;
+        let t365 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t364 * t365;
+        let t368 = t363 - t361;
+        let minus_g1_vx_leg4 = t368 * t365;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t375 = g1_wz_leg4 * t153 - (minus_g1_vx_leg4 * t138 + g1_vy_leg4 * t143);
-        let g2_vx_leg4 = 2.079725827019258 * t364;
-        let t380 = twist[0] + t39;
-        let t382 = twist[1] + t44;
-        let rate_2_leg4 = g2_vx_leg4 * t380 - g2_vx_leg4 * t382;
-        let t385 = rate_2_leg4 * rate_2_leg4;
-        let t386 = 0.34 * t385;
-        let t387 = t367 * t58 - t363 * t49 + t386;
-        let minus_rate_dot_1_leg4 = t364 * t387;
-        let t389 = t375 * minus_rate_dot_1_leg4;
-        let t394 = minus_g1_vx_leg4 * t164 - g1_vy_leg4 * t166 - g1_wz_leg4 * t169;
-        let t395 = t394 * minus_rate_dot_1_leg4;
-        let t400 = g1_vy_leg4 * t181 - minus_g1_vx_leg4 * t176 + g1_wz_leg4 * t187;
-        let t401 = t400 * minus_rate_dot_1_leg4;
-        let rate_1_leg4 = g1_vy_leg4 * t382 - minus_g1_vx_leg4 * t380;
-        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t364 - t6 * t364);
-        let t419 = g2_vx_leg4 * t138 + g2_vx_leg4 * t143 + g2_wz_leg4 * t153;
-        let c2_leg4 = 2.079725827019258 * t361;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t364
-            * (0.7071067811865476 * t59 - t386 * c2_leg4);
-        let t431 = g2_vx_leg4 * t166 - g2_vx_leg4 * t164 - g2_wz_leg4 * t169;
-        let t437 = g2_vx_leg4 * t176 - g2_vx_leg4 * t181 + g2_wz_leg4 * t187;
-        let t441 = minus_s2_leg4 * t385 - c2_leg4 * minus_rate_dot_2_leg4;
-        let t443 = c2_leg4 * minus_rate_dot_1_leg4;
-        let t452 = 2.079725827019258 * t59;
-        let t466 = twist[2] - rate_2_leg4;
-        let t475 = twist[2] * twist[2];
-        let t478 = s_phi * t475 - c_phi * acceleration[2];
-        let t482 = c_phi * t475 + s_phi * acceleration[2];
-        let t487 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t505 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t376 = g1_wz_leg4 * t152 - (minus_g1_vx_leg4 * t137 + g1_vy_leg4 * t142);
+        let g2_vx_leg4 = 2.079725827019258 * t365;
+        let t381 = twist[0] + t37;
+        let t383 = twist[1] + t42;
+        let rate_2_leg4 = g2_vx_leg4 * t381 - g2_vx_leg4 * t383;
+        let t386 = rate_2_leg4 * rate_2_leg4;
+        let t387 = 0.34 * t386;
+        let t388 = t368 * t56 - t364 * t47 + t387;
+        let minus_rate_dot_1_leg4 = t365 * t388;
+        let t390 = t376 * minus_rate_dot_1_leg4;
+        let t395 = minus_g1_vx_leg4 * t163 - g1_vy_leg4 * t165 - g1_wz_leg4 * t168;
+        let t396 = t395 * minus_rate_dot_1_leg4;
+        let t401 = g1_vy_leg4 * t180 - minus_g1_vx_leg4 * t175 + g1_wz_leg4 * t186;
+        let t402 = t401 * minus_rate_dot_1_leg4;
+        let rate_1_leg4 = g1_vy_leg4 * t383 - minus_g1_vx_leg4 * t381;
+        let g2_wz_leg4 = 0.11764705882352941 * (t2 * t365 - t6 * t365);
+        let t420 = g2_vx_leg4 * t137 + g2_vx_leg4 * t142 + g2_wz_leg4 * t152;
+        let c2_leg4 = 2.079725827019258 * t362;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t365
+            * (0.7071067811865476 * t57 - t387 * c2_leg4);
+        let t432 = g2_vx_leg4 * t165 - g2_vx_leg4 * t163 - g2_wz_leg4 * t168;
+        let t438 = g2_vx_leg4 * t175 - g2_vx_leg4 * t180 + g2_wz_leg4 * t186;
+        let t442 = minus_s2_leg4 * t386 - c2_leg4 * minus_rate_dot_2_leg4;
+        let t444 = c2_leg4 * minus_rate_dot_1_leg4;
+        let t453 = 2.079725827019258 * t57;
+        let t467 = twist[2] - rate_2_leg4;
+        let t476 = twist[2] * twist[2];
+        let t479 = s_phi * t476 - c_phi * acceleration[2];
+        let t483 = c_phi * t476 + s_phi * acceleration[2];
+        let t488 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t506 = s_phi * acceleration[1] + c_phi * acceleration[0];
         Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
-                1.0, t155 * rate_dot_2_leg1,
-                minus_s2_leg1 * t69 + c2_leg1 * rate_dot_2_leg1 + t155 * t194,
-                2.079725827019258 * t157 + t155 * t71, rate_dot_1_leg1,
-                ::overact::math::signed(t155, rate_2_leg1),
-                ::overact::math::signed(t153 - t155, t208), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t239 * minus_rate_dot_2_leg2), -(t239 * t259), -(t239 * t225), 0.0,
-                ::overact::math::signed(t239, rate_2_leg2),
-                ::overact::math::signed(t153 - t239, t276), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t307 * minus_rate_dot_2_leg3), t307 * t327, -(t307 * t293), 0.0,
-                -::overact::math::signed(t307, minus_rate_2_leg3),
-                ::overact::math::signed(t153 - t307, t344), -t389, -t389, t375 * rate_1_leg4,
-                ::overact::math::signed(t375, rate_1_leg4), t375, -(t419 * minus_rate_dot_2_leg4),
-                t375 * t441 - t419 * t443, -(t375 * t452 + t419 * t387), -t389,
-                ::overact::math::signed(t419, rate_2_leg4),
-                ::overact::math::signed(t153 - t419, t466), t153 * acceleration[2],
-                t143 * t478 - t138 * t482 + t153 * t487, t138 * t478 + t143 * t482 - t153 * t505,
-                t138 * acceleration[0] - t143 * acceleration[1],
+                1.0, t154 * rate_dot_2_leg1,
+                minus_s2_leg1 * t67 + c2_leg1 * rate_dot_2_leg1 + t154 * t193,
+                2.079725827019258 * t156 + t154 * t69, rate_dot_1_leg1,
+                ::overact::math::signed(t154, rate_2_leg1),
+                ::overact::math::signed(t152 - t154, t207), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t238 * minus_rate_dot_2_leg2), -(t238 * t258), -(t238 * t224), 0.0,
+                ::overact::math::signed(t238, rate_2_leg2),
+                ::overact::math::signed(t152 - t238, t275), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t306 * minus_rate_dot_2_leg3), t306 * t326, -(t306 * t292), 0.0,
+                -::overact::math::signed(t306, minus_rate_2_leg3),
+                ::overact::math::signed(t152 - t306, t343), -t390, -t390, t376 * rate_1_leg4,
+                ::overact::math::signed(t376, rate_1_leg4), t376, -(t420 * minus_rate_dot_2_leg4),
+                t376 * t442 - t420 * t444, -(t376 * t453 + t420 * t388), -t390,
+                ::overact::math::signed(t420, rate_2_leg4),
+                ::overact::math::signed(t152 - t420, t467), t152 * acceleration[2],
+                t142 * t479 - t137 * t483 + t152 * t488, t137 * t479 + t142 * t483 - t152 * t506,
+                t137 * acceleration[0] - t142 * acceleration[1],
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -(t171 * rate_dot_2_leg1), -(t171 * t194), -(t171 * t71),
-                0.0, -::overact::math::signed(t171, rate_2_leg1),
-                ::overact::math::signed(t171 - t169, t208), -minus_rate_dot_1_leg2,
+                0.0, 0.0, 0.0, 0.0, 0.0, -(t170 * rate_dot_2_leg1), -(t170 * t193), -(t170 * t69),
+                0.0, -::overact::math::signed(t170, rate_2_leg1),
+                ::overact::math::signed(t170 - t168, t207), -minus_rate_dot_1_leg2,
                 -minus_rate_dot_1_leg2, -minus_rate_1_leg2,
-                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t251 * minus_rate_dot_2_leg2),
-                minus_s2_leg2 * t223 - c2_leg2 * minus_rate_dot_2_leg2 - t251 * t259,
-                -(2.079725827019258 * t53 + t251 * t225), -minus_rate_dot_1_leg2,
-                ::overact::math::signed(t251, rate_2_leg2),
-                -::overact::math::signed(t251 + t169, t276), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t319 * minus_rate_dot_2_leg3), t319 * t327, -(t319 * t293), 0.0,
-                -::overact::math::signed(t319, minus_rate_2_leg3),
-                -::overact::math::signed(t319 + t169, t344), -t395, -t395, t394 * rate_1_leg4,
-                ::overact::math::signed(t394, rate_1_leg4), t394, -(t431 * minus_rate_dot_2_leg4),
-                t394 * t441 - t431 * t443, -(t394 * t452 + t431 * t387), -t395,
-                ::overact::math::signed(t431, rate_2_leg4),
-                -::overact::math::signed(t431 + t169, t466), -(t169 * acceleration[2]),
-                t164 * t482 + t166 * t478 - t169 * t487, t166 * t482 - t164 * t478 + t169 * t505,
-                -(t164 * acceleration[0] + t166 * acceleration[1]),
+                -::overact::math::sign(minus_rate_1_leg2), 1.0, -(t250 * minus_rate_dot_2_leg2),
+                minus_s2_leg2 * t222 - c2_leg2 * minus_rate_dot_2_leg2 - t250 * t258,
+                -(2.079725827019258 * t51 + t250 * t224), -minus_rate_dot_1_leg2,
+                ::overact::math::signed(t250, rate_2_leg2),
+                -::overact::math::signed(t250 + t168, t275), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t318 * minus_rate_dot_2_leg3), t318 * t326, -(t318 * t292), 0.0,
+                -::overact::math::signed(t318, minus_rate_2_leg3),
+                -::overact::math::signed(t318 + t168, t343), -t396, -t396, t395 * rate_1_leg4,
+                ::overact::math::signed(t395, rate_1_leg4), t395, -(t432 * minus_rate_dot_2_leg4),
+                t395 * t442 - t432 * t444, -(t395 * t453 + t432 * t388), -t396,
+                ::overact::math::signed(t432, rate_2_leg4),
+                -::overact::math::signed(t432 + t168, t467), -(t168 * acceleration[2]),
+                t163 * t483 + t165 * t479 - t168 * t488, t165 * t483 - t163 * t479 + t168 * t506,
+                -(t163 * acceleration[0] + t165 * acceleration[1]),
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, t189 * rate_dot_2_leg1, t189 * t194, t189 * t71, 0.0,
-                ::overact::math::signed(t189, rate_2_leg1),
-                ::overact::math::signed(t187 - t189, t208), 0.0, 0.0, 0.0, 0.0, 0.0,
-                -(t257 * minus_rate_dot_2_leg2), -(t257 * t259), -(t257 * t225), 0.0,
-                ::overact::math::signed(t257, rate_2_leg2),
-                ::overact::math::signed(t187 - t257, t276), -minus_rate_dot_1_leg3,
+                0.0, 0.0, 0.0, 0.0, 0.0, t188 * rate_dot_2_leg1, t188 * t193, t188 * t69, 0.0,
+                ::overact::math::signed(t188, rate_2_leg1),
+                ::overact::math::signed(t186 - t188, t207), 0.0, 0.0, 0.0, 0.0, 0.0,
+                -(t256 * minus_rate_dot_2_leg2), -(t256 * t258), -(t256 * t224), 0.0,
+                ::overact::math::signed(t256, rate_2_leg2),
+                ::overact::math::signed(t186 - t256, t275), -minus_rate_dot_1_leg3,
                 -minus_rate_dot_1_leg3, -minus_rate_1_leg3,
-                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t325 * minus_rate_dot_2_leg3),
-                minus_s2_leg3 * t291 + minus_c2_leg3 * minus_rate_dot_2_leg3
-                    + t325 * t327,
-                -(2.079725827019258 * t47 + t325 * t293),
+                -::overact::math::sign(minus_rate_1_leg3), 1.0, -(t324 * minus_rate_dot_2_leg3),
+                minus_s2_leg3 * t290 + minus_c2_leg3 * minus_rate_dot_2_leg3
+                    + t324 * t326,
+                -(2.079725827019258 * t45 + t324 * t292),
                 -minus_rate_dot_1_leg3,
-                -::overact::math::signed(t325, minus_rate_2_leg3),
-                ::overact::math::signed(t187 - t325, t344),
-                -t401,
-                -t401,
-                t400 * rate_1_leg4,
-                ::overact::math::signed(t400, rate_1_leg4),
-                t400,
-                -(t437 * minus_rate_dot_2_leg4),
-                t400 * t441 - t437 * t443,
-                -(t400 * t452 + t437 * t387),
-                -t401,
-                ::overact::math::signed(t437, rate_2_leg4),
-                ::overact::math::signed(t187 - t437, t466),
-                t187 * acceleration[2],
-                t187 * t487 - (t176 * t482 + t181 * t478),
-                t176 * t478 - t181 * t482 - t187 * t505,
-                t176 * acceleration[0] + t181 * acceleration[1],
+                -::overact::math::signed(t324, minus_rate_2_leg3),
+                ::overact::math::signed(t186 - t324, t343),
+                -t402,
+                -t402,
+                t401 * rate_1_leg4,
+                ::overact::math::signed(t401, rate_1_leg4),
+                t401,
+                -(t438 * minus_rate_dot_2_leg4),
+                t401 * t442 - t438 * t444,
+                -(t401 * t453 + t438 * t388),
+                -t402,
+                ::overact::math::signed(t438, rate_2_leg4),
+                ::overact::math::signed(t186 - t438, t467),
+                t186 * acceleration[2],
+                t186 * t488 - (t175 * t483 + t180 * t479),
+                t175 * t479 - t180 * t483 - t186 * t506,
+                t175 * acceleration[0] + t180 * acceleration[1],
             ],
         ])
     }
@@ -2941,7 +2955,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 257 operations (94 additions, 146 multiplications, 17 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 203 intermediates.
+    /// 274 operations (104 additions, 162 multiplications, 8 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 220 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2954,144 +2968,154 @@ impl Planar4Prr {
         let t2 = twist[2] * twist[2];
         let t5 = c_phi * t2 + s_phi * acceleration[2];
         let t8 = s_phi * t2 - c_phi * acceleration[2];
-        let t16 = 0.05656854249492381 * (s_phi + c_phi);
-        let t17 = 0.21213203435596426 - t16;
-        let t20 = 0.05656854249492381 * (c_phi - s_phi);
-        let t21 = t20 - t16;
-        let t23 = pose[1] + t17 - t21 + t17;
-        let t24 = pose[0] - t23;
-        let t25 = 0.7071067811865476 * t24;
-        let t27 = 0.7071067811865476 * (pose[1] + pose[1]);
-        let t28 = t25 + t27;
-        let t29 = 2.079725827019258 * t28;
-        let t32 = 8.650519031141869 * (0.1156 - t28 * t28);
-        ::overact::guard::reach(t32, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t32);
+        let t16 = 0.05656854249492381 * (c_phi - s_phi);
+        let t20 = 0.05656854249492381 * (s_phi + c_phi);
+        let t22 = pose[1] + t20 - 0.21213203435596426;
+        let t23 = pose[0] + t16 - 0.21213203435596426 + t22;
+        let t24 = 1.4705882352941178 * t23;
+        let t25 = 0.7071067811865476 * t23;
+        let t28 = 8.650519031141869 * (0.1156 - t25 * t25);
+        ::overact::guard::reach(t28, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t28);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t34 = 0.7071067811865476 * minus_s2_leg1;
-        let t35 = t29 + t34;
-        let minus_g1_vx_leg1 = t35 / minus_s2_leg1;
-        let t37 = t34 - t29;
-        let t39 = 0.05656854249492381 * (t5 - t8);
-        let t40 = acceleration[0] + t39;
-        let t41 = acceleration[1] + t39;
-        let t44 = t16 * twist[2];
-        let t46 = acceleration[1] - t20 * acceleration[2] + twist[2] * t44;
-        let t47 = t40 + t46;
-        let t48 = t47 - t41;
-        let t49 = acceleration[1] - t39;
-        let t50 = t48 - t49;
-        let t51 = t40 - t50;
-        let t53 = acceleration[0] - t39;
-        let t56 = 2.9411764705882355 / minus_s2_leg1;
-        let g2_vx_leg1 = 0.7071067811865476 * t56;
-        let t58 = twist[1] - t44;
-        let t59 = t20 * twist[2];
-        let t60 = twist[0] + t59;
-        let rate_2_leg1 = g2_vx_leg1 * (t58 + t60);
-        let t63 = rate_2_leg1 * rate_2_leg1;
-        let t65 = t37 * t51 - t35 * t53 - 0.34 * t63;
-        let rate_dot_1_leg1 = t65 / minus_s2_leg1;
-        let g1_vy_leg1 = t37 / minus_s2_leg1;
-        let g1_wz_leg1 = t20 * g1_vy_leg1 + t16 * minus_g1_vx_leg1;
-        let t74 = pose[0] + t23;
-        let t75 = 0.7071067811865476 * t74;
-        let t76 = t27 - t75;
-        let t79 = 8.650519031141869 * (0.1156 - t76 * t76);
-        ::overact::guard::reach(t79, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t79);
+        let t30 = 0.7071067811865476 * minus_s2_leg1;
+        let t31 = t24 + t30;
+        let t32 = 1.0 / minus_s2_leg1;
+        let minus_g1_vx_leg1 = t31 * t32;
+        let t34 = t30 - t24;
+        let t36 = 0.05656854249492381 * (t5 - t8);
+        let t37 = acceleration[1] - t36;
+        let t38 = acceleration[0] - t36;
+        let t39 = acceleration[1] + t36;
+        let t40 = t38 + t39;
+        let t41 = t40 - t37;
+        let t44 = t20 * twist[2];
+        let t46 = acceleration[1] - t16 * acceleration[2] + twist[2] * t44;
+        let t47 = t41 + t46;
+        let t48 = t47 - t39;
+        let t49 = t48 - t37;
+        let t50 = t41 - t49;
+        let g2_vx_leg1 = 2.079725827019258 * t32;
+        let t55 = twist[1] - t44;
+        let t56 = t16 * twist[2];
+        let t57 = twist[0] + t56;
+        let rate_2_leg1 = g2_vx_leg1 * (t55 + t57);
+        let t60 = rate_2_leg1 * rate_2_leg1;
+        let t62 = t34 * t50 - t31 * t38 - 0.34 * t60;
+        let rate_dot_1_leg1 = t32 * t62;
+        let g1_vy_leg1 = t34 * t32;
+        let g1_wz_leg1 = t16 * g1_vy_leg1 + t20 * minus_g1_vx_leg1;
+        let t72 = pose[0] - t16 + 0.21213203435596426;
+        let t73 = t22 - t72;
+        let t74 = 0.7071067811865476 * t73;
+        let t77 = 8.650519031141869 * (0.1156 - t74 * t74);
+        ::overact::guard::reach(t77, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t77);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t81 = 0.7071067811865476 * minus_s2_leg2;
-        let t82 = 2.079725827019258 * t76;
-        let t83 = t81 - t82;
-        let minus_g1_vx_leg2 = t83 / minus_s2_leg2;
-        let t86 = t81 + t82;
-        let t89 = 2.9411764705882355 / minus_s2_leg2;
-        let minus_g2_vx_leg2 = 0.7071067811865476 * t89;
-        let t91 = twist[1] + t59;
-        let t92 = twist[0] + t44;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t91 - t92);
-        let t95 = rate_2_leg2 * rate_2_leg2;
-        let t97 = t83 * t48 + t86 * t49 + 0.34 * t95;
-        let minus_rate_dot_1_leg2 = t97 / minus_s2_leg2;
-        let minus_g1_vy_leg2 = t86 / minus_s2_leg2;
-        let g1_wz_leg2 = t16 * minus_g1_vy_leg2 + t20 * minus_g1_vx_leg2;
-        let t106 = 1.4705882352941178 * t74;
-        let t109 = 8.650519031141869 * (0.1156 - t75 * t75);
-        ::overact::guard::reach(t109, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t109);
+        let t79 = 0.7071067811865476 * minus_s2_leg2;
+        let t80 = 1.4705882352941178 * t73;
+        let t81 = t79 - t80;
+        let t82 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = t81 * t82;
+        let t85 = t79 + t80;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t82;
+        let t89 = twist[1] + t56;
+        let t90 = twist[0] + t44;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t89 - t90);
+        let t93 = rate_2_leg2 * rate_2_leg2;
+        let t95 = t81 * t48 + t85 * t37 + 0.34 * t93;
+        let minus_rate_dot_1_leg2 = t82 * t95;
+        let minus_g1_vy_leg2 = t85 * t82;
+        let g1_wz_leg2 = t20 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
+        let t105 = pose[1] - t20 + 0.21213203435596426;
+        let t106 = t72 + t105;
+        let t107 = 1.4705882352941178 * t106;
+        let t108 = 0.7071067811865476 * t106;
+        let t111 = 8.650519031141869 * (0.1156 - t108 * t108);
+        ::overact::guard::reach(t111, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t111);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t111 = 0.7071067811865476 * minus_s2_leg3;
-        let t112 = t106 - t111;
-        let minus_g1_vx_leg3 = t112 / minus_s2_leg3;
-        let t115 = t111 + t106;
-        let t118 = 2.9411764705882355 / minus_s2_leg3;
-        let minus_g2_vx_leg3 = 0.7071067811865476 * t118;
-        let t120 = twist[1] - t59;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t92 + t120);
-        let t123 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t125 = t112 * t40 + t115 * t46 + 0.34 * t123;
-        let minus_rate_dot_1_leg3 = t125 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = t115 / minus_s2_leg3;
-        let g1_wz_leg3 = t20 * minus_g1_vy_leg3 - t16 * minus_g1_vx_leg3;
-        let t134 = 1.4705882352941178 * t24;
-        let t137 = 8.650519031141869 * (0.1156 - t25 * t25);
-        ::overact::guard::reach(t137, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t137);
+        let t113 = 0.7071067811865476 * minus_s2_leg3;
+        let t114 = t107 - t113;
+        let minus_g1_vx_leg3 = t114 / minus_s2_leg3;
+        let t117 = t113 + t107;
+        let minus_g2_vx_leg3 = 2.079725827019258 / minus_s2_leg3;
+        let t121 = twist[1] - t56;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t90 + t121);
+        let t124 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t126 = t114 * t41 + t117 * t46 + 0.34 * t124;
+        let minus_rate_dot_1_leg3 = t126 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t117 / minus_s2_leg3;
+        let g1_wz_leg3 = t16 * minus_g1_vy_leg3 - t20 * minus_g1_vx_leg3;
+        let t136 = pose[0] + t20 - 0.21213203435596426;
+        let t137 = t16 - t20;
+        let t138 = t105 - t137;
+        let t139 = t136 - t138;
+        let t140 = 1.4705882352941178 * t139;
+        let t141 = t136 + t138;
+        let t143 = 0.5 * (t141 * t141);
+        let t144 = 0.7071067811865476 * t139;
+        let t149 = 8.650519031141869 * (t143 - (t143 + t144 * t144 - 0.1156));
+        ::overact::guard::reach(t149, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t149);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t139 = 0.7071067811865476 * minus_s2_leg4;
-        let t140 = t134 - t139;
-        let minus_g1_vx_leg4 = t140 / minus_s2_leg4;
-        let t142 = t53 + t51;
-        let t143 = t142 - t49;
-        let t145 = t139 + t134;
-        let g2_vx_leg4 = 2.079725827019258 / minus_s2_leg4;
-        let t149 = twist[0] - t44;
-        let rate_2_leg4 = g2_vx_leg4 * (t149 - t120);
-        let t152 = rate_2_leg4 * rate_2_leg4;
-        let t154 = t140 * t143 - t145 * t41 + 0.34 * t152;
-        let minus_rate_dot_1_leg4 = t154 / minus_s2_leg4;
-        let g1_vy_leg4 = t145 / minus_s2_leg4;
-        let g1_wz_leg4 = t16 * g1_vy_leg4 - t20 * minus_g1_vx_leg4;
-        let rate_1_leg1 = g1_vy_leg1 * t91 - minus_g1_vx_leg1 * t149;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (twist[0] - t59)
-            + minus_g1_vy_leg2 * t58;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t92 + minus_g1_vy_leg3 * t120;
-        let rate_1_leg4 = g1_vy_leg4 * (twist[1] + t44) - minus_g1_vx_leg4 * t60;
-        let rate_dot_2_leg1 = t56 * (0.7071067811865476 * t142 + t28 * t63);
-        let t205 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = g2_vx_leg1 * t21;
-        let minus_rate_dot_2_leg2 = t89 * (0.7071067811865476 * t50 - t76 * t95);
-        let t212 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t21;
-        let minus_rate_dot_2_leg3 = t118 * (0.7071067811865476 * t47 + t75 * t123);
-        let t219 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t21;
-        let t223 = t41 - t143;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 / minus_s2_leg4
-            * (0.7071067811865476 * t223 - t25 * t152);
-        let t228 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t21;
-        let t231 = g2_vx_leg1 * t65;
-        let t232 = 2.079725827019258 * t142;
-        let t240 = 2.079725827019258 * t50;
-        let t242 = minus_g2_vx_leg2 * t97;
-        let t249 = 2.079725827019258 * t47;
-        let t251 = minus_g2_vx_leg3 * t125;
-        let t258 = 2.079725827019258 * t223;
-        let t260 = g2_vx_leg4 * t154;
-        let t267 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t269 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t271 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t273 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t275 = twist[2] - rate_2_leg1;
-        let t276 = ::overact::math::signed(g2_vx_leg1, t275);
-        let t279 = twist[2] - rate_2_leg2;
-        let t280 = ::overact::math::signed(minus_g2_vx_leg2, t279);
-        let t283 = minus_rate_2_leg3 + twist[2];
-        let t284 = ::overact::math::signed(minus_g2_vx_leg3, t283);
-        let t287 = twist[2] - rate_2_leg4;
-        let t288 = ::overact::math::signed(g2_vx_leg4, t287);
+        let t151 = 0.7071067811865476 * minus_s2_leg4;
+        let t152 = t140 - t151;
+        let t153 = 1.0 / minus_s2_leg4;
+        let minus_g1_vx_leg4 = t152 * t153;
+        let t155 = t40 - t46;
+        let t157 = t151 + t140;
+        let g2_vx_leg4 = 2.079725827019258 * t153;
+        let t162 = twist[1] + t44;
+        let rate_2_leg4 = g2_vx_leg4 * t57 - g2_vx_leg4 * t162;
+        let t165 = rate_2_leg4 * rate_2_leg4;
+        let t167 = t152 * t155 - t157 * t39 + 0.34 * t165;
+        let minus_rate_dot_1_leg4 = t153 * t167;
+        let g1_vy_leg4 = t157 * t153;
+        let g1_wz_leg4 = t20 * g1_vy_leg4 - t16 * minus_g1_vx_leg4;
+        let rate_1_leg1 = g1_vy_leg1 * t89 - minus_g1_vx_leg1 * (twist[0] - t44);
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (twist[0] - t56)
+            + minus_g1_vy_leg2 * t55;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t90 + minus_g1_vy_leg3 * t121;
+        let rate_1_leg4 = g1_vy_leg4 * t162 - minus_g1_vx_leg4 * t57;
+        let t215 = t38 + t50;
+        let rate_dot_2_leg1 = 2.9411764705882355 * t32
+            * (0.7071067811865476 * t215 + t25 * t60);
+        let t220 = g2_vx_leg1 * rate_dot_2_leg1;
+        let g2_wz_leg1 = g2_vx_leg1 * t137;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t82
+            * (0.7071067811865476 * t49 - t74 * t93);
+        let t228 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t137;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 / minus_s2_leg3
+            * (0.7071067811865476 * t47 + t108 * t124);
+        let t236 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t137;
+        let t240 = t39 - t155;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t153
+            * (0.7071067811865476 * t240 - t144 * t165);
+        let t245 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t137;
+        let t248 = g2_vx_leg1 * t62;
+        let t249 = 2.079725827019258 * t215;
+        let t257 = 2.079725827019258 * t49;
+        let t259 = minus_g2_vx_leg2 * t95;
+        let t266 = 2.079725827019258 * t47;
+        let t268 = minus_g2_vx_leg3 * t126;
+        let t275 = 2.079725827019258 * t240;
+        let t277 = g2_vx_leg4 * t167;
+        let t284 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t286 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t288 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t290 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t292 = twist[2] - rate_2_leg1;
+        let t293 = ::overact::math::signed(g2_vx_leg1, t292);
+        let t296 = twist[2] - rate_2_leg2;
+        let t297 = ::overact::math::signed(minus_g2_vx_leg2, t296);
+        let t300 = minus_rate_2_leg3 + twist[2];
+        let t301 = ::overact::math::signed(minus_g2_vx_leg3, t300);
+        let t304 = twist[2] - rate_2_leg4;
+        let t305 = ::overact::math::signed(g2_vx_leg4, t304);
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
@@ -3103,10 +3127,10 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t205, t212, t219, -t228,
-                t231 - minus_g1_vx_leg1 * t232, minus_g1_vx_leg2 * t240 + t242,
-                minus_g1_vx_leg3 * t249 + t251, minus_g1_vx_leg4 * t258 - t260, t267, -t269, t271,
-                t273, -t276, t280, t284, -t288,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t220, t228, t236, -t245,
+                t248 - minus_g1_vx_leg1 * t249, minus_g1_vx_leg2 * t257 + t259,
+                minus_g1_vx_leg3 * t266 + t268, minus_g1_vx_leg4 * t275 - t277, t284, -t286, t288,
+                t290, -t293, t297, t301, -t305,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3117,9 +3141,9 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t205, -t212, t219, t228, g1_vy_leg1 * t232 + t231,
-                minus_g1_vy_leg2 * t240 - t242, minus_g1_vy_leg3 * t249 + t251,
-                t260 - g1_vy_leg4 * t258, t267, t269, t271, -t273, -t276, -t280, t284, t288,
+                -minus_g1_vy_leg3, g1_vy_leg4, t220, -t228, t236, t245, g1_vy_leg1 * t249 + t248,
+                minus_g1_vy_leg2 * t257 - t259, minus_g1_vy_leg3 * t266 + t268,
+                t277 - g1_vy_leg4 * t275, t284, t286, t288, -t290, -t293, -t297, t301, t305,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3134,17 +3158,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t232 + g2_wz_leg1 * t65,
-                -(g1_wz_leg2 * t240 + g2_wz_leg2 * t97), -(g1_wz_leg3 * t249 + g2_wz_leg3 * t125),
-                -(g1_wz_leg4 * t258 + g2_wz_leg4 * t154),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t249 + g2_wz_leg1 * t62,
+                -(g1_wz_leg2 * t257 + g2_wz_leg2 * t95), -(g1_wz_leg3 * t266 + g2_wz_leg3 * t126),
+                -(g1_wz_leg4 * t275 + g2_wz_leg4 * t167),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t275),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t279),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t283),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t287),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t292),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t296),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t300),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t304),
             ],
         ])
     }
@@ -3159,7 +3183,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 232 operations (83 additions, 141 multiplications, 8 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 184 intermediates.
+    /// 233 operations (83 additions, 143 multiplications, 7 divisions), 0 square roots, 5 trigonometric pairs, 28 signs, 185 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3197,100 +3221,102 @@ impl Planar4Prr {
         let t37 = t22 + t17 * t35;
         let t39 = s2_leg1 + c2_leg1;
         let g1_vy_leg1 = t39 * t18;
-        let t41 = acceleration[0] + t21;
-        let t42 = acceleration[1] + t21;
-        let t46 = acceleration[1] - t29 * acceleration[2] + twist[2] * t26;
-        let t47 = t41 + t46;
-        let t48 = t47 - t42;
-        let t49 = acceleration[1] - t21;
-        let t50 = t48 - t49;
-        let t51 = t41 - t50;
-        let t53 = t51 + t39 * t35;
-        let rate_dot_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t53;
+        let t42 = 0.05656854249492381 * (t5 + t8);
+        let t43 = acceleration[1] - t42;
+        let t45 = t43 + t39 * t35;
+        let rate_dot_1_leg1 = g1_vx_leg1 * t37 + g1_vy_leg1 * t45;
         let g1_wz_leg1 = g1_vy_leg1 * t29 - g1_vx_leg1 * t25;
-        let t64 = c2_leg2 + s2_leg2;
-        let t65 = 0.7071067811865476 / s2_leg2;
-        let minus_g1_vx_leg2 = t64 * t65;
-        let t67 = 0.2404163056034262 + 0.2404163056034262;
+        let t56 = c2_leg2 + s2_leg2;
+        let t57 = 2.9411764705882355 / s2_leg2;
+        let t58 = 0.2404163056034262 * t57;
+        let minus_g1_vx_leg2 = t56 * t58;
+        let t60 = 0.2404163056034262 + 0.2404163056034262;
         let g2_vx_leg2 = 2.079725827019258 / s2_leg2;
-        let t69 = twist[0] + t26;
-        let minus_rate_2_leg2 = g2_vx_leg2 * (t31 - t69);
-        let t72 = minus_rate_2_leg2 * minus_rate_2_leg2;
-        let t75 = s2_leg2 - c2_leg2;
-        let rate_dot_1_leg2 = t65 * (t67 * t72 - (t64 * t48 + t75 * t49));
-        let minus_g1_vy_leg2 = t75 * t65;
+        let t62 = twist[0] + t26;
+        let minus_rate_2_leg2 = g2_vx_leg2 * (t31 - t62);
+        let t65 = minus_rate_2_leg2 * minus_rate_2_leg2;
+        let t67 = acceleration[0] + t42;
+        let t69 = s2_leg2 - c2_leg2;
+        let t70 = acceleration[1] - t21;
+        let rate_dot_1_leg2 = t58 * (t60 * t65 - (t56 * t67 + t69 * t70));
+        let minus_g1_vy_leg2 = t69 * t58;
         let g1_wz_leg2 = t25 * minus_g1_vy_leg2 + t29 * minus_g1_vx_leg2;
-        let t89 = s2_leg3 - c2_leg3;
-        let t90 = 2.9411764705882355 / s2_leg3;
-        let t91 = 0.2404163056034262 * t90;
-        let g1_vx_leg3 = t89 * t91;
-        let t93 = s2_leg3 + c2_leg3;
-        let g2_vx_leg3 = 2.079725827019258 / s2_leg3;
-        let t98 = twist[1] - t30;
-        let rate_2_leg3 = g2_vx_leg3 * (t69 + t98);
-        let t101 = rate_2_leg3 * rate_2_leg3;
-        let minus_rate_dot_1_leg3 = t91 * (t93 * t46 - t89 * t41 - t67 * t101);
-        let minus_g1_vy_leg3 = t93 * t91;
+        let t84 = s2_leg3 - c2_leg3;
+        let t85 = 2.9411764705882355 / s2_leg3;
+        let t86 = 0.2404163056034262 * t85;
+        let g1_vx_leg3 = t84 * t86;
+        let t88 = s2_leg3 + c2_leg3;
+        let t89 = acceleration[1] + t42;
+        let t91 = acceleration[0] + t21;
+        let g2_vx_leg3 = t86 * 2.9411764705882355;
+        let t95 = twist[0] - t30;
+        let t96 = twist[1] + t26;
+        let rate_2_leg3 = g2_vx_leg3 * (t95 + t96);
+        let t99 = rate_2_leg3 * rate_2_leg3;
+        let minus_rate_dot_1_leg3 = t86 * (t88 * t89 - t84 * t91 - t60 * t99);
+        let minus_g1_vy_leg3 = t88 * t86;
         let g1_wz_leg3 = t29 * minus_g1_vy_leg3 + t25 * g1_vx_leg3;
-        let t114 = c2_leg4 + s2_leg4;
-        let t115 = 2.9411764705882355 / s2_leg4;
-        let t116 = 0.2404163056034262 * t115;
-        let g1_vx_leg4 = t114 * t116;
-        let t118 = t22 + t51;
-        let t119 = t118 - t49;
-        let t121 = c2_leg4 - s2_leg4;
-        let minus_g2_vx_leg4 = t116 * 2.9411764705882355;
-        let t125 = twist[1] + t26;
-        let t126 = twist[0] + t30;
-        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t126 - t125);
-        let t129 = minus_rate_2_leg4 * minus_rate_2_leg4;
-        let rate_dot_1_leg4 = t116 * (t114 * t119 - t121 * t42 + t67 * t129);
-        let minus_g1_vy_leg4 = t121 * t116;
+        let t112 = c2_leg4 + s2_leg4;
+        let t113 = 0.7071067811865476 / s2_leg4;
+        let g1_vx_leg4 = t112 * t113;
+        let t115 = acceleration[0] - t42;
+        let t117 = c2_leg4 - s2_leg4;
+        let t118 = acceleration[1] + t21;
+        let t121 = 2.9411764705882355 / s2_leg4;
+        let minus_g2_vx_leg4 = 0.7071067811865476 * t121;
+        let t123 = twist[1] - t30;
+        let minus_rate_2_leg4 = minus_g2_vx_leg4 * (t27 - t123);
+        let t126 = minus_rate_2_leg4 * minus_rate_2_leg4;
+        let rate_dot_1_leg4 = t113 * (t112 * t115 - t117 * t118 + t60 * t126);
+        let minus_g1_vy_leg4 = t117 * t113;
         let g1_wz_leg4 = t29 * g1_vx_leg4 - t25 * minus_g1_vy_leg4;
         let rate_1_leg1 = g1_vx_leg1 * t27 + g1_vy_leg1 * t31;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (twist[0] - t30)
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t95
             + minus_g1_vy_leg2 * (twist[1] - t26);
-        let rate_1_leg3 = g1_vx_leg3 * t69 - minus_g1_vy_leg3 * t98;
-        let rate_1_leg4 = g1_vx_leg4 * t126 - minus_g1_vy_leg4 * t125;
-        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t37 + t53);
-        let t180 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
-        let t181 = t25 - t29;
-        let g2_wz_leg1 = minus_g2_vx_leg1 * t181;
-        let rate_dot_2_leg2 = 2.9411764705882355 / s2_leg2
-            * (0.7071067811865476 * t50 - t72 * (0.34 * c2_leg2));
-        let t190 = g2_vx_leg2 * rate_dot_2_leg2;
-        let g2_wz_leg2 = g2_vx_leg2 * t181;
-        let minus_rate_dot_2_leg3 = t90
-            * (t101 * (0.34 * c2_leg3) - 0.7071067811865476 * t47);
-        let t198 = g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = g2_vx_leg3 * t181;
-        let t201 = t42 - t119;
-        let rate_dot_2_leg4 = t115
-            * (0.7071067811865476 * t201 - t129 * (0.34 * c2_leg4));
-        let t207 = minus_g2_vx_leg4 * rate_dot_2_leg4;
-        let g2_wz_leg4 = minus_g2_vx_leg4 * t181;
-        let t210 = 2.079725827019258 * t118;
-        let t212 = 2.079725827019258 * rate_dot_1_leg1;
-        let t219 = 2.079725827019258 * t50;
+        let rate_1_leg3 = g1_vx_leg3 * t62 - minus_g1_vy_leg3 * t123;
+        let rate_1_leg4 = g1_vx_leg4 * (twist[0] + t30) - minus_g1_vy_leg4 * t96;
+        let minus_rate_dot_2_leg1 = minus_g2_vx_leg1 * (t37 + t45);
+        let t177 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
+        let t178 = t25 - t29;
+        let g2_wz_leg1 = minus_g2_vx_leg1 * t178;
+        let t181 = t67 - t70;
+        let rate_dot_2_leg2 = t57 * (0.7071067811865476 * t181 - t65 * (0.34 * c2_leg2));
+        let t187 = g2_vx_leg2 * rate_dot_2_leg2;
+        let g2_wz_leg2 = g2_vx_leg2 * t178;
+        let t192 = t91 + t89;
+        let minus_rate_dot_2_leg3 = t85
+            * (t99 * (0.34 * c2_leg3) - 0.7071067811865476 * t192);
+        let t196 = g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = g2_vx_leg3 * t178;
+        let t199 = t118 - t115;
+        let rate_dot_2_leg4 = t121
+            * (0.7071067811865476 * t199 - t126 * (0.34 * c2_leg4));
+        let t205 = minus_g2_vx_leg4 * rate_dot_2_leg4;
+        let g2_wz_leg4 = minus_g2_vx_leg4 * t178;
+        let t209 = 2.079725827019258 * (t22 + t43);
+        let t211 = s2_leg1 * rate_dot_1_leg1;
+        let t212 = minus_g2_vx_leg1 * t211;
+        let t219 = 2.079725827019258 * t181;
         let t221 = 2.079725827019258 * rate_dot_1_leg2;
-        let t228 = 2.079725827019258 * minus_rate_dot_1_leg3;
-        let t229 = 2.079725827019258 * t47;
-        let t237 = 2.079725827019258 * rate_dot_1_leg4;
-        let t238 = 2.079725827019258 * t201;
-        let t246 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
-        let t248 = -minus_rate_2_leg2;
-        let t249 = ::overact::math::signed(g2_vx_leg2, t248);
-        let t251 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
-        let t253 = -minus_rate_2_leg4;
-        let t254 = ::overact::math::signed(minus_g2_vx_leg4, t253);
-        let t256 = minus_rate_2_leg1 + twist[2];
-        let t257 = ::overact::math::signed(minus_g2_vx_leg1, t256);
-        let t260 = twist[2] + minus_rate_2_leg2;
-        let t261 = ::overact::math::signed(g2_vx_leg2, t260);
-        let t264 = twist[2] - rate_2_leg3;
-        let t265 = ::overact::math::signed(g2_vx_leg3, t264);
-        let t268 = twist[2] + minus_rate_2_leg4;
-        let t269 = ::overact::math::signed(minus_g2_vx_leg4, t268);
+        let t228 = s2_leg3 * minus_rate_dot_1_leg3;
+        let t229 = g2_vx_leg3 * t228;
+        let t230 = 2.079725827019258 * t192;
+        let t238 = 2.079725827019258 * rate_dot_1_leg4;
+        let t239 = 2.079725827019258 * t199;
+        let t247 = ::overact::math::signed(minus_g2_vx_leg1, minus_rate_2_leg1);
+        let t249 = -minus_rate_2_leg2;
+        let t250 = ::overact::math::signed(g2_vx_leg2, t249);
+        let t252 = ::overact::math::signed(g2_vx_leg3, rate_2_leg3);
+        let t254 = -minus_rate_2_leg4;
+        let t255 = ::overact::math::signed(minus_g2_vx_leg4, t254);
+        let t257 = minus_rate_2_leg1 + twist[2];
+        let t258 = ::overact::math::signed(minus_g2_vx_leg1, t257);
+        let t261 = twist[2] + minus_rate_2_leg2;
+        let t262 = ::overact::math::signed(g2_vx_leg2, t261);
+        let t265 = twist[2] - rate_2_leg3;
+        let t266 = ::overact::math::signed(g2_vx_leg3, t265);
+        let t269 = twist[2] + minus_rate_2_leg4;
+        let t270 = ::overact::math::signed(minus_g2_vx_leg4, t269);
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
@@ -3301,9 +3327,9 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(g1_vx_leg3, rate_1_leg3),
                 ::overact::math::signed(g1_vx_leg4, rate_1_leg4), g1_vx_leg1, -minus_g1_vx_leg2,
-                g1_vx_leg3, g1_vx_leg4, t180, t190, -t198, -t207, g1_vx_leg1 * t210 + t212,
-                minus_g1_vx_leg2 * t219 - t221, t228 - g1_vx_leg3 * t229, t237 - g1_vx_leg4 * t238,
-                t246, t249, t251, -t254, t257, -t261, -t265, t269,
+                g1_vx_leg3, g1_vx_leg4, t177, t187, -t196, -t205, g1_vx_leg1 * t209 + t212,
+                minus_g1_vx_leg2 * t219 - t221, t229 - g1_vx_leg3 * t230, t238 - g1_vx_leg4 * t239,
+                t247, t250, t252, -t255, t258, -t262, -t266, t270,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], g1_vy_leg1 * rate_dot_1_leg1,
@@ -3314,10 +3340,10 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 -::overact::math::signed(minus_g1_vy_leg3, rate_1_leg3),
                 -::overact::math::signed(minus_g1_vy_leg4, rate_1_leg4), g1_vy_leg1,
-                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t180, -t190, -t198, t207,
-                g1_vy_leg1 * t210 + t212, minus_g1_vy_leg2 * t219 + t221,
-                minus_g1_vy_leg3 * t229 + t228, minus_g1_vy_leg4 * t238 - t237, t246, -t249, t251,
-                t254, t257, t261, -t265, -t269,
+                -minus_g1_vy_leg2, -minus_g1_vy_leg3, -minus_g1_vy_leg4, t177, -t187, -t196, t205,
+                g1_vy_leg1 * t209 + t212, minus_g1_vy_leg2 * t219 + t221,
+                minus_g1_vy_leg3 * t230 + t229, minus_g1_vy_leg4 * t239 - t238, t247, -t250, t252,
+                t255, t258, t262, -t266, -t270,
             ],
             [
                 acceleration[2], c_phi * acceleration[1] - s_phi * acceleration[0],
@@ -3332,17 +3358,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, -(g2_wz_leg1 * minus_rate_dot_2_leg1),
                 g2_wz_leg2 * rate_dot_2_leg2, -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t210 - t212 * t181,
-                -(g1_wz_leg2 * t219 + t221 * t181), t228 * t181 - g1_wz_leg3 * t229,
-                -(g1_wz_leg4 * t238 + t237 * t181),
+                g2_wz_leg4 * rate_dot_2_leg4, g1_wz_leg1 * t209 - g2_wz_leg1 * t211,
+                -(g1_wz_leg2 * t219 + t221 * t178), g2_wz_leg3 * t228 - g1_wz_leg3 * t230,
+                -(g1_wz_leg4 * t239 + t238 * t178),
                 -::overact::math::signed(g2_wz_leg1, minus_rate_2_leg1),
-                ::overact::math::signed(g2_wz_leg2, t248),
+                ::overact::math::signed(g2_wz_leg2, t249),
                 ::overact::math::signed(g2_wz_leg3, rate_2_leg3),
-                ::overact::math::signed(g2_wz_leg4, t253),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t256),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t260),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t264),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t268),
+                ::overact::math::signed(g2_wz_leg4, t254),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t257),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t261),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t265),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t269),
             ],
         ])
     }
@@ -3357,7 +3383,7 @@ impl Planar4Prr {
     /// Output: 3 x 36.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 407 operations (158 additions, 217 multiplications, 32 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 350 intermediates.
+    /// 422 operations (165 additions, 247 multiplications, 10 divisions), 4 square roots, 1 trigonometric pairs, 28 signs, 365 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3370,209 +3396,217 @@ impl Planar4Prr {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
-        let t5 = 0.05656854249492381 * (s_phi + c_phi);
-        let t6 = t5 + -0.21213203435596426;
-        let t8 = t3 - t5;
-        let t10 = pose[1] - t6 - t8 - t6;
-        let t12 = 0.7071067811865476 * (pose[0] - t10);
-        let t14 = 0.7071067811865476 * (pose[1] + pose[1]);
-        let t15 = t12 + t14;
-        let t18 = 8.650519031141869 * (0.1156 - t15 * t15);
-        ::overact::guard::reach(t18, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t18);
+        let t5 = pose[0] - t3 + 0.21213203435596426;
+        let t7 = pose[0] + pose[0] - t5;
+        let t9 = 0.05656854249492381 * (s_phi + c_phi);
+        let t12 = t7 + pose[1] + t9 - 0.21213203435596426;
+        let t13 = 0.7071067811865476 * t12;
+        let t16 = 8.650519031141869 * (0.1156 - t13 * t13);
+        ::overact::guard::reach(t16, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t16);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t20 = 0.7071067811865476 * minus_s2_leg1;
-        let t21 = 2.079725827019258 * t15;
-        let t22 = t20 - t21;
-        let g1_vy_leg1 = t22 / minus_s2_leg1;
-        let t25 = t21 + t20;
-        let minus_g1_vx_leg1 = t25 / minus_s2_leg1;
-        let g1_wz_leg1 = t3 * g1_vy_leg1 + t5 * minus_g1_vx_leg1;
-        let t31 = 0.7071067811865476 * (pose[0] + t10);
-        let t32 = t14 - t31;
-        let t35 = 8.650519031141869 * (0.1156 - t32 * t32);
-        ::overact::guard::reach(t35, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t35);
+        let t18 = 0.7071067811865476 * minus_s2_leg1;
+        let t19 = 1.4705882352941178 * t12;
+        let t20 = t18 - t19;
+        let t21 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = t20 * t21;
+        let t24 = t19 + t18;
+        let minus_g1_vx_leg1 = t24 * t21;
+        let g1_wz_leg1 = t3 * g1_vy_leg1 + t9 * minus_g1_vx_leg1;
+        let t30 = pose[1] - t9 + 0.21213203435596426;
+        let t31 = t5 + t30;
+        let t32 = 0.7071067811865476 * t31;
+        let t33 = t7 - t30;
+        let t34 = 0.7071067811865476 * t33;
+        let t36 = t13 - (t32 + t34);
+        let t39 = 8.650519031141869 * (0.1156 - t36 * t36);
+        ::overact::guard::reach(t39, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t37 = 0.7071067811865476 * minus_s2_leg2;
-        let t38 = 2.079725827019258 * t32;
-        let t39 = t37 + t38;
-        let minus_g1_vy_leg2 = t39 / minus_s2_leg2;
-        let t42 = t37 - t38;
-        let minus_g1_vx_leg2 = t42 / minus_s2_leg2;
-        let g1_wz_leg2 = t5 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
-        let t50 = 8.650519031141869 * (0.1156 - t31 * t31);
-        ::overact::guard::reach(t50, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t50);
+        let t41 = 0.7071067811865476 * minus_s2_leg2;
+        let t42 = 2.079725827019258 * t36;
+        let t43 = t41 + t42;
+        let t44 = 1.0 / minus_s2_leg2;
+        let minus_g1_vy_leg2 = t43 * t44;
+        let t47 = t41 - t42;
+        let minus_g1_vx_leg2 = t47 * t44;
+        let g1_wz_leg2 = t9 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
+        let t53 = t5 - t30;
+        let t61 = 8.650519031141869
+            * (0.5 * (t53 * t53) - (t5 * t5 + t30 * t30 - 0.1156));
+        ::overact::guard::reach(t61, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t61);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t52 = 0.7071067811865476 * minus_s2_leg3;
-        let t53 = 2.079725827019258 * t31;
-        let t54 = t52 + t53;
-        let minus_g1_vy_leg3 = t54 / minus_s2_leg3;
-        let t57 = t53 - t52;
-        let minus_g1_vx_leg3 = t57 / minus_s2_leg3;
-        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t5 * minus_g1_vx_leg3;
-        let t65 = 8.650519031141869 * (0.1156 - t12 * t12);
-        ::overact::guard::reach(t65, "leg4")?;
-        let minus_s2_leg4 = ::overact::math::sqrt(t65);
+        let t63 = 0.7071067811865476 * minus_s2_leg3;
+        let t64 = 1.4705882352941178 * t31;
+        let t65 = t63 + t64;
+        let t66 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = t65 * t66;
+        let t69 = t64 - t63;
+        let minus_g1_vx_leg3 = t69 * t66;
+        let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t9 * minus_g1_vx_leg3;
+        let t77 = 8.650519031141869 * (0.1156 - t34 * t34);
+        ::overact::guard::reach(t77, "leg4")?;
+        let minus_s2_leg4 = ::overact::math::sqrt(t77);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
-        let t67 = 0.7071067811865476 * minus_s2_leg4;
-        let t68 = 2.079725827019258 * t12;
-        let t69 = t67 + t68;
-        let g1_vy_leg4 = t69 / minus_s2_leg4;
-        let t72 = t68 - t67;
-        let minus_g1_vx_leg4 = t72 / minus_s2_leg4;
-        let g1_wz_leg4 = t5 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        let t84 = minus_g1_vx_leg1 * actuator_velocities[0]
+        let t79 = 0.7071067811865476 * minus_s2_leg4;
+        let t80 = 1.4705882352941178 * t33;
+        let t81 = t79 + t80;
+        let t82 = 1.0 / minus_s2_leg4;
+        let g1_vy_leg4 = t81 * t82;
+        let t85 = t80 - t79;
+        let minus_g1_vx_leg4 = t85 * t82;
+        let g1_wz_leg4 = t9 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
+        let t97 = minus_g1_vx_leg1 * actuator_velocities[0]
             + minus_g1_vx_leg2 * actuator_velocities[1]
             + minus_g1_vx_leg3 * actuator_velocities[2]
             + minus_g1_vx_leg4 * actuator_velocities[3];
-        let t91 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
+        let t104 = minus_g1_vx_leg1 * g1_wz_leg1 + minus_g1_vx_leg2 * g1_wz_leg2
             + minus_g1_vx_leg3 * g1_wz_leg3 + minus_g1_vx_leg4 * g1_wz_leg4;
-        let t98 = minus_g1_vx_leg1 * minus_g1_vx_leg1
+        let t111 = minus_g1_vx_leg1 * minus_g1_vx_leg1
             + minus_g1_vx_leg2 * minus_g1_vx_leg2 + minus_g1_vx_leg3 * minus_g1_vx_leg3
             + minus_g1_vx_leg4 * minus_g1_vx_leg4;
-        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t98, 3.440476190476192, "actuators")?;
-        let t99 = t91 / t98;
-        let t115 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
+        ::overact::guard::platform(t111, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t111, 3.440476190476192, "actuators")?;
+        let t112 = 1.0 / t111;
+        let t113 = t104 * t112;
+        let t129 = minus_g1_vx_leg2 * minus_g1_vy_leg2 - minus_g1_vx_leg1 * g1_vy_leg1
             + minus_g1_vx_leg3 * minus_g1_vy_leg3 - minus_g1_vx_leg4 * g1_vy_leg4;
-        let t117 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
-            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t115 * t99;
-        let t125 = t115 / t98;
-        let t127 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
+        let t131 = g1_vy_leg1 * g1_wz_leg1 - minus_g1_vy_leg2 * g1_wz_leg2
+            - minus_g1_vy_leg3 * g1_wz_leg3 + g1_vy_leg4 * g1_wz_leg4 + t129 * t113;
+        let t139 = t129 * t112;
+        let t141 = g1_vy_leg1 * g1_vy_leg1 + minus_g1_vy_leg2 * minus_g1_vy_leg2
             + minus_g1_vy_leg3 * minus_g1_vy_leg3 + g1_vy_leg4 * g1_vy_leg4
-            - t115 * t125;
-        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
-        ::overact::guard::platform(t127, 3.440476190476192, "actuators")?;
-        let t128 = t117 / t127;
-        let t137 = g1_vy_leg1 * actuator_velocities[0]
+            - t129 * t139;
+        ::overact::guard::platform(t141, 3.440476190476192, "actuators")?;
+        ::overact::guard::platform(t141, 3.440476190476192, "actuators")?;
+        let t142 = t131 / t141;
+        let t151 = g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2]
-            + g1_vy_leg4 * actuator_velocities[3] + t84 * t125;
-        let t139 = g1_wz_leg1 * actuator_velocities[0]
+            + g1_vy_leg4 * actuator_velocities[3] + t97 * t139;
+        let t153 = g1_wz_leg1 * actuator_velocities[0]
             + g1_wz_leg2 * actuator_velocities[1] + g1_wz_leg3 * actuator_velocities[2]
-            + g1_wz_leg4 * actuator_velocities[3] - t84 * t99 - t128 * t137;
-        let t150 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
-            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t91 * t99
-            - t117 * t128;
-        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
-        ::overact::guard::platform(t150, 0.02560000000000001, "actuators")?;
-        let rate_3_leg1 = t139 / t150;
-        let t152 = t3 * rate_3_leg1;
-        let t153 = rate_3_leg1 * t152;
-        let t155 = t5 * rate_3_leg1;
-        let t156 = rate_3_leg1 * t155;
-        let t159 = 2.9411764705882355 / minus_s2_leg1;
-        let g2_vx_leg1 = 0.7071067811865476 * t159;
-        let t163 = t137 / t127 - t128 * rate_3_leg1;
-        let t164 = t163 - t155;
-        let t169 = t99 * rate_3_leg1 - (t84 / t98 + t125 * t163);
-        let t170 = t169 + t152;
-        let rate_2_leg1 = g2_vx_leg1 * (t164 + t170);
-        let t173 = rate_2_leg1 * rate_2_leg1;
-        let t174 = 0.34 * t173;
-        let rate_dot_1_leg1 = (t25 * t153 - t22 * t156 - t174) / minus_s2_leg1;
-        let t177 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let minus_g2_vx_leg2 = 2.079725827019258 / minus_s2_leg2;
-        let t183 = t163 + t152;
-        let t184 = t169 + t155;
-        let rate_2_leg2 = minus_g2_vx_leg2 * (t183 - t184);
-        let t187 = rate_2_leg2 * rate_2_leg2;
-        let t188 = 0.34 * t187;
-        let minus_rate_dot_1_leg2 = (t42 * t156 - t39 * t153 + t188) / minus_s2_leg2;
-        let t191 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
-        let minus_g2_vx_leg3 = 2.079725827019258 / minus_s2_leg3;
-        let t198 = t163 - t152;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t184 + t198);
-        let t201 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t202 = 0.34 * t201;
-        let minus_rate_dot_1_leg3 = (t57 * t153 + t54 * t156 + t202) / minus_s2_leg3;
-        let t205 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
-        let g2_vx_leg4 = 2.079725827019258 / minus_s2_leg4;
-        let t209 = t169 - t155;
-        let rate_2_leg4 = g2_vx_leg4 * (t209 - t198);
-        let t212 = rate_2_leg4 * rate_2_leg4;
-        let t213 = 0.34 * t212;
-        let minus_rate_dot_1_leg4 = (t213 - (t72 * t156 + t69 * t153)) / minus_s2_leg4;
-        let t219 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
-        let t228 = minus_g1_vx_leg1 * t177 + minus_g1_vx_leg2 * t191
-            + minus_g1_vx_leg3 * t205 + minus_g1_vx_leg4 * t219;
-        let t239 = g1_vy_leg1 * t177 - minus_g1_vy_leg2 * t191 - minus_g1_vy_leg3 * t205
-            + g1_vy_leg4 * t219 + t125 * t228;
-        let t241 = g1_wz_leg1 * t177 + g1_wz_leg2 * t191 + g1_wz_leg3 * t205
-            + g1_wz_leg4 * t219 - t99 * t228 - t128 * t239;
-        let rate_dot_3_leg1 = t241 / t150;
-        let t243 = rate_3_leg1 * rate_3_leg1;
-        let t246 = c_phi * t243 + s_phi * rate_dot_3_leg1;
-        let t249 = s_phi * t243 - c_phi * rate_dot_3_leg1;
-        let t252 = t239 / t127 - t128 * rate_dot_3_leg1;
-        let t258 = t99 * rate_dot_3_leg1 - (t228 / t98 + t125 * t252);
-        let t265 = t153 + t5 * rate_dot_3_leg1;
-        let t266 = t258 + t265;
-        let t268 = t156 - t3 * rate_dot_3_leg1;
-        let t269 = t258 - t268;
-        let t270 = t258 - t265;
-        let t271 = t252 + t268;
-        let t272 = t271 - t270;
-        let t273 = t269 + t272;
-        let t274 = t266 + t271;
-        let t275 = t274 - t273;
-        let t276 = t252 - t265;
-        let t277 = t275 - t276;
-        let t278 = t266 - t277;
-        let t282 = t22 * t278 - t25 * t270 - t174;
-        let rate_dot_1_leg1_2 = t282 / minus_s2_leg1;
-        let t290 = t42 * t275 + t39 * t276 + t188;
-        let minus_rate_dot_1_leg2_2 = t290 / minus_s2_leg2;
-        let t298 = t57 * t266 + t54 * t271 + t202;
-        let minus_rate_dot_1_leg3_2 = t298 / minus_s2_leg3;
-        let t306 = t72 * t269 - t69 * t273 + t213;
-        let minus_rate_dot_1_leg4_2 = t306 / minus_s2_leg4;
-        let rate_1_leg1 = g1_vy_leg1 * t183 - minus_g1_vx_leg1 * t209;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (t169 - t152)
-            + minus_g1_vy_leg2 * t164;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t184 + minus_g1_vy_leg3 * t198;
-        let rate_1_leg4 = g1_vy_leg4 * (t163 + t155) - minus_g1_vx_leg4 * t170;
-        let t349 = t270 + t278;
-        let rate_dot_2_leg1 = t159 * (0.7071067811865476 * t349 + t15 * t173);
-        let t354 = g2_vx_leg1 * rate_dot_2_leg1;
-        let g2_wz_leg1 = g2_vx_leg1 * t8;
-        let minus_rate_dot_2_leg2 = 2.9411764705882355 / minus_s2_leg2
-            * (0.7071067811865476 * t277 - t32 * t187);
-        let t362 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
-        let g2_wz_leg2 = minus_g2_vx_leg2 * t8;
-        let minus_rate_dot_2_leg3 = 2.9411764705882355 / minus_s2_leg3
-            * (0.7071067811865476 * t274 + t31 * t201);
-        let t370 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
-        let g2_wz_leg3 = minus_g2_vx_leg3 * t8;
-        let minus_rate_dot_2_leg4 = 2.9411764705882355 / minus_s2_leg4
-            * (0.7071067811865476 * t272 - t12 * t212);
-        let t378 = g2_vx_leg4 * minus_rate_dot_2_leg4;
-        let g2_wz_leg4 = g2_vx_leg4 * t8;
-        let t381 = g2_vx_leg1 * t282;
-        let t382 = 2.079725827019258 * t349;
-        let t390 = 2.079725827019258 * t277;
-        let t392 = minus_g2_vx_leg2 * t290;
-        let t399 = 2.079725827019258 * t274;
-        let t401 = minus_g2_vx_leg3 * t298;
-        let t408 = 2.079725827019258 * t272;
-        let t410 = g2_vx_leg4 * t306;
-        let t417 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
-        let t419 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
-        let t421 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
-        let t423 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
-        let t425 = rate_3_leg1 - rate_2_leg1;
-        let t426 = ::overact::math::signed(g2_vx_leg1, t425);
-        let t429 = rate_3_leg1 - rate_2_leg2;
-        let t430 = ::overact::math::signed(minus_g2_vx_leg2, t429);
-        let t433 = minus_rate_2_leg3 + rate_3_leg1;
-        let t434 = ::overact::math::signed(minus_g2_vx_leg3, t433);
-        let t437 = rate_3_leg1 - rate_2_leg4;
-        let t438 = ::overact::math::signed(g2_vx_leg4, t437);
+            + g1_wz_leg4 * actuator_velocities[3] - t97 * t113 - t142 * t151;
+        let t164 = g1_wz_leg1 * g1_wz_leg1 + g1_wz_leg2 * g1_wz_leg2
+            + g1_wz_leg3 * g1_wz_leg3 + g1_wz_leg4 * g1_wz_leg4 - t104 * t113
+            - t131 * t142;
+        ::overact::guard::platform(t164, 0.02560000000000001, "actuators")?;
+        ::overact::guard::platform(t164, 0.02560000000000001, "actuators")?;
+        let rate_3_leg1 = t153 / t164;
+        let t166 = t3 * rate_3_leg1;
+        let t167 = rate_3_leg1 * t166;
+        let t169 = t9 * rate_3_leg1;
+        let t170 = rate_3_leg1 * t169;
+        let g2_vx_leg1 = 2.079725827019258 * t21;
+        let t178 = t151 / t141 - t142 * rate_3_leg1;
+        let t181 = t113 * rate_3_leg1 - (t97 * t112 + t139 * t178);
+        let t182 = t181 - t169;
+        let t183 = t178 + t166;
+        let rate_2_leg1 = g2_vx_leg1 * (t182 + t183);
+        let t186 = rate_2_leg1 * rate_2_leg1;
+        let t187 = 0.34 * t186;
+        let rate_dot_1_leg1 = t21 * (t24 * t167 - t20 * t170 - t187);
+        let t190 = actuator_accelerations[0] - rate_dot_1_leg1;
+        let minus_g2_vx_leg2 = 2.079725827019258 * t44;
+        let t196 = t181 + t169;
+        let rate_2_leg2 = minus_g2_vx_leg2 * (t183 - t196);
+        let t199 = rate_2_leg2 * rate_2_leg2;
+        let t200 = 0.34 * t199;
+        let minus_rate_dot_1_leg2 = t44 * (t47 * t170 - t43 * t167 + t200);
+        let t203 = actuator_accelerations[1] + minus_rate_dot_1_leg2;
+        let minus_g2_vx_leg3 = 2.079725827019258 * t66;
+        let t210 = t178 - t166;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * (t196 + t210);
+        let t213 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t214 = 0.34 * t213;
+        let minus_rate_dot_1_leg3 = t66 * (t69 * t167 + t65 * t170 + t214);
+        let t217 = actuator_accelerations[2] + minus_rate_dot_1_leg3;
+        let g2_vx_leg4 = 2.079725827019258 * t82;
+        let rate_2_leg4 = g2_vx_leg4 * (t182 - t210);
+        let t223 = rate_2_leg4 * rate_2_leg4;
+        let t224 = 0.34 * t223;
+        let minus_rate_dot_1_leg4 = t82 * (t224 - (t85 * t170 + t81 * t167));
+        let t230 = actuator_accelerations[3] + minus_rate_dot_1_leg4;
+        let t239 = minus_g1_vx_leg1 * t190 + minus_g1_vx_leg2 * t203
+            + minus_g1_vx_leg3 * t217 + minus_g1_vx_leg4 * t230;
+        let t250 = g1_vy_leg1 * t190 - minus_g1_vy_leg2 * t203 - minus_g1_vy_leg3 * t217
+            + g1_vy_leg4 * t230 + t139 * t239;
+        let t252 = g1_wz_leg1 * t190 + g1_wz_leg2 * t203 + g1_wz_leg3 * t217
+            + g1_wz_leg4 * t230 - t113 * t239 - t142 * t250;
+        let rate_dot_3_leg1 = t252 / t164;
+        let t254 = rate_3_leg1 * rate_3_leg1;
+        let t257 = c_phi * t254 + s_phi * rate_dot_3_leg1;
+        let t260 = s_phi * t254 - c_phi * rate_dot_3_leg1;
+        let t263 = t250 / t141 - t142 * rate_dot_3_leg1;
+        let t269 = t113 * rate_dot_3_leg1 - (t112 * t239 + t139 * t263);
+        let t276 = t167 + t9 * rate_dot_3_leg1;
+        let t277 = t269 + t276;
+        let t279 = t170 - t3 * rate_dot_3_leg1;
+        let t280 = t269 + t279;
+        let t281 = t263 - t276;
+        let t282 = t280 - t281;
+        let t283 = t277 - t282;
+        let t285 = t269 - t276;
+        let t288 = t20 * t283 - t24 * t285 - t187;
+        let rate_dot_1_leg1_2 = t21 * t288;
+        let t296 = t47 * t280 + t43 * t281 + t200;
+        let minus_rate_dot_1_leg2_2 = t44 * t296;
+        let t302 = t263 + t279;
+        let t305 = t69 * t277 + t65 * t302 + t214;
+        let minus_rate_dot_1_leg3_2 = t66 * t305;
+        let t310 = t285 + t283;
+        let t311 = t310 - t281;
+        let t313 = t263 + t276;
+        let t316 = t85 * t311 - t81 * t313 + t224;
+        let minus_rate_dot_1_leg4_2 = t82 * t316;
+        let rate_1_leg1 = g1_vy_leg1 * t183 - minus_g1_vx_leg1 * t182;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * (t181 - t166)
+            + minus_g1_vy_leg2 * (t178 - t169);
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t196 + minus_g1_vy_leg3 * t210;
+        let rate_1_leg4 = g1_vy_leg4 * (t178 + t169) - minus_g1_vx_leg4 * (t181 + t166);
+        let rate_dot_2_leg1 = 2.9411764705882355 * t21
+            * (0.7071067811865476 * t310 + t13 * t186);
+        let t366 = g2_vx_leg1 * rate_dot_2_leg1;
+        let t367 = t3 - t9;
+        let g2_wz_leg1 = g2_vx_leg1 * t367;
+        let minus_rate_dot_2_leg2 = 2.9411764705882355 * t44
+            * (0.7071067811865476 * t282 - t36 * t199);
+        let t375 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
+        let g2_wz_leg2 = minus_g2_vx_leg2 * t367;
+        let t379 = t277 + t302;
+        let minus_rate_dot_2_leg3 = 2.9411764705882355 * t66
+            * (0.7071067811865476 * t379 + t32 * t213);
+        let t384 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
+        let g2_wz_leg3 = minus_g2_vx_leg3 * t367;
+        let t388 = t313 - t311;
+        let minus_rate_dot_2_leg4 = 2.9411764705882355 * t82
+            * (0.7071067811865476 * t388 - t34 * t223);
+        let t393 = g2_vx_leg4 * minus_rate_dot_2_leg4;
+        let g2_wz_leg4 = g2_vx_leg4 * t367;
+        let t396 = g2_vx_leg1 * t288;
+        let t397 = 2.079725827019258 * t310;
+        let t405 = 2.079725827019258 * t282;
+        let t407 = minus_g2_vx_leg2 * t296;
+        let t414 = 2.079725827019258 * t379;
+        let t416 = minus_g2_vx_leg3 * t305;
+        let t423 = 2.079725827019258 * t388;
+        let t425 = g2_vx_leg4 * t316;
+        let t432 = ::overact::math::signed(g2_vx_leg1, rate_2_leg1);
+        let t434 = ::overact::math::signed(minus_g2_vx_leg2, rate_2_leg2);
+        let t436 = ::overact::math::signed(minus_g2_vx_leg3, minus_rate_2_leg3);
+        let t438 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
+        let t440 = rate_3_leg1 - rate_2_leg1;
+        let t441 = ::overact::math::signed(g2_vx_leg1, t440);
+        let t444 = rate_3_leg1 - rate_2_leg2;
+        let t445 = ::overact::math::signed(minus_g2_vx_leg2, t444);
+        let t448 = minus_rate_2_leg3 + rate_3_leg1;
+        let t449 = ::overact::math::signed(minus_g2_vx_leg3, t448);
+        let t452 = rate_3_leg1 - rate_2_leg4;
+        let t453 = ::overact::math::signed(g2_vx_leg4, t452);
         Ok([
             [
-                0.0, -t246, t249, t258, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
+                0.0, -t257, t260, t269, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vx_leg3 * minus_rate_dot_1_leg3_2,
                 minus_g1_vx_leg4 * minus_rate_dot_1_leg4_2, -(minus_g1_vx_leg1 * rate_1_leg1),
@@ -3582,13 +3616,13 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vx_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vx_leg3, minus_rate_1_leg3),
                 -::overact::math::signed(minus_g1_vx_leg4, rate_1_leg4), -minus_g1_vx_leg1,
-                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t354, t362, t370, -t378,
-                t381 - minus_g1_vx_leg1 * t382, minus_g1_vx_leg2 * t390 + t392,
-                minus_g1_vx_leg3 * t399 + t401, minus_g1_vx_leg4 * t408 - t410, t417, -t419, t421,
-                t423, -t426, t430, t434, -t438,
+                -minus_g1_vx_leg2, -minus_g1_vx_leg3, -minus_g1_vx_leg4, t366, t375, t384, -t393,
+                t396 - minus_g1_vx_leg1 * t397, minus_g1_vx_leg2 * t405 + t407,
+                minus_g1_vx_leg3 * t414 + t416, minus_g1_vx_leg4 * t423 - t425, t432, -t434, t436,
+                t438, -t441, t445, t449, -t453,
             ],
             [
-                0.0, -t249, -t246, t252, g1_vy_leg1 * rate_dot_1_leg1_2,
+                0.0, -t260, -t257, t263, g1_vy_leg1 * rate_dot_1_leg1_2,
                 minus_g1_vy_leg2 * minus_rate_dot_1_leg2_2,
                 minus_g1_vy_leg3 * minus_rate_dot_1_leg3_2, -(g1_vy_leg4 * minus_rate_dot_1_leg4_2),
                 g1_vy_leg1 * rate_1_leg1, minus_g1_vy_leg2 * minus_rate_1_leg2,
@@ -3597,12 +3631,12 @@ impl Planar4Prr {
                 ::overact::math::signed(minus_g1_vy_leg2, minus_rate_1_leg2),
                 ::overact::math::signed(minus_g1_vy_leg3, minus_rate_1_leg3),
                 ::overact::math::signed(g1_vy_leg4, rate_1_leg4), g1_vy_leg1, -minus_g1_vy_leg2,
-                -minus_g1_vy_leg3, g1_vy_leg4, t354, -t362, t370, t378, g1_vy_leg1 * t382 + t381,
-                minus_g1_vy_leg2 * t390 - t392, minus_g1_vy_leg3 * t399 + t401,
-                t410 - g1_vy_leg4 * t408, t417, t419, t421, -t423, -t426, -t430, t434, t438,
+                -minus_g1_vy_leg3, g1_vy_leg4, t366, -t375, t384, t393, g1_vy_leg1 * t397 + t396,
+                minus_g1_vy_leg2 * t405 - t407, minus_g1_vy_leg3 * t414 + t416,
+                t425 - g1_vy_leg4 * t423, t432, t434, t436, -t438, -t441, -t445, t449, t453,
             ],
             [
-                rate_dot_3_leg1, c_phi * t252 - s_phi * t258, -(s_phi * t252 + c_phi * t258), 0.0,
+                rate_dot_3_leg1, c_phi * t263 - s_phi * t269, -(s_phi * t263 + c_phi * t269), 0.0,
                 g1_wz_leg1 * rate_dot_1_leg1_2, -(g1_wz_leg2 * minus_rate_dot_1_leg2_2),
                 -(g1_wz_leg3 * minus_rate_dot_1_leg3_2), -(g1_wz_leg4 * minus_rate_dot_1_leg4_2),
                 g1_wz_leg1 * rate_1_leg1, -(g1_wz_leg2 * minus_rate_1_leg2),
@@ -3613,17 +3647,17 @@ impl Planar4Prr {
                 ::overact::math::signed(g1_wz_leg4, rate_1_leg4), g1_wz_leg1, g1_wz_leg2,
                 g1_wz_leg3, g1_wz_leg4, g2_wz_leg1 * rate_dot_2_leg1,
                 -(g2_wz_leg2 * minus_rate_dot_2_leg2), -(g2_wz_leg3 * minus_rate_dot_2_leg3),
-                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t382 + g2_wz_leg1 * t282,
-                -(g1_wz_leg2 * t390 + g2_wz_leg2 * t290), -(g1_wz_leg3 * t399 + g2_wz_leg3 * t298),
-                -(g1_wz_leg4 * t408 + g2_wz_leg4 * t306),
+                -(g2_wz_leg4 * minus_rate_dot_2_leg4), g1_wz_leg1 * t397 + g2_wz_leg1 * t288,
+                -(g1_wz_leg2 * t405 + g2_wz_leg2 * t296), -(g1_wz_leg3 * t414 + g2_wz_leg3 * t305),
+                -(g1_wz_leg4 * t423 + g2_wz_leg4 * t316),
                 ::overact::math::signed(g2_wz_leg1, rate_2_leg1),
                 ::overact::math::signed(g2_wz_leg2, rate_2_leg2),
                 -::overact::math::signed(g2_wz_leg3, minus_rate_2_leg3),
                 ::overact::math::signed(g2_wz_leg4, rate_2_leg4),
-                ::overact::math::signed(1.0 - g2_wz_leg1, t425),
-                ::overact::math::signed(1.0 - g2_wz_leg2, t429),
-                ::overact::math::signed(1.0 - g2_wz_leg3, t433),
-                ::overact::math::signed(1.0 - g2_wz_leg4, t437),
+                ::overact::math::signed(1.0 - g2_wz_leg1, t440),
+                ::overact::math::signed(1.0 - g2_wz_leg2, t444),
+                ::overact::math::signed(1.0 - g2_wz_leg3, t448),
+                ::overact::math::signed(1.0 - g2_wz_leg4, t452),
             ],
         ])
     }
@@ -4534,7 +4568,7 @@ impl Planar4Prr {
     ///
     /// Output: 3.
     ///
-    /// 159 operations (66 additions, 88 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 162 intermediates.
+    /// 161 operations (68 additions, 88 multiplications, 5 divisions), 4 square roots, 1 trigonometric pairs, 0 signs, 164 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -4546,95 +4580,95 @@ impl Planar4Prr {
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
         let t5 = 0.05656854249492381 * (c_phi - s_phi);
         let t7 = pose[1] + t5 - 0.21213203435596426;
-        let t9 = pose[0] - t3 + 0.21213203435596426;
-        let t10 = t7 - t9;
-        let t12 = pose[1] + t3 - 0.21213203435596426;
-        let t13 = t12 - t10;
-        let t14 = t9 + t7;
-        let t16 = pose[0] + t5 - 0.21213203435596426;
-        let t17 = t14 - t16;
-        let t18 = t13 - t17;
-        let t19 = t7 + t18;
-        let t20 = t12 - t16;
-        let t21 = t9 + t20;
-        let t22 = t19 + t21;
+        let t9 = pose[0] - t5 + 0.21213203435596426;
+        let t11 = pose[1] - t3 + 0.21213203435596426;
+        let t12 = t9 - t11;
+        let t13 = t7 + t12;
+        let t15 = pose[0] - t3 + 0.21213203435596426;
+        let t17 = pose[1] + t3 - 0.21213203435596426;
+        let t19 = pose[0] + t5 - 0.21213203435596426;
+        let t20 = t17 - t19;
+        let t21 = t15 + t20;
+        let t22 = t13 + t21;
         let t30 = 8.650519031141869
-            * (0.5 * (t22 * t22) - (t19 * t19 + t21 * t21 - 0.1156));
+            * (0.5 * (t22 * t22) - (t13 * t13 + t21 * t21 - 0.1156));
         ::overact::guard::reach(t30, "leg4")?;
         let minus_s2_leg4 = ::overact::math::sqrt(t30);
         ::overact::guard::leg(minus_s2_leg4, 0.7624400821656305, "leg4")?;
         let t32 = 0.7071067811865476 * minus_s2_leg4;
-        let t34 = 1.4705882352941178 * (t19 - t21);
+        let t34 = 1.4705882352941178 * (t13 - t21);
         let t36 = 1.0 / minus_s2_leg4;
         let g1_vy_leg4 = (t32 + t34) * t36;
         let minus_g1_vx_leg4 = (t34 - t32) * t36;
         let g1_wz_leg4 = t3 * g1_vy_leg4 - t5 * minus_g1_vx_leg4;
-        let t50 = 8.650519031141869 * (0.5 * (t14 * t14) - (t9 * t9 + t7 * t7 - 0.1156));
-        ::overact::guard::reach(t50, "leg2")?;
-        let minus_s2_leg2 = ::overact::math::sqrt(t50);
+        let t43 = t15 + t7;
+        let t51 = 8.650519031141869
+            * (0.5 * (t43 * t43) - (t15 * t15 + t7 * t7 - 0.1156));
+        ::overact::guard::reach(t51, "leg2")?;
+        let minus_s2_leg2 = ::overact::math::sqrt(t51);
         ::overact::guard::leg(minus_s2_leg2, 0.7624400821656305, "leg2")?;
-        let t52 = 0.7071067811865476 * minus_s2_leg2;
-        let t53 = 1.4705882352941178 * t10;
-        let t55 = 1.0 / minus_s2_leg2;
-        let minus_g1_vx_leg2 = (t52 - t53) * t55;
-        let t64 = 8.650519031141869
-            * (0.5 * (t18 * t18) - (t13 * t13 + t17 * t17 - 0.1156));
-        ::overact::guard::reach(t64, "leg3")?;
-        let minus_s2_leg3 = ::overact::math::sqrt(t64);
+        let t53 = 0.7071067811865476 * minus_s2_leg2;
+        let t55 = 1.4705882352941178 * (t7 - t15);
+        let t57 = 1.0 / minus_s2_leg2;
+        let minus_g1_vx_leg2 = (t53 - t55) * t57;
+        let t66 = 8.650519031141869
+            * (0.5 * (t12 * t12) - (t9 * t9 + t11 * t11 - 0.1156));
+        ::overact::guard::reach(t66, "leg3")?;
+        let minus_s2_leg3 = ::overact::math::sqrt(t66);
         ::overact::guard::leg(minus_s2_leg3, 0.7624400821656305, "leg3")?;
-        let t66 = 0.7071067811865476 * minus_s2_leg3;
-        let t68 = 1.4705882352941178 * (t13 + t17);
-        let t70 = 1.0 / minus_s2_leg3;
-        let minus_g1_vy_leg3 = (t66 + t68) * t70;
-        let minus_g1_vy_leg2 = (t52 + t53) * t55;
-        let minus_g1_vx_leg3 = (t68 - t66) * t70;
-        let t86 = 8.650519031141869
-            * (0.5 * (t20 * t20) - (t16 * t16 + t12 * t12 - 0.1156));
-        ::overact::guard::reach(t86, "leg1")?;
-        let minus_s2_leg1 = ::overact::math::sqrt(t86);
+        let t68 = 0.7071067811865476 * minus_s2_leg3;
+        let t70 = 1.4705882352941178 * (t9 + t11);
+        let t72 = 1.0 / minus_s2_leg3;
+        let minus_g1_vy_leg3 = (t68 + t70) * t72;
+        let minus_g1_vy_leg2 = (t53 + t55) * t57;
+        let minus_g1_vx_leg3 = (t70 - t68) * t72;
+        let t88 = 8.650519031141869
+            * (0.5 * (t20 * t20) - (t19 * t19 + t17 * t17 - 0.1156));
+        ::overact::guard::reach(t88, "leg1")?;
+        let minus_s2_leg1 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(minus_s2_leg1, 0.7624400821656305, "leg1")?;
-        let t88 = 0.7071067811865476 * minus_s2_leg1;
-        let t90 = 1.4705882352941178 * (t16 + t12);
-        let t92 = 1.0 / minus_s2_leg1;
-        let g1_vy_leg1 = (t88 - t90) * t92;
-        let minus_g1_vx_leg1 = (t90 + t88) * t92;
+        let t90 = 0.7071067811865476 * minus_s2_leg1;
+        let t92 = 1.4705882352941178 * (t19 + t17);
+        let t94 = 1.0 / minus_s2_leg1;
+        let g1_vy_leg1 = (t90 - t92) * t94;
+        let minus_g1_vx_leg1 = (t92 + t90) * t94;
         let g1_wz_leg1 = t5 * g1_vy_leg1 + t3 * minus_g1_vx_leg1;
         let g1_wz_leg3 = t5 * minus_g1_vy_leg3 - t3 * minus_g1_vx_leg3;
-        let t104 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
-        let t108 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
+        let t106 = g1_wz_leg1 * minus_g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3;
+        let t110 = minus_g1_vx_leg1 * g1_wz_leg3 - g1_wz_leg1 * minus_g1_vx_leg3;
         let g1_wz_leg2 = t3 * minus_g1_vy_leg2 + t5 * minus_g1_vx_leg2;
-        let t116 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
-        let t118 = minus_g1_vx_leg2 * t104 + minus_g1_vy_leg2 * t108 - g1_wz_leg2 * t116;
-        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
-        ::overact::guard::platform(t118, 0.2752380952380954, "kept actuators")?;
-        let t119 = 1.0 / t118;
-        let t132 = minus_g1_vx_leg4
-            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t119)
+        let t118 = g1_vy_leg1 * minus_g1_vx_leg3 + minus_g1_vx_leg1 * minus_g1_vy_leg3;
+        let t120 = minus_g1_vx_leg2 * t106 + minus_g1_vy_leg2 * t110 - g1_wz_leg2 * t118;
+        ::overact::guard::platform(t120, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t120, 0.2752380952380954, "kept actuators")?;
+        ::overact::guard::platform(t120, 0.2752380952380954, "kept actuators")?;
+        let t121 = 1.0 / t120;
+        let t134 = minus_g1_vx_leg4
+            * ((g1_wz_leg2 * minus_g1_vy_leg3 - minus_g1_vy_leg2 * g1_wz_leg3) * t121)
             + g1_vy_leg4
                 * ((g1_wz_leg2 * minus_g1_vx_leg3 - minus_g1_vx_leg2 * g1_wz_leg3)
-                    * t119);
-        let t145 = torques[1]
+                    * t121);
+        let t147 = torques[1]
             + torques[3]
-                * (minus_g1_vx_leg4 * (t104 * t119) - g1_vy_leg4 * (t108 * t119)
-                    - g1_wz_leg4 * (t116 * t119));
-        let t156 = g1_vy_leg4
-            * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t119)
+                * (minus_g1_vx_leg4 * (t106 * t121) - g1_vy_leg4 * (t110 * t121)
+                    - g1_wz_leg4 * (t118 * t121));
+        let t158 = g1_vy_leg4
+            * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t121)
             - minus_g1_vx_leg4
-                * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t119);
+                * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t121);
         Ok([
             torques[0]
                 + torques[3]
                     * (g1_wz_leg4
                         * ((minus_g1_vx_leg2 * minus_g1_vy_leg3
-                            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t119) - t132),
-            t145,
+                            - minus_g1_vy_leg2 * minus_g1_vx_leg3) * t121) - t134),
+            t147,
             torques[2]
                 + torques[3]
-                    * (t156
+                    * (t158
                         + g1_wz_leg4
                             * ((g1_vy_leg1 * minus_g1_vx_leg2
-                                + minus_g1_vx_leg1 * minus_g1_vy_leg2) * t119)),
+                                + minus_g1_vx_leg1 * minus_g1_vy_leg2) * t121)),
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6014,98 +6048,96 @@ impl Planar4Prr {
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         ::overact::guard::platform(t114, 3.440476190476192, "actuators")?;
         let t115 = 1.0 / t114;
-        let t116 = t7 * acceleration[2];
-        let t118 = t3 * twist[2];
-        let t119 = twist[2] * t118;
-        let t120 = acceleration[0] + t116 + t119;
-        let t121 = t3 * acceleration[2];
-        let t123 = t7 * twist[2];
+        let t118 = t7 * twist[2];
+        let t120 = acceleration[0] - t3 * acceleration[2] + twist[2] * t118;
+        let t121 = t7 * acceleration[2];
+        let t123 = t3 * twist[2];
         let t124 = twist[2] * t123;
-        let t125 = acceleration[1] - t121 + t124;
-        let t126 = t120 + t125;
-        let t128 = acceleration[1] + t116 + t119;
-        let t129 = t126 - t128;
-        let t131 = acceleration[1] - t116 - t119;
-        let t132 = t129 - t131;
-        let t133 = t120 - t132;
-        let t136 = acceleration[0] + t121 - t124;
-        let t137 = t128 - t136;
-        let t138 = t125 - t137;
+        let t125 = acceleration[1] - t121 - t124;
+        let t126 = t120 - t125;
+        let t128 = acceleration[0] + t121 + t124;
+        let t129 = t128 - t126;
+        let t132 = acceleration[0] - t121 - t124;
         let g2_vx_leg1 = 2.079725827019258 * t36;
-        let t142 = twist[0] - t123;
-        let t144 = twist[1] + t118;
-        let rate_2_leg1 = g2_vx_leg1 * t142 + g2_vx_leg1 * t144;
-        let t147 = rate_2_leg1 * rate_2_leg1;
-        let t148 = 0.34 * t147;
-        let t149 = t35 * t133 - t92 * t138 - t148;
-        let rate_dot_1_leg1 = t36 * t149;
-        let rate_1_leg1 = g1_vy_leg1 * t144 - minus_g1_vx_leg1 * t142;
+        let t136 = twist[0] - t118;
+        let t138 = twist[1] + t123;
+        let rate_2_leg1 = g2_vx_leg1 * t136 + g2_vx_leg1 * t138;
+        let t141 = rate_2_leg1 * rate_2_leg1;
+        let t142 = 0.34 * t141;
+        let t143 = t35 * t129 - t92 * t132 - t142;
+        let rate_dot_1_leg1 = t36 * t143;
+        let rate_1_leg1 = g1_vy_leg1 * t138 - minus_g1_vx_leg1 * t136;
+        let t158 = t132 + t129;
         let c2_leg1 = 2.079725827019258 * t33;
         let rate_dot_2_leg1 = 2.9411764705882355 * t36
-            * (0.7071067811865476 * (t138 + t133) + t148 * c2_leg1);
-        let t178 = c2_leg1 * rate_dot_1_leg1;
-        let t182 = minus_s2_leg1
-            * (parameters[6] * t147 + parameters[7] * rate_dot_2_leg1
-                + parameters[8] * t149)
+            * (0.7071067811865476 * t158 + t142 * c2_leg1);
+        let t172 = c2_leg1 * rate_dot_1_leg1;
+        let t176 = minus_s2_leg1
+            * (parameters[6] * t141 + parameters[7] * rate_dot_2_leg1
+                + parameters[8] * t143)
             + c2_leg1
-                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t147
-                    + parameters[8] * t178);
-        let t183 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
+                * (parameters[6] * rate_dot_2_leg1 - parameters[7] * t141
+                    + parameters[8] * t172);
+        let t177 = parameters[0] * rate_dot_1_leg1 + parameters[1] * rate_dot_1_leg1
             + parameters[2] * rate_1_leg1
-            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t182;
-        let t193 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
-        let t194 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t178
-            + parameters[7] * t149 + ::overact::math::signed(parameters[9], rate_2_leg1)
-            - t193;
-        let t195 = g2_vx_leg1 * t194;
+            + ::overact::math::signed(parameters[3], rate_1_leg1) + parameters[4] + t176;
+        let t187 = ::overact::math::signed(parameters[10], twist[2] - rate_2_leg1);
+        let t188 = parameters[5] * rate_dot_2_leg1 + parameters[6] * t172
+            + parameters[7] * t143 + ::overact::math::signed(parameters[9], rate_2_leg1)
+            - t187;
+        let t189 = g2_vx_leg1 * t188;
         let minus_g2_vx_leg2 = 2.079725827019258 * t51;
-        let t198 = twist[1] - t123;
-        let t200 = twist[0] - t118;
-        let rate_2_leg2 = minus_g2_vx_leg2 * t198 - minus_g2_vx_leg2 * t200;
+        let t192 = twist[1] - t118;
+        let t194 = twist[0] - t123;
+        let rate_2_leg2 = minus_g2_vx_leg2 * t192 - minus_g2_vx_leg2 * t194;
         let c2_leg2 = 2.079725827019258 * t18;
-        let t207 = rate_2_leg2 * rate_2_leg2;
-        let t208 = 0.34 * t207;
+        let t201 = rate_2_leg2 * rate_2_leg2;
+        let t202 = 0.34 * t201;
         let minus_rate_dot_2_leg2 = 2.9411764705882355 * t51
-            * (0.7071067811865476 * t132 - c2_leg2 * t208);
-        let t216 = t89 * t129 + t50 * t131 + t208;
-        let minus_rate_dot_1_leg2 = t51 * t216;
-        let t218 = c2_leg2 * minus_rate_dot_1_leg2;
-        let t225 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
-        let t226 = ::overact::math::signed(parameters[20], rate_2_leg2)
-            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t218
-                + parameters[18] * t216) - t225;
-        let t227 = minus_g2_vx_leg2 * t226;
-        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t200 + minus_g1_vy_leg2 * t198;
-        let t251 = minus_s2_leg2
-            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t207
-                + parameters[19] * t216)
+            * (0.7071067811865476 * t126 - c2_leg2 * t202);
+        let t210 = t89 * t120 + t50 * t125 + t202;
+        let minus_rate_dot_1_leg2 = t51 * t210;
+        let t212 = c2_leg2 * minus_rate_dot_1_leg2;
+        let t219 = ::overact::math::signed(parameters[21], twist[2] - rate_2_leg2);
+        let t220 = ::overact::math::signed(parameters[20], rate_2_leg2)
+            - (parameters[16] * minus_rate_dot_2_leg2 + parameters[17] * t212
+                + parameters[18] * t210) - t219;
+        let t221 = minus_g2_vx_leg2 * t220;
+        let minus_rate_1_leg2 = minus_g1_vx_leg2 * t194 + minus_g1_vy_leg2 * t192;
+        let t245 = minus_s2_leg2
+            * (parameters[18] * minus_rate_dot_2_leg2 - parameters[17] * t201
+                + parameters[19] * t210)
             + c2_leg2
-                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t207
-                    + parameters[19] * t218);
-        let t252 = parameters[15]
+                * (parameters[17] * minus_rate_dot_2_leg2 + parameters[18] * t201
+                    + parameters[19] * t212);
+        let t246 = parameters[15]
             - (parameters[12] * minus_rate_dot_1_leg2
                 + parameters[13] * minus_rate_1_leg2
                 + ::overact::math::signed(parameters[14], minus_rate_1_leg2))
-            - parameters[11] * minus_rate_dot_1_leg2 - t251;
+            - parameters[11] * minus_rate_dot_1_leg2 - t245;
+        let t252 = acceleration[1] + t121 + t124;
+        let t253 = t158 - t125;
+        let t254 = t252 - t253;
+        let t255 = t132 + t254;
         let minus_g2_vx_leg3 = 2.079725827019258 * t67;
-        let t260 = twist[0] + t123;
-        let t262 = twist[1] - t118;
-        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t260 + minus_g2_vx_leg3 * t262;
-        let t265 = minus_rate_2_leg3 * minus_rate_2_leg3;
-        let t266 = 0.34 * t265;
-        let t267 = t96 * t120 + t66 * t125 + t266;
-        let minus_rate_dot_1_leg3 = t67 * t267;
-        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t260 + minus_g1_vy_leg3 * t262;
+        let t259 = twist[0] + t118;
+        let t261 = twist[1] - t123;
+        let minus_rate_2_leg3 = minus_g2_vx_leg3 * t259 + minus_g2_vx_leg3 * t261;
+        let t264 = minus_rate_2_leg3 * minus_rate_2_leg3;
+        let t265 = 0.34 * t264;
+        let t266 = t96 * t128 + t66 * t255 + t265;
+        let minus_rate_dot_1_leg3 = t67 * t266;
+        let minus_rate_1_leg3 = minus_g1_vx_leg3 * t259 + minus_g1_vy_leg3 * t261;
         let minus_c2_leg3 = 2.079725827019258 * t14;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t67
-            * (0.7071067811865476 * t126 + t266 * minus_c2_leg3);
+            * (0.7071067811865476 * (t128 + t255) + t265 * minus_c2_leg3);
         let t292 = minus_c2_leg3 * minus_rate_dot_1_leg3;
         let t299 = minus_s2_leg3
-            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t265
-                + parameters[30] * t267)
+            * (parameters[29] * minus_rate_dot_2_leg3 - parameters[28] * t264
+                + parameters[30] * t266)
             + minus_c2_leg3
                 * (parameters[30] * t292
-                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t265));
+                    - (parameters[28] * minus_rate_dot_2_leg3 + parameters[29] * t264));
         let t300 = parameters[26]
             - (parameters[23] * minus_rate_dot_1_leg3
                 + parameters[24] * minus_rate_1_leg3
@@ -6113,21 +6145,21 @@ impl Planar4Prr {
             - parameters[22] * minus_rate_dot_1_leg3 - t299;
         let t310 = ::overact::math::signed(parameters[32], minus_rate_2_leg3 + twist[2]);
         let t311 = parameters[28] * t292 - parameters[27] * minus_rate_dot_2_leg3
-            - parameters[29] * t267
+            - parameters[29] * t266
             - ::overact::math::signed(parameters[31], minus_rate_2_leg3) - t310;
         let t312 = minus_g2_vx_leg3 * t311;
-        let t315 = twist[1] + t123;
-        let t317 = twist[0] + t118;
+        let t315 = twist[1] + t118;
+        let t317 = twist[0] + t123;
         let rate_1_leg4 = g1_vy_leg4 * t315 - minus_g1_vx_leg4 * t317;
         let g2_vx_leg4 = 2.079725827019258 * t85;
         let rate_2_leg4 = g2_vx_leg4 * t317 - g2_vx_leg4 * t315;
         let t328 = rate_2_leg4 * rate_2_leg4;
         let t329 = 0.34 * t328;
-        let t330 = t100 * t136 - t84 * t128 + t329;
+        let t330 = t100 * t253 - t84 * t252 + t329;
         let minus_rate_dot_1_leg4 = t85 * t330;
         let c2_leg4 = 2.079725827019258 * t82;
         let minus_rate_dot_2_leg4 = 2.9411764705882355 * t85
-            * (0.7071067811865476 * t137 - t329 * c2_leg4);
+            * (0.7071067811865476 * t254 - t329 * c2_leg4);
         let t354 = c2_leg4 * minus_rate_dot_1_leg4;
         let t358 = minus_s2_leg4
             * (parameters[40] * minus_rate_dot_2_leg4 - parameters[39] * t328
@@ -6143,12 +6175,12 @@ impl Planar4Prr {
             - (parameters[38] * minus_rate_dot_2_leg4 + parameters[39] * t354
                 + parameters[40] * t330) - t369;
         let t371 = g2_vx_leg4 * t370;
-        let t373 = g1_vy_leg1 * t183 + t195 + t227 - minus_g1_vy_leg2 * t252
+        let t373 = g1_vy_leg1 * t177 + t189 + t221 - minus_g1_vy_leg2 * t246
             - (minus_g1_vy_leg3 * t300 + t312) + g1_vy_leg4 * t359 - t371;
         let t375 = twist[2] * twist[2];
         let t378 = s_phi * t375 - c_phi * acceleration[2];
         let t382 = c_phi * t375 + s_phi * acceleration[2];
-        let t397 = t195 - minus_g1_vx_leg1 * t183 - (minus_g1_vx_leg2 * t252 + t227)
+        let t397 = t189 - minus_g1_vx_leg1 * t177 - (minus_g1_vx_leg2 * t246 + t221)
             - (minus_g1_vx_leg3 * t300 + t312) + t371 - minus_g1_vx_leg4 * t359;
         let t403 = t397 + parameters[46] * t378 - parameters[45] * t382
             + acceleration[0] * parameters[47];
@@ -6173,8 +6205,8 @@ impl Planar4Prr {
         let g2_wz_leg1 = 0.11764705882352941 * (t2 * t36 - t6 * t36);
         let g2_wz_leg2 = 0.11764705882352941 * (t2 * t51 - t6 * t51);
         let g2_wz_leg3 = 0.11764705882352941 * (t2 * t67 - t6 * t67);
-        let t474 = g1_wz_leg1 * t183 + g2_wz_leg1 * t194 + t193 + g1_wz_leg2 * t252
-            + g2_wz_leg2 * t226 + t225 + g1_wz_leg3 * t300 + g2_wz_leg3 * t311 + t310;
+        let t474 = g1_wz_leg1 * t177 + g2_wz_leg1 * t188 + t187 + g1_wz_leg2 * t246
+            + g2_wz_leg2 * t220 + t219 + g1_wz_leg3 * t300 + g2_wz_leg3 * t311 + t310;
         let g2_wz_leg4 = 0.11764705882352941 * (t2 * t85 - t6 * t85);
         let t494 = acceleration[2] * parameters[44]
             + parameters[45] * (c_phi * acceleration[1] - s_phi * acceleration[0])

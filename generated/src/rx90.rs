@@ -368,195 +368,188 @@ impl Rx90 {
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
         ]);
-        let t3 = c2_arm * joint_velocities[0];
+        let t3 = s2_arm * joint_velocities[0];
         let t4 = joint_velocities[1] * t3;
-        let t5 = s2_arm * joint_accelerations[0];
-        let t7 = t4 + t5 + t4;
-        let t8 = s2_arm * t7;
-        let t9 = s2_arm * joint_velocities[0];
-        let t10 = t9 * t3;
-        let t12 = joint_velocities[1] * t9;
-        let t13 = c2_arm * joint_accelerations[0];
-        let t15 = t12 - (t13 - t12);
-        let t18 = t3 * t3;
-        let t19 = joint_velocities[1] * joint_velocities[1];
-        let t20 = t18 + t19;
-        let t21 = joint_velocities[0] * joint_velocities[0];
-        let t22 = t20 - t21;
-        let t23 = t18 - t19;
-        let t25 = t10 + joint_accelerations[1];
-        let t28 = s2_arm * t25 + c2_arm * t22;
-        let t34 = 9.81 * c2_arm;
-        let t35 = 9.81 * s2_arm;
+        let t5 = c2_arm * joint_accelerations[0];
+        let t7 = t4 - (t5 - t4);
+        let t8 = c2_arm * t7;
+        let t10 = c2_arm * joint_velocities[0];
+        let t11 = t3 * t10;
+        let t12 = joint_velocities[1] * t10;
+        let t13 = s2_arm * joint_accelerations[0];
+        let t19 = t3 * t3;
+        let t20 = t10 * t10;
+        let t22 = t11 + joint_accelerations[1];
+        let t24 = joint_velocities[1] * joint_velocities[1];
+        let t27 = s2_arm * t22 + c2_arm * (t24 - t19);
+        let t33 = 9.81 * c2_arm;
+        let t34 = 9.81 * s2_arm;
         let c23_arm = c2_arm * c3_arm - s2_arm * s3_arm;
         let s23_arm = s2_arm * c3_arm + c2_arm * s3_arm;
-        let t45 = joint_velocities[0] * s23_arm;
-        let t46 = joint_velocities[1] + joint_velocities[2];
-        let t47 = t45 * t46;
-        let t48 = joint_accelerations[0] * c23_arm;
-        let t49 = t48 - t47;
-        let t50 = t47 - t49;
-        let t51 = c23_arm * t50;
-        let t52 = joint_accelerations[0] + t51;
-        let t53 = joint_velocities[0] * c23_arm;
-        let t54 = t45 * t53;
-        let t55 = t53 * t46;
-        let t56 = joint_accelerations[0] * s23_arm;
-        let t57 = t55 + t56;
-        let t58 = t55 + t57;
-        let t62 = t53 * t53;
-        let t63 = t46 * t46;
-        let t64 = t62 + t63;
-        let t65 = t64 - t21;
-        let t66 = t62 - t63;
-        let t67 = t65 + t66;
-        let t68 = joint_accelerations[1] + joint_accelerations[2];
-        let t69 = t54 + t68;
-        let t74 = t54 - t68;
-        let t77 = 0.45 * c2_arm;
-        let t79 = 0.45 * t15;
-        let t82 = 0.45 * c3_arm;
-        let t88 = t34 + 0.45 * t25;
-        let t91 = t35 - 0.45 * t20;
-        let t93 = c3_arm * t88 - s3_arm * t91;
-        let t98 = t21 - t66;
-        let t100 = 0.45 * t74;
-        let t102 = s3_arm * t100 - t82 * t98;
-        let t105 = c3_arm * t91 + s3_arm * t88;
-        let t114 = s23_arm * c4_arm;
-        let t120 = s4_arm * t45 + c4_arm * t46;
-        let t122 = c4_arm * t57 - s4_arm * t68 - joint_velocities[3] * t120;
-        let t124 = s23_arm * s4_arm;
-        let t127 = c4_arm * t45 - s4_arm * t46;
-        let t128 = t53 + joint_velocities[3];
-        let t129 = t127 * t128;
-        let t130 = t124 * t129;
-        let t132 = t127 * t120;
-        let t134 = t114 * t122 - t130 + c23_arm * t132;
-        let t135 = t45 * t128;
-        let t136 = t120 * t128;
-        let t137 = t122 - t136;
-        let t138 = s4_arm * t137;
-        let t139 = t135 + t138;
-        let t140 = t120 * t120;
-        let t141 = t128 * t128;
-        let t142 = t140 + t141;
-        let t143 = t142 - t98;
-        let t144 = t140 - t141;
-        let t145 = t143 + t144;
-        let t147 = t139 - t74;
-        let t155 = s4_arm * t57 + c4_arm * t68 + joint_velocities[3] * t127;
-        let t156 = t129 + t155;
-        let t159 = s4_arm * t156 - c4_arm * t137;
-        let t160 = t49 + joint_accelerations[3];
-        let t161 = t160 - t132;
-        let t165 = t136 + t122;
-        let t168 = s4_arm * t161;
-        let t170 = t168 + c4_arm * t143;
-        let t173 = t132 + t160;
-        let t176 = t129 - t155;
-        let t180 = c4_arm * t173;
-        let t181 = s4_arm * t144 + t180;
-        let t185 = t130 - t114 * t136 + c23_arm * t160;
-        let t187 = 0.45 * (s23_arm - c2_arm);
-        let t188 = s4_arm * t187;
-        let t190 = c4_arm * t187;
-        let t194 = t93 - 0.45 * t98;
-        let t196 = t105 + t100;
-        let t199 = 0.45 * (t15 + t58);
-        let t201 = s4_arm * t196 + c4_arm * t199;
-        let t206 = 0.45 * c4_arm;
-        let t209 = t206 * t142 + 0.45 * t168;
-        let t210 = 1.0 - s3_arm;
-        let t213 = c4_arm * t194;
-        let t217 = t98 - t144;
-        let t223 = c4_arm * t196 - s4_arm * t199;
-        let t226 = t188 * t173 + t190 * t217 + t114 * t194 - c23_arm * t223;
-        let t228 = 0.45 * s4_arm;
-        let t230 = 0.45 * t180 - t228 * t217;
-        let t234 = s4_arm * t194;
-        let t235 = t230 * t210 + t82 * t137 - t234;
-        let t236 = t230 - t234;
-        let t240 = t100 + t196;
-        let t242 = t187 * t199;
-        let t243 = 0.45 * t196;
-        let t246 = t82 * t194 - t243 * t210;
-        let t252 = t114 * c5_arm + c23_arm * s5_arm;
-        let t258 = c5_arm * t128 - s5_arm * t127;
-        let t260 = c5_arm * t122 + s5_arm * t160 + joint_velocities[4] * t258;
-        let t264 = c23_arm * c5_arm - t114 * s5_arm;
-        let t267 = c5_arm * t127 + s5_arm * t128;
-        let t268 = t120 + joint_velocities[4];
-        let t269 = t267 * t268;
-        let t270 = t264 * t269;
-        let t272 = t267 * t258;
-        let t274 = t252 * t260 + t270 - t124 * t272;
-        let t275 = s4_arm * s5_arm;
-        let t276 = t275 * t269;
-        let t277 = s4_arm * c5_arm;
-        let t281 = t276 - t260 * t277 - c4_arm * t272;
-        let t282 = t127 * t268;
-        let t283 = t258 * t268;
-        let t284 = t283 + t260;
-        let t285 = s5_arm * t284;
-        let t286 = t282 + t285;
-        let t292 = c5_arm * t160 - s5_arm * t122 - joint_velocities[4] * t267;
-        let t293 = t269 - t292;
-        let t296 = t267 * t267;
-        let t297 = t258 * t258;
-        let t298 = t296 - t297;
-        let t301 = t173 - t286;
-        let t305 = s4_arm * (t286 - t301) + c4_arm * t298;
-        let t309 = t155 + joint_accelerations[4];
-        let t310 = t272 + t309;
-        let t312 = t268 * t268;
-        let t313 = t312 - t296;
-        let t316 = t283 - t260;
-        let t323 = t275 * t313 - t277 * t310 - c4_arm * t316;
-        let t329 = t138 + t281;
-        let t330 = t297 - t312;
-        let t332 = t272 - t309;
-        let t335 = t269 + t292;
-        let t342 = c4_arm * t335 - (t277 * t330 + t275 * t332);
-        let t349 = t252 * t283 - t270 + t124 * t309;
-        let t353 = c4_arm * t309 - (t277 * t283 + t276);
-        let t354 = c5_arm * t188;
-        let t355 = t297 + t312;
-        let t357 = s5_arm * t188;
-        let t364 = c5_arm * t194 - s5_arm * t223;
-        let t370 = s5_arm * t206;
-        let t372 = c5_arm * t82 + t370 * t210;
-        let t374 = c5_arm * t206;
-        let t377 = s5_arm * t82 - t374 * t210;
-        let t380 = t228 * t293;
-        let t385 = c4_arm * t364 - t201 * t275;
-        let t395 = t296 + t312;
-        let t402 = c5_arm * t223 + s5_arm * t194;
-        let t405 = t190 * t284 - (t354 * t332 + t357 * t395) + t252 * t201 - t124 * t402;
-        let t409 = t228 * t284;
-        let t414 = t201 * t277 + c4_arm * t402;
-        let t415 = t377 * t332 - t372 * t395 - t409 * t210 - t414;
-        let t420 = t374 * t332 + t370 * t395 + t409 + t414;
-        let t421 = s5_arm * t201;
-        let t427 = t252 * c6_arm - t124 * s6_arm;
-        let t433 = s6_arm * t267 + c6_arm * t268;
-        let t435 = c6_arm * t260 - s6_arm * t309 - joint_velocities[5] * t433;
-        let t439 = t252 * s6_arm + t124 * c6_arm;
-        let t442 = c6_arm * t267 - s6_arm * t268;
-        let t443 = t258 + joint_velocities[5];
+        let t44 = joint_velocities[0] * s23_arm;
+        let t45 = joint_velocities[1] + joint_velocities[2];
+        let t46 = t44 * t45;
+        let t47 = joint_accelerations[0] * c23_arm;
+        let t48 = t47 - t46;
+        let t49 = t46 - t48;
+        let t50 = c23_arm * t49;
+        let t51 = joint_accelerations[0] + t50;
+        let t52 = joint_velocities[0] * c23_arm;
+        let t53 = t44 * t52;
+        let t54 = t52 * t45;
+        let t55 = joint_accelerations[0] * s23_arm;
+        let t56 = t54 + t55;
+        let t57 = t54 + t56;
+        let t61 = t44 * t44;
+        let t62 = t52 * t52;
+        let t63 = t61 - t62;
+        let t64 = joint_accelerations[1] + joint_accelerations[2];
+        let t65 = t53 + t64;
+        let t67 = t45 * t45;
+        let t73 = t53 - t64;
+        let t76 = 0.45 * c2_arm;
+        let t78 = 0.45 * t7;
+        let t81 = 0.45 * c3_arm;
+        let t88 = t33 + 0.45 * t22;
+        let t92 = t34 - 0.45 * (t20 + t24);
+        let t94 = c3_arm * t88 - s3_arm * t92;
+        let t99 = t61 + t67;
+        let t101 = 0.45 * t73;
+        let t103 = s3_arm * t101 - t81 * t99;
+        let t106 = c3_arm * t92 + s3_arm * t88;
+        let t115 = s23_arm * c4_arm;
+        let t121 = s4_arm * t44 + c4_arm * t45;
+        let t123 = c4_arm * t56 - s4_arm * t64 - joint_velocities[3] * t121;
+        let t125 = s23_arm * s4_arm;
+        let t128 = c4_arm * t44 - s4_arm * t45;
+        let t129 = t52 + joint_velocities[3];
+        let t130 = t128 * t129;
+        let t131 = t125 * t130;
+        let t133 = t128 * t121;
+        let t135 = t115 * t123 - t131 + c23_arm * t133;
+        let t136 = t44 * t129;
+        let t137 = t121 * t129;
+        let t138 = t123 - t137;
+        let t139 = s4_arm * t138;
+        let t140 = t136 + t139;
+        let t141 = t121 * t121;
+        let t142 = t129 * t129;
+        let t143 = t141 + t142;
+        let t144 = t143 - t99;
+        let t145 = t141 - t142;
+        let t146 = t144 + t145;
+        let t148 = t140 - t73;
+        let t156 = s4_arm * t56 + c4_arm * t64 + joint_velocities[3] * t128;
+        let t157 = t130 + t156;
+        let t160 = s4_arm * t157 - c4_arm * t138;
+        let t161 = t48 + joint_accelerations[3];
+        let t162 = t161 - t133;
+        let t166 = t137 + t123;
+        let t169 = s4_arm * t162;
+        let t171 = t169 + c4_arm * t144;
+        let t174 = t133 + t161;
+        let t177 = t130 - t156;
+        let t181 = c4_arm * t174;
+        let t182 = s4_arm * t145 + t181;
+        let t186 = t131 - t115 * t137 + c23_arm * t161;
+        let t188 = 0.45 * (s23_arm - c2_arm);
+        let t189 = s4_arm * t188;
+        let t191 = c4_arm * t188;
+        let t195 = t94 - 0.45 * t99;
+        let t197 = t106 + t101;
+        let t200 = 0.45 * (t7 + t57);
+        let t202 = s4_arm * t197 + c4_arm * t200;
+        let t207 = 0.45 * c4_arm;
+        let t210 = t207 * t143 + 0.45 * t169;
+        let t211 = 1.0 - s3_arm;
+        let t214 = c4_arm * t195;
+        let t218 = t143 - t146;
+        let t224 = c4_arm * t197 - s4_arm * t200;
+        let t227 = t189 * t174 + t191 * t218 + t115 * t195 - c23_arm * t224;
+        let t229 = 0.45 * s4_arm;
+        let t231 = 0.45 * t181 - t229 * t218;
+        let t235 = s4_arm * t195;
+        let t236 = t231 * t211 + t81 * t138 - t235;
+        let t237 = t231 - t235;
+        let t241 = t101 + t197;
+        let t243 = t188 * t200;
+        let t244 = 0.45 * t197;
+        let t247 = t81 * t195 - t244 * t211;
+        let t253 = t115 * c5_arm + c23_arm * s5_arm;
+        let t259 = c5_arm * t129 - s5_arm * t128;
+        let t261 = c5_arm * t123 + s5_arm * t161 + joint_velocities[4] * t259;
+        let t265 = c23_arm * c5_arm - t115 * s5_arm;
+        let t268 = c5_arm * t128 + s5_arm * t129;
+        let t269 = t121 + joint_velocities[4];
+        let t270 = t268 * t269;
+        let t271 = t265 * t270;
+        let t273 = t268 * t259;
+        let t275 = t253 * t261 + t271 - t125 * t273;
+        let t276 = s4_arm * s5_arm;
+        let t277 = t276 * t270;
+        let t278 = s4_arm * c5_arm;
+        let t282 = t277 - t261 * t278 - c4_arm * t273;
+        let t283 = t128 * t269;
+        let t284 = t259 * t269;
+        let t285 = t284 + t261;
+        let t286 = s5_arm * t285;
+        let t287 = t283 + t286;
+        let t293 = c5_arm * t161 - s5_arm * t123 - joint_velocities[4] * t268;
+        let t294 = t270 - t293;
+        let t297 = t259 * t259;
+        let t298 = t269 * t269;
+        let t299 = t297 + t298;
+        let t300 = t297 - t298;
+        let t301 = t218 - t300;
+        let t302 = t301 - t299;
+        let t305 = t174 - t287;
+        let t309 = s4_arm * (t287 - t305) + c4_arm * t302;
+        let t313 = t156 + joint_accelerations[4];
+        let t314 = t273 + t313;
+        let t316 = t302 + t300;
+        let t319 = t284 - t261;
+        let t326 = t276 * t316 + t278 * t314 + c4_arm * t319;
+        let t332 = t139 + t282;
+        let t334 = t273 - t313;
+        let t337 = t270 + t293;
+        let t344 = c4_arm * t337 - (t278 * t300 + t276 * t334);
+        let t351 = t253 * t284 - t271 + t125 * t313;
+        let t355 = c4_arm * t313 - (t278 * t284 + t277);
+        let t356 = c5_arm * t189;
+        let t358 = s5_arm * t189;
+        let t365 = c5_arm * t195 - s5_arm * t224;
+        let t371 = s5_arm * t207;
+        let t373 = c5_arm * t81 + t371 * t211;
+        let t375 = c5_arm * t207;
+        let t378 = s5_arm * t81 - t375 * t211;
+        let t381 = t229 * t294;
+        let t386 = c4_arm * t365 - t202 * t276;
+        let t402 = c5_arm * t224 + s5_arm * t195;
+        let t405 = t191 * t285 - (t356 * t334 + t358 * t301) + t253 * t202 - t125 * t402;
+        let t409 = t229 * t285;
+        let t414 = t202 * t278 + c4_arm * t402;
+        let t415 = t378 * t334 - t373 * t301 - t409 * t211 - t414;
+        let t420 = t375 * t334 + t371 * t301 + t409 + t414;
+        let t421 = s5_arm * t202;
+        let t427 = t253 * c6_arm - t125 * s6_arm;
+        let t433 = s6_arm * t268 + c6_arm * t269;
+        let t435 = c6_arm * t261 - s6_arm * t313 - joint_velocities[5] * t433;
+        let t439 = t253 * s6_arm + t125 * c6_arm;
+        let t442 = c6_arm * t268 - s6_arm * t269;
+        let t443 = t259 + joint_velocities[5];
         let t444 = t442 * t443;
         let t445 = t439 * t444;
         let t447 = t442 * t433;
-        let t449 = t427 * t435 - t445 + t264 * t447;
-        let t452 = s6_arm * t277 - c4_arm * c6_arm;
+        let t449 = t427 * t435 - t445 + t265 * t447;
+        let t452 = s6_arm * t278 - c4_arm * c6_arm;
         let t453 = t452 * t444;
-        let t456 = c6_arm * t277 + c4_arm * s6_arm;
-        let t460 = t453 - t435 * t456 + t275 * t447;
+        let t456 = c6_arm * t278 + c4_arm * s6_arm;
+        let t460 = t453 - t435 * t456 + t276 * t447;
         let t461 = s5_arm * c6_arm;
         let t463 = s5_arm * s6_arm;
         let t464 = t463 * t444;
         let t467 = t435 * t461 - t464 + c5_arm * t447;
-        let t468 = t267 * t443;
+        let t468 = t268 * t443;
         let t469 = t433 * t443;
         let t470 = t435 - t469;
         let t472 = t468 + s6_arm * t470;
@@ -564,101 +557,101 @@ impl Rx90 {
         let t474 = t442 * t442;
         let t475 = t473 - t474;
         let t476 = t474 + t473;
-        let t477 = t395 - t476;
+        let t477 = t301 - t476;
         let t478 = t475 + t477;
-        let t484 = s6_arm * t260 + c6_arm * t309 + joint_velocities[5] * t442;
+        let t484 = s6_arm * t261 + c6_arm * t313 + joint_velocities[5] * t442;
         let t485 = t444 + t484;
-        let t494 = t456 * t485 + t452 * t470 - t275 * t478;
-        let t496 = t472 - t332;
-        let t503 = t292 + joint_accelerations[5];
+        let t494 = t456 * t485 + t452 * t470 - t276 * t478;
+        let t496 = t472 - t334;
+        let t503 = t293 + joint_accelerations[5];
         let t504 = t503 - t447;
         let t508 = t469 + t435;
-        let t515 = t452 * t475 - t456 * t504 + t275 * t508;
-        let t527 = t353 + t281 - t460;
+        let t515 = t452 * t475 - t456 * t504 + t276 * t508;
+        let t527 = t355 + t282 - t460;
         let t530 = t447 + t503;
         let t533 = t444 - t484;
-        let t540 = t452 * t530 - t456 * t477 + t275 * t533;
-        let t556 = t456 * t469 - t453 + t275 * t503;
-        let t561 = t187 * t456;
-        let t562 = t478 + t476;
-        let t564 = t187 * t452;
-        let t572 = s6_arm * t402 + c6_arm * t201;
-        let t578 = s6_arm * t228;
-        let t580 = c6_arm * t377 + t578 * t210;
-        let t583 = c6_arm * t228;
-        let t585 = s6_arm * t377 - t583 * t210;
-        let t591 = t364 * t452 + t275 * t572;
-        let t594 = s6_arm * t374 + t583;
-        let t597 = t578 - c6_arm * t374;
-        let t615 = c6_arm * t402 - s6_arm * t201;
-        let t626 = t364 * t456 + t275 * t615;
+        let t540 = t452 * t530 - t456 * t477 + t276 * t533;
+        let t556 = t456 * t469 - t453 + t276 * t503;
+        let t561 = t188 * t456;
+        let t562 = t301 + t475;
+        let t564 = t188 * t452;
+        let t572 = s6_arm * t402 + c6_arm * t202;
+        let t578 = s6_arm * t229;
+        let t580 = c6_arm * t378 + t578 * t211;
+        let t583 = c6_arm * t229;
+        let t585 = s6_arm * t378 - t583 * t211;
+        let t591 = t365 * t452 + t276 * t572;
+        let t594 = s6_arm * t375 + t583;
+        let t597 = t578 - c6_arm * t375;
+        let t615 = c6_arm * t402 - s6_arm * t202;
+        let t626 = t365 * t456 + t276 * t615;
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
-                ::overact::math::sign(joint_velocities[0]), 1.0, t8, c2_arm * t7 - s2_arm * t15,
-                t28, joint_accelerations[0] - t8,
-                s2_arm * t23 - c2_arm * (t10 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, t52, c23_arm * t58 - s23_arm * t50, s23_arm * t69 + c23_arm * t65, -t51,
-                s23_arm * t66 - c23_arm * t74, 0.0, -(t77 * t50 + c23_arm * t79),
-                s23_arm * t79 - t77 * t58, -(0.45 * t28), -(t77 * t79), 0.0, 0.0, 0.0, 0.0, t134,
-                -(c23_arm * t145 + s23_arm * (t139 + t147)),
-                t114 * t161 - t124 * t143 + c23_arm * t165, t52 - t134,
-                t114 * t144 - t124 * t173 + c23_arm * t176, t185,
-                t188 * t142 - t190 * t161 + t124 * t194 - c23_arm * t201, t226,
-                t58 * t187 + s23_arm * t199, t242, 0.0, 0.0, 0.0, 0.0, t274,
-                t264 * t284 - t252 * t293 + t124 * t298, t252 * t310 + t264 * t313 - t124 * t316,
-                t185 + t134 - t274, t252 * t330 - t264 * t332 + t124 * t335, t349,
-                t354 * t355 + t357 * t310 + t190 * t293 + t124 * t364 - t264 * t201, t405, -t226,
-                t242, 0.0, 0.0, 0.0, 0.0, t449, -(t264 * t478 + t427 * t485 + t439 * t470),
-                t427 * t504 - t439 * t475 + t264 * t508, t349 + t274 - t449,
-                t427 * t477 - t439 * t530 + t264 * t533, t445 - t427 * t469 + t264 * t503,
-                t561 * t562 + t564 * t504 + t357 * t485 + t439 * t364 - t264 * t572,
-                t561 * t530 - t564 * t476 + t357 * t470 + t427 * t364 - t264 * t615, t405, t242,
+                ::overact::math::sign(joint_velocities[0]), 1.0, joint_accelerations[0] + t8,
+                c2_arm * (t12 + t13 + t12) - s2_arm * t7, t27, -t8,
+                s2_arm * (t20 - t24) - c2_arm * (t11 - joint_accelerations[1]), 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, t51, c23_arm * t57 - s23_arm * t49,
+                s23_arm * t65 + c23_arm * (t67 - t61), -t50, s23_arm * (t62 - t67) - c23_arm * t73,
+                0.0, -(t76 * t49 + c23_arm * t78), s23_arm * t78 - t76 * t57, -(0.45 * t27),
+                -(t76 * t78), 0.0, 0.0, 0.0, 0.0, t135, -(c23_arm * t146 + s23_arm * (t140 + t148)),
+                t115 * t162 - t125 * t144 + c23_arm * t166, t51 - t135,
+                t115 * t145 - t125 * t174 + c23_arm * t177, t186,
+                t189 * t143 - t191 * t162 + t125 * t195 - c23_arm * t202, t227,
+                t57 * t188 + s23_arm * t200, t243, 0.0, 0.0, 0.0, 0.0, t275,
+                t265 * t285 - t253 * t294 + t125 * t302, t253 * t314 - t265 * t316 - t125 * t319,
+                t186 + t135 - t275, t253 * t300 - t265 * t334 + t125 * t337, t351,
+                t356 * t299 + t358 * t314 + t191 * t294 + t125 * t365 - t265 * t202, t405, -t227,
+                t243, 0.0, 0.0, 0.0, 0.0, t449, -(t265 * t478 + t427 * t485 + t439 * t470),
+                t427 * t504 - t439 * t475 + t265 * t508, t351 + t275 - t449,
+                t427 * t477 - t439 * t530 + t265 * t533, t445 - t427 * t469 + t265 * t503,
+                t561 * t562 + t564 * t504 + t358 * t485 + t439 * t365 - t265 * t572,
+                t561 * t530 - t564 * t476 + t358 * t470 + t427 * t365 - t265 * t615, t405, t243,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
-                0.0, 0.0, 0.0, 0.0, 0.0, -t10, -(t22 + t23), t5, t10, t13, joint_accelerations[1],
-                t34, -t35, joint_accelerations[1], joint_velocities[1],
-                ::overact::math::sign(joint_velocities[1]), 1.0, -t54, -t67, t56, t54, t48, t68,
-                t82 * t69 - 0.45 * (s3_arm * t64) + t93, t102 - t105, -(0.45 * t5), 0.45 * t88, 0.0,
-                0.0, 0.0, 0.0, -t139, t159, -t170, t147, -t181, t135,
-                t82 * t156 + t209 * t210 + t213, t235, t102 - t240, t246, 0.0, 0.0, 0.0, 0.0, t281,
-                t305, t323, -t329, t342, t353, t372 * t310 - t377 * t355 - t380 * t210 + t385, t415,
-                -t235, t246, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
-                t372 * t485 - (t580 * t562 + t585 * t504) - t591,
-                t585 * t476 - t580 * t530 + t372 * t470 - t626, t415, t246, 0.0, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, -t11, t19 - t20, t13, t11, t5, joint_accelerations[1], t33,
+                -t34, joint_accelerations[1], joint_velocities[1],
+                ::overact::math::sign(joint_velocities[1]), 1.0, -t53, t63, t55, t53, t47, t64,
+                t81 * t65 - 0.45 * s3_arm * (t62 + t67) + t94, t103 - t106, -(0.45 * t13),
+                0.45 * t88, 0.0, 0.0, 0.0, 0.0, -t140, t160, -t171, t148, -t182, t136,
+                t81 * t157 + t210 * t211 + t214, t236, t103 - t241, t247, 0.0, 0.0, 0.0, 0.0, t282,
+                t309, -t326, -t332, t344, t355, t373 * t314 - t378 * t299 - t381 * t211 + t386,
+                t415, -t236, t247, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
+                t373 * t485 - (t580 * t562 + t585 * t504) - t591,
+                t585 * t476 - t580 * t530 + t373 * t470 - t626, t415, t247, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                -t54, -t67, t56, t54, t48, t68, t93, -t105, 0.0, 0.0, joint_accelerations[2],
-                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t139, t159,
-                -t170, t147, -t181, t135, t209 + t213, t236, -t240, -t243, 0.0, 0.0, 0.0, 0.0, t281,
-                t305, t323, -t329, t342, t353, t374 * t355 + t370 * t310 - t380 + t385, -t420,
-                -t236, -t243, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
-                t594 * t504 - t597 * t562 + t370 * t485 - t591,
-                t370 * t470 - (t597 * t530 + t594 * t476) - t626, -t420, -t243, 0.0, 0.0, 0.0, 0.0,
+                -t53, t63, t55, t53, t47, t64, t94, -t106, 0.0, 0.0, joint_accelerations[2],
+                joint_velocities[2], ::overact::math::sign(joint_velocities[2]), 1.0, -t140, t160,
+                -t171, t148, -t182, t136, t210 + t214, t237, -t241, -t244, 0.0, 0.0, 0.0, 0.0, t282,
+                t309, -t326, -t332, t344, t355, t375 * t299 + t371 * t314 - t381 + t386, -t420,
+                -t237, -t244, 0.0, 0.0, 0.0, 0.0, t460, t494, t515, t527, t540, t556,
+                t594 * t504 - t597 * t562 + t371 * t485 - t591,
+                t371 * t470 - (t597 * t530 + t594 * t476) - t626, -t420, -t244, 0.0, 0.0, 0.0, 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t132, -t145,
-                t165, -t132, t176, t160, -t201, -t223, 0.0, 0.0, joint_accelerations[3],
-                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t286,
-                c5_arm * t284 - s5_arm * t293, s5_arm * t310 + c5_arm * t313, t301,
-                s5_arm * t330 - c5_arm * t332, -t282, -(c5_arm * t201), t421, t223, 0.0, 0.0, 0.0,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t133, -t146,
+                t166, -t133, t177, t161, -t202, -t224, 0.0, 0.0, joint_accelerations[3],
+                joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, t287,
+                c5_arm * t285 - s5_arm * t294, s5_arm * t314 - c5_arm * t316, t305,
+                s5_arm * t300 - c5_arm * t334, -t283, -(c5_arm * t202), t421, t224, 0.0, 0.0, 0.0,
                 0.0, 0.0, t467, -(c5_arm * t478 + s5_arm * (t472 + t496)),
-                t461 * t504 - t463 * t475 + c5_arm * t508, t285 - t467,
+                t461 * t504 - t463 * t475 + c5_arm * t508, t286 - t467,
                 t461 * t477 - t463 * t530 + c5_arm * t533, t464 - t461 * t469 + c5_arm * t503,
-                t364 * t463 - c5_arm * t572, t364 * t461 - c5_arm * t615, t421, 0.0, 0.0, 0.0, 0.0,
+                t365 * t463 - c5_arm * t572, t365 * t461 - c5_arm * t615, t421, 0.0, 0.0, 0.0, 0.0,
                 0.0,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t272, t298, -t316, t272,
-                t335, t309, t364, -t402, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -t273, t302, -t319, t273,
+                t337, t313, t365, -t402, 0.0, 0.0, joint_accelerations[4], joint_velocities[4],
                 ::overact::math::sign(joint_velocities[4]), 1.0, -t472,
                 s6_arm * t485 - c6_arm * t470, -(s6_arm * t504 + c6_arm * t475), t496,
-                -(s6_arm * t477 + c6_arm * t530), t468, c6_arm * t364, -(s6_arm * t364), -t402, 0.0,
+                -(s6_arm * t477 + c6_arm * t530), t468, c6_arm * t365, -(s6_arm * t365), -t402, 0.0,
                 0.0, 0.0, 0.0, 0.0,
             ],
             [
@@ -858,26 +851,26 @@ impl Rx90 {
         let t474 = s6_arm * t229 + c6_arm * t214 + joint_velocities[5] * t326;
         let t475 = t328 - t474;
         let t482 = t348 * t467 - t344 * t465 + t220 * t475;
-        let t491 = t445 + t465;
-        let t493 = t328 + t474;
-        let t502 = t344 * t493 + t348 * t379 - t220 * t491;
-        let t511 = t274 + t288;
-        let t519 = c5_arm * t106 - s5_arm * t250;
-        let t527 = t255 * t270;
-        let t532 = c4_arm * t519 - t392 * t220;
-        let t540 = t85 * t344;
-        let t541 = t491 + t464;
+        let t491 = t386 + t445;
+        let t492 = t464 - t491;
+        let t494 = t328 + t474;
+        let t503 = t344 * t494 + t348 * t379 + t220 * t492;
+        let t512 = t274 + t288;
+        let t520 = c5_arm * t106 - s5_arm * t250;
+        let t528 = t255 * t270;
+        let t533 = c4_arm * t520 - t392 * t220;
+        let t541 = t85 * t344;
         let t543 = t85 * t348;
         let t551 = s6_arm * t396 + c6_arm * t392;
         let t557 = s6_arm * t255;
         let t559 = c6_arm * t404 + t557 * t98;
         let t562 = c6_arm * t255;
         let t564 = s6_arm * t404 - t562 * t98;
-        let t570 = t519 * t348 + t220 * t551;
+        let t570 = t520 * t348 + t220 * t551;
         let t573 = s6_arm * t401 + t562;
         let t576 = t557 - c6_arm * t401;
         let t594 = c6_arm * t396 - s6_arm * t392;
-        let t605 = t519 * t344 + t220 * t594;
+        let t605 = t520 * t344 + t220 * t594;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
@@ -900,10 +893,10 @@ impl Rx90 {
                 t244 * t239 - (t383 * t305 + t385 * t386) + t198 * t392 - t111 * t396,
                 t242 * t146 - t244 * t164 + t111 * t106 - c23_arm * t392,
                 t332 * t441 - t323 * t445 + t207 * t448, t332 * t465 - t323 * t467 + t207 * t475,
-                -(t207 * t491 + t332 * t493 + t323 * t379),
-                t383 * t511 + t385 * t286 + t244 * t270 + t111 * t519 - t207 * t392,
-                t540 * t541 + t543 * t441 + t385 * t493 + t323 * t519 - t207 * t551,
-                t540 * t467 - t543 * t464 + t385 * t379 + t332 * t519 - t207 * t594,
+                t207 * t492 - (t332 * t494 + t323 * t379),
+                t383 * t512 + t385 * t286 + t244 * t270 + t111 * t520 - t207 * t392,
+                t541 * t491 + t543 * t441 + t385 * t494 + t323 * t520 - t207 * t551,
+                t541 * t467 - t543 * t464 + t385 * t379 + t332 * t520 - t207 * t594,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
@@ -913,8 +906,8 @@ impl Rx90 {
                 t100 * t70 - 0.45 * s3_arm * (t68 + t72) + t103, t223, t238,
                 t257 * t98 + t100 * t139 - t261, t282, t299, t315, t352, t374,
                 t404 * t305 - t409 * t386 - t412 * t98 - t417, t100 * t175 + t435 * t98 + t438,
-                t455, t482, t502, t409 * t286 - t404 * t511 - t527 * t98 + t532,
-                t409 * t493 - (t559 * t541 + t564 * t441) - t570,
+                t455, t482, t503, t409 * t286 - t404 * t512 - t528 * t98 + t533,
+                t409 * t494 - (t559 * t491 + t564 * t441) - t570,
                 t564 * t464 - t559 * t467 + t409 * t379 - t605,
             ],
             [
@@ -923,8 +916,8 @@ impl Rx90 {
                 0.0, 0.0, 0.0, 0.0, 0.0, t6, 0.0, 0.0, 0.0, 0.0, t43, 0.0, 0.0, t69, -t76, t38,
                 -t97, t128, -t141, -t163, -t173, t182, t103, t223, t238, t257 - t261, t282, t299,
                 t315, t352, t374, -(t401 * t305 + t407 * t386 + t412 + t417), t435 + t438, t455,
-                t482, t502, t401 * t511 + t407 * t286 - t527 + t532,
-                t573 * t441 - t576 * t541 + t407 * t493 - t570,
+                t482, t503, t401 * t512 + t407 * t286 - t528 + t533,
+                t573 * t441 - t576 * t491 + t407 * t494 - t570,
                 t407 * t379 - (t576 * t467 + t573 * t464) - t605,
             ],
             [
@@ -937,8 +930,8 @@ impl Rx90 {
                 t365 * t355 - t354 + c5_arm * t368, s5_arm * t392, -t392,
                 t355 * t441 - t353 * t445 + c5_arm * t448,
                 t355 * t465 - t353 * t467 + c5_arm * t475,
-                -(c5_arm * t491 + t355 * t493 + t353 * t379), -(c5_arm * t392),
-                t519 * t353 - c5_arm * t551, t519 * t355 - c5_arm * t594,
+                c5_arm * t492 - (t355 * t494 + t353 * t379), -(c5_arm * t392),
+                t520 * t353 - c5_arm * t551, t520 * t355 - c5_arm * t594,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
@@ -947,14 +940,14 @@ impl Rx90 {
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t214,
                 -t232, 0.0, t275, -t292, t308, t360, -(t360 + s6_arm * t379), -t396, 0.0,
                 -(s6_arm * t441 + c6_arm * t445), -(s6_arm * t465 + c6_arm * t467),
-                s6_arm * t493 - c6_arm * t379, t519, c6_arm * t519, -(s6_arm * t519),
+                s6_arm * t494 - c6_arm * t379, t520, c6_arm * t520, -(s6_arm * t520),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                t339, t368, 0.0, 0.0, t448, t475, -t491, 0.0, -t551, -t594,
+                t339, t368, 0.0, 0.0, t448, t475, t492, 0.0, -t551, -t594,
             ],
         ]
     }

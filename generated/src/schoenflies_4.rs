@@ -556,7 +556,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4 x 4.
     ///
-    /// 182 operations (64 additions, 98 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 176 intermediates.
+    /// 185 operations (65 additions, 100 multiplications, 20 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -645,45 +645,44 @@ impl Schoenflies4 {
         let t102 = 3.8461538461538463 / s_cross_leg3;
         let garm_vx_leg3 = minus_c_armcross_leg3 * t102;
         let t105 = pose[1] - t45 + 0.24;
-        let t107 = t105 * t105 + t8;
-        let t108 = 0.2704 * t107;
+        let t106 = t105 * t105;
+        let t108 = 0.2704 * (t106 + t8);
         let t109 = pose[0] - t51;
         let t110 = t109 * t109;
-        let t112 = t107 + t110 - 0.3364;
-        let t113 = t112 + 0.0676;
-        let t115 = t108 - t113 * t113;
-        ::overact::guard::reach(t115, "leg4")?;
-        let t116 = ::overact::math::sqrt(t115);
-        let t118 = 1.0 - 2.972651605231867 * t110;
-        ::overact::guard::reach(t118, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t118);
+        let t113 = t110 + t106 + t8 - 0.3364;
+        let t114 = t113 + 0.0676;
+        let t116 = t108 - t114 * t114;
+        ::overact::guard::reach(t116, "leg4")?;
+        let t117 = ::overact::math::sqrt(t116);
+        let t120 = 1.0 - 2.972651605231867 * t110;
+        ::overact::guard::reach(t120, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t120);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t120 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t116 / t120;
+        let s_cross_leg4 = 1.9230769230769231 * t117 / (0.58 * c_rod_leg4);
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t122 = 3.8461538461538463 / s_cross_leg4;
+        let t124 = 3.8461538461538463 / s_cross_leg4;
         let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let garm_vx_leg4 = t122 * (t109 * grod_vx_leg4);
+        let garm_vx_leg4 = t124 * (t109 * grod_vx_leg4);
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
         let garm_vy_leg1 = t43 * (t16 * grod_vy_leg1);
-        let t129 = 1.0 / t50;
-        let t130 = 0.52 * t47;
-        let c_arm_leg2 = t129 * (t130 * t56 - t22 * t59);
+        let t131 = 1.0 / t50;
+        let t132 = 0.52 * t47;
+        let c_arm_leg2 = t131 * (t132 * t56 - t22 * t59);
         let c_cross_leg2 = (-0.0676 + t55) / t63;
-        let minus_s_arm_leg2 = t129 * (t22 * t56 + t130 * t59);
+        let minus_s_arm_leg2 = t131 * (t22 * t56 + t132 * t59);
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
         let garm_vy_leg2 = c_armcross_leg2 * t65;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
         let garm_vy_leg3 = t102 * (t76 * minus_grod_vy_leg3);
-        let t148 = 1.0 / t108;
-        let t149 = 0.52 * t105;
-        let minus_c_arm_leg4 = t148 * (t149 * t113 + t22 * t116);
-        let c_cross_leg4 = (-0.0676 + t112) / t120;
-        let s_arm_leg4 = t148 * (t149 * t116 - t22 * t113);
+        let t150 = 1.0 / t108;
+        let t151 = 0.52 * t105;
+        let minus_c_arm_leg4 = t150 * (t151 * t114 + t22 * t117);
+        let c_cross_leg4 = (-0.0676 + t113) / (0.3016 * c_rod_leg4);
+        let s_arm_leg4 = t150 * (t151 * t117 - t22 * t114);
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t122;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t124;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t43;
@@ -695,7 +694,7 @@ impl Schoenflies4 {
         let minus_garm_vz_leg3 = s_armcross_leg3 * t102;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t122;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t124;
         let garm_wz_leg1 = t4 * garm_vy_leg1 - t15 * garm_vx_leg1;
         let garm_wz_leg2 = t51 * garm_vy_leg2 - t45 * garm_vx_leg2;
         let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
@@ -2193,7 +2192,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1057 operations (333 additions, 689 multiplications, 35 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 831 intermediates.
+    /// 1062 operations (333 additions, 700 multiplications, 29 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 836 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2214,8 +2213,7 @@ impl Schoenflies4 {
         let t12 = 0.08660254037844387 * c_phi;
         let t13 = t11 + t12;
         let t14 = pose[1] + t13;
-        let t15 = t14 * t14;
-        let t16 = t15 + -0.3364;
+        let t16 = t14 * t14 + -0.3364;
         let t17 = t10 + t16;
         let t18 = t17 + 0.0676;
         let t20 = 0.52 * pose[2];
@@ -2225,572 +2223,577 @@ impl Schoenflies4 {
         let t24 = ::overact::math::sqrt(t23);
         let c_arm_leg1 = (t7 * t18 - t20 * t24) / t21;
         let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t16));
-        let t32 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t17 + -0.0676) / t32;
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let c_cross_leg1 = (t17 + -0.0676) / (0.3016 * c_rod_leg1);
         let minus_s_arm_leg1 = (t20 * t18 + t7 * t24) / t21;
-        let s_cross_leg1 = t24 / t32;
+        let t39 = 1.0 / c_rod_leg1;
+        let t40 = 0.8620689655172413 * t24;
+        let t41 = t39 * t40;
+        let s_cross_leg1 = 3.8461538461538463 * t41;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t42 = 3.8461538461538463 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t42;
-        let t44 = t13 * acceleration[3];
-        let t46 = t4 * twist[3];
-        let t47 = twist[3] * t46;
-        let t48 = acceleration[0] - t44 - t47;
+        let t45 = 1.0 / s_cross_leg1;
+        let t46 = 3.8461538461538463 * t45;
+        let garm_vx_leg1 = c_armcross_leg1 * t46;
+        let t48 = t13 * acceleration[3];
+        let t50 = t4 * twist[3];
+        let t51 = twist[3] * t50;
+        let t52 = acceleration[0] - t48 - t51;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t55 = 0.26 * c_cross_leg1;
-        let t56 = t13 * twist[3];
-        let t57 = twist[0] - t56;
-        let grod_vy_leg1 = 0.52 / t32;
-        let t62 = t14 * grod_vy_leg1;
-        let t63 = twist[1] + t46;
-        let t64 = t62 * t63;
-        let t65 = c_armcross_leg1 * t57 - s_armcross_leg1 * twist[2] + t64;
-        let rate_arm_leg1 = t42 * t65;
-        let t67 = rate_arm_leg1 * rate_arm_leg1;
-        let t69 = 0.58 * c_rod_leg1;
-        let t74 = t55 * rate_arm_leg1 + s_armcross_leg1 * t57
+        let t59 = t13 * twist[3];
+        let t60 = twist[0] - t59;
+        let grod_vy_leg1 = 1.7241379310344827 * t39;
+        let t65 = t14 * grod_vy_leg1;
+        let t66 = twist[1] + t50;
+        let t67 = t65 * t66;
+        let t68 = c_armcross_leg1 * t60 - s_armcross_leg1 * twist[2] + t67;
+        let rate_arm_leg1 = t46 * t68;
+        let t70 = t68 * rate_arm_leg1;
+        let t71 = t45 * t70;
+        let t73 = 0.58 * c_rod_leg1;
+        let t74 = 0.26 * c_cross_leg1;
+        let t79 = t74 * rate_arm_leg1 + s_armcross_leg1 * t60
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t74;
-        let t76 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t63;
-        let t78 = rate_rod_leg1 * rate_rod_leg1;
-        let t79 = t76 + t78;
-        let t83 = t4 * acceleration[3];
-        let t85 = twist[3] * t56;
-        let t86 = acceleration[1] + t83 - t85;
-        let t88 = t86 + t14 * t78;
-        let rate_dot_arm_leg1 = t42
-            * (c_armcross_leg1 * t48 - s_armcross_leg1 * acceleration[2] + t55 * t67
-                + t69 * t79 + t62 * t88);
-        let t92 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t42 * t62;
-        let t94 = garm_vy_leg1 * rate_dot_arm_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
-        let t96 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t79;
+        let t81 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t66;
+        let t83 = rate_rod_leg1 * rate_rod_leg1;
+        let t88 = t4 * acceleration[3];
+        let t90 = twist[3] * t59;
+        let t91 = acceleration[1] + t88 - t90;
+        let t93 = t91 + t67 * rate_rod_leg1;
+        let t95 = c_armcross_leg1 * t52 - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t71 + t73 * (t81 + t83) + t65 * t93;
+        let rate_dot_arm_leg1 = t46 * t95;
+        let t97 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t46 * t65;
+        let t99 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t46;
+        let t101 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
         let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
-        let t100 = garm_wz_leg1 * rate_dot_arm_leg1;
-        let t101 = 9.81 * c_arm_leg1;
-        let t106 = 9.81 * minus_s_arm_leg1;
-        let t119 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t119;
-        let t122 = rate_rod_leg1 * (1.7241379310344827 * t74);
-        let t123 = 0.26 * rate_dot_arm_leg1;
-        let t129 = t64 * minus_rate_cross_leg1;
+        let t105 = garm_wz_leg1 * rate_dot_arm_leg1;
+        let t106 = 9.81 * c_arm_leg1;
+        let t111 = 9.81 * minus_s_arm_leg1;
+        let t124 = t45 * grod_vy_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t124;
+        let s_rod_leg1 = 1.7241379310344827 * t14;
+        let t128 = rate_rod_leg1 * (1.7241379310344827 * t79);
+        let t133 = t67 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t123 + s_armcross_leg1 * t48
-                + c_armcross_leg1 * acceleration[2] + t65 * rate_arm_leg1 + t129 + t129);
-        let t135 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t136 = t14 * t135;
-        let t138 = t122 + t136 + t122;
-        let t139 = c_rod_leg1 * t138;
-        let t140 = t62 * t139;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t55 * garm_vy_leg1);
-        let t145 = 2.972651605231867 * t76;
-        let t146 = t14 * t145;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t119;
+            * (t74 * rate_dot_arm_leg1 + s_armcross_leg1 * t52
+                + c_armcross_leg1 * acceleration[2] + t70 + t133 + t133);
+        let t139 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t141 = t128 + t139 + t128;
+        let t142 = s_rod_leg1 * t141;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t74 * garm_vy_leg1);
+        let t148 = t14 * (2.972651605231867 * t81);
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t124;
         let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
-        let t154 = t4 * t146;
-        let t156 = t140 - minus_rate_dot_cross_leg1;
-        let t158 = t62 * t156 - t139;
-        let t160 = t15 * t145;
-        let t161 = t79 - t160;
-        let t162 = t160 + t78;
-        let t164 = grod_vy_leg1 * (t162 - t161);
-        let t171 = 0.8620689655172413 * t24;
-        let t172 = t62 * t171;
-        let t173 = t69 * t146;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t88;
-        let t176 = t172 * (t173 + rate_dot_rod_leg1);
-        let t180 = t42 * t176 + c_rod_leg1 * (t78 - t160);
-        let t187 = t4 * t135;
-        let t196 = 1.7241379310344827 * t86;
-        let t203 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t210 = t55 * (0.58 * grod_vy_leg1 * t156) - (t171 * t161 + t176);
-        let t212 = t123 - t101;
-        let t215 = t106 - 0.26 * t67;
-        let t218 = c_rod_leg1 * (c_cross_leg1 * t212 - s_cross_leg1 * t215);
-        let t222 = 0.26 * t212;
-        let t223 = garm_vy_leg1 * t222;
-        let t234 = c_cross_leg1 * t215 + s_cross_leg1 * t212;
-        let t235 = 1.7241379310344827 * t234;
-        let t236 = t4 * t235;
-        let t244 = t171 * (t173 - rate_dot_rod_leg1) + t172 * t162 + t55 * t138;
-        let t246 = t62 * t218;
-        let t263 = t55 * t76 - minus_rate_dot_cross_leg1 * (s_cross_leg1 * 0.26);
-        let t279 = t3 + t2;
-        let t281 = pose[1] + t279 - 0.24;
-        let t283 = t281 * t281 + t9;
-        let t284 = 0.2704 * t283;
-        let t285 = t12 - t11;
-        let t286 = pose[0] + t285;
-        let t288 = 0.3364 - t286 * t286;
-        let t289 = t283 - t288;
-        let t290 = t289 + 0.0676;
-        let t292 = t284 - t290 * t290;
-        ::overact::guard::reach(t292, "leg2")?;
-        let t293 = ::overact::math::sqrt(t292);
-        let t294 = 0.8620689655172413 * t293;
-        let t295 = 2.972651605231867 * t288;
-        ::overact::guard::reach(t295, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t295);
+        let grod_wz_leg1 = t4 * grod_vy_leg1;
+        let t157 = t73 * t148;
+        let t158 = grod_wz_leg1 * t157;
+        let t160 = t142 - minus_rate_dot_cross_leg1;
+        let t163 = t65 * t160 - c_rod_leg1 * t141;
+        let t165 = t14 * t148;
+        let t166 = t83 - t165;
+        let t167 = t81 + t166;
+        let t168 = t165 + t83;
+        let t169 = t168 - t167;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t93;
+        let t178 = t157 + rate_dot_rod_leg1;
+        let t181 = s_rod_leg1 * t178 + c_rod_leg1 * t166;
+        let t196 = 1.7241379310344827 * t91;
+        let t199 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t210 = t65 * t40;
+        let t213 = t74 * (t39 * t160) - (t40 * t167 + t210 * t178);
+        let t216 = 0.26 * rate_dot_arm_leg1 - t106;
+        let t218 = t111 - t71;
+        let t220 = c_cross_leg1 * t216 - s_cross_leg1 * t218;
+        let t221 = c_rod_leg1 * t220;
+        let t225 = 0.26 * t216;
+        let t226 = garm_vy_leg1 * t225;
+        let t237 = c_cross_leg1 * t218 + s_cross_leg1 * t216;
+        let t238 = 1.7241379310344827 * t237;
+        let t239 = t4 * t238;
+        let t247 = t40 * (t157 - rate_dot_rod_leg1) + t210 * t168 + t74 * t141;
+        let t249 = s_rod_leg1 * t220;
+        let t265 = t74 * t81 - minus_rate_dot_cross_leg1 * t41;
+        let t281 = t3 + t2;
+        let t283 = pose[1] + t281 - 0.24;
+        let t285 = t283 * t283 + t9;
+        let t286 = 0.2704 * t285;
+        let t287 = t12 - t11;
+        let t288 = pose[0] + t287;
+        let t290 = 0.3364 - t288 * t288;
+        let t291 = t285 - t290;
+        let t292 = t291 + 0.0676;
+        let t294 = t286 - t292 * t292;
+        ::overact::guard::reach(t294, "leg2")?;
+        let t295 = ::overact::math::sqrt(t294);
+        let t296 = 0.8620689655172413 * t295;
+        let t297 = 2.972651605231867 * t290;
+        ::overact::guard::reach(t297, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t297);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t297 = t294 / c_rod_leg2;
-        let s_cross_leg2 = 3.8461538461538463 * t297;
+        let t299 = t296 / c_rod_leg2;
+        let s_cross_leg2 = 3.8461538461538463 * t299;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t299 = 3.8461538461538463 / s_cross_leg2;
-        let t300 = 0.3016 * c_rod_leg2;
-        let minus_grod_vx_leg2 = 0.52 / t300;
-        let t302 = t286 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t299 * t302;
-        let t304 = 0.52 * t281;
-        let c_arm_leg2 = (t304 * t290 - t20 * t293) / t284;
-        let c_cross_leg2 = (-0.0676 + t289) / t300;
-        let minus_s_arm_leg2 = (t20 * t290 + t304 * t293) / t284;
+        let t301 = 3.8461538461538463 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
+        let t303 = t288 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t301 * t303;
+        let t305 = 0.52 * t283;
+        let c_arm_leg2 = (t305 * t292 - t20 * t295) / t286;
+        let c_cross_leg2 = (-0.0676 + t291) / (0.3016 * c_rod_leg2);
+        let minus_s_arm_leg2 = (t20 * t292 + t305 * t295) / t286;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t318 = t285 * acceleration[3];
-        let t320 = t279 * twist[3];
-        let t321 = twist[3] * t320;
-        let t322 = acceleration[1] + t318 - t321;
+        let t320 = t287 * acceleration[3];
+        let t322 = t281 * twist[3];
+        let t323 = twist[3] * t322;
+        let t324 = acceleration[1] + t320 - t323;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t329 = t285 * twist[3];
-        let t330 = twist[1] + t329;
-        let t334 = twist[0] - t320;
-        let t335 = t302 * t334;
-        let t336 = c_armcross_leg2 * t330 - s_armcross_leg2 * twist[2] + t335;
-        let rate_arm_leg2 = t299 * t336;
-        let t338 = t336 * rate_arm_leg2;
-        let t339 = t338 / s_cross_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t334;
-        let t343 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t347 = 0.26 * c_cross_leg2;
-        let t349 = s_armcross_leg2 * t330 + c_armcross_leg2 * twist[2]
-            + t347 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t349;
-        let t351 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t356 = t279 * acceleration[3];
-        let t358 = twist[3] * t329;
-        let t359 = acceleration[0] - t356 - t358;
-        let t361 = t359 + t286 * t343;
-        let t363 = c_armcross_leg2 * t322 - s_armcross_leg2 * acceleration[2]
-            + c_cross_leg2 * t339 + 0.58 * c_rod_leg2 * (t343 + t351) + t302 * t361;
-        let rate_dot_arm_leg2 = t299 * t363;
-        let t365 = garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t299;
-        let t367 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t299;
-        let t369 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let garm_wz_leg2 = t285 * garm_vy_leg2 - t279 * garm_vx_leg2;
-        let t373 = garm_wz_leg2 * rate_dot_arm_leg2;
-        let t374 = 9.81 * c_arm_leg2;
-        let t379 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t347 * garm_vx_leg2);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t286;
-        let t396 = minus_rate_rod_leg2 * (1.7241379310344827 * t349);
-        let t400 = t335 * minus_rate_cross_leg2;
-        let t404 = 0.26 * rate_dot_arm_leg2;
+        let t331 = 0.26 * c_cross_leg2;
+        let t332 = t287 * twist[3];
+        let t333 = twist[1] + t332;
+        let t337 = twist[0] - t322;
+        let t338 = t303 * t337;
+        let t339 = c_armcross_leg2 * t333 - s_armcross_leg2 * twist[2] + t338;
+        let rate_arm_leg2 = t301 * t339;
+        let t341 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t337;
+        let t345 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t350 = s_armcross_leg2 * t333 + c_armcross_leg2 * twist[2]
+            + t331 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t350;
+        let t352 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t357 = t281 * acceleration[3];
+        let t359 = twist[3] * t332;
+        let t360 = acceleration[0] - t357 - t359;
+        let t362 = t360 + t338 * minus_rate_rod_leg2;
+        let t364 = c_armcross_leg2 * t324 - s_armcross_leg2 * acceleration[2]
+            + t331 * t341 + 0.58 * c_rod_leg2 * (t345 + t352) + t303 * t362;
+        let rate_dot_arm_leg2 = t301 * t364;
+        let t366 = garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t301;
+        let t368 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t301;
+        let t370 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let garm_wz_leg2 = t287 * garm_vy_leg2 - t281 * garm_vx_leg2;
+        let t374 = garm_wz_leg2 * rate_dot_arm_leg2;
+        let t375 = 9.81 * c_arm_leg2;
+        let t380 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t331 * garm_vx_leg2);
+        let t396 = minus_rate_rod_leg2 * (1.7241379310344827 * t350);
+        let t401 = t338 * minus_rate_cross_leg2;
+        let t405 = 0.26 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t322 + c_armcross_leg2 * acceleration[2] + t338 + t400
-                + t400 + c_cross_leg2 * t404);
-        let t408 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t410 = t396 + t408 + t396;
-        let t411 = minus_s_rod_leg2 * t410;
-        let t413 = t295 * t351;
-        let t414 = t302 * t413;
-        let t415 = minus_grod_vx_leg2 * t414;
-        let t417 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t417;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t417;
-        let t422 = t279 * t415;
-        let gcross_wz_leg2 = t279 * minus_gcross_vx_leg2 - t285 * minus_gcross_vy_leg2;
-        let t429 = t411 - minus_rate_dot_cross_leg2;
-        let t430 = t429 / c_rod_leg2;
-        let t432 = c_rod_leg2 * t410 - minus_s_rod_leg2 * t430;
-        let t434 = t286 * t415;
-        let t436 = minus_grod_vx_leg2 * (t434 - t413);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t361;
-        let t444 = t414 + minus_rate_dot_rod_leg2;
-        let t448 = minus_s_rod_leg2 * t444 + c_rod_leg2 * (t343 - t434);
-        let t455 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t456 = t279 * t455;
-        let t465 = 1.7241379310344827 * t359;
-        let t472 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t477 = t302 * t294;
-        let t480 = t347 * t430 - (t294 * (t413 + t343) + t477 * t444);
-        let t482 = t404 - t374;
-        let t483 = 0.26 * t482;
-        let t484 = garm_vx_leg2 * t483;
-        let t489 = t379 - t339;
-        let t491 = c_cross_leg2 * t482 - s_cross_leg2 * t489;
-        let t492 = c_rod_leg2 * t491;
-        let t503 = c_cross_leg2 * t489 + s_cross_leg2 * t482;
-        let t504 = 1.7241379310344827 * t503;
-        let t505 = t279 * t504;
-        let t514 = t294 * (minus_rate_dot_rod_leg2 - t414) - t477 * (t434 + t343)
-            - t347 * t410;
-        let t516 = minus_s_rod_leg2 * t491;
-        let t532 = t347 * t351 - minus_rate_dot_cross_leg2 * t297;
-        let t549 = pose[0] - t4 + 0.24;
-        let t550 = 0.52 * t549;
-        let t552 = t549 * t549 + t9;
-        let t553 = pose[1] - t13;
-        let t554 = t553 * t553;
-        let t555 = 0.3364 - t554;
-        let t556 = t552 - t555;
-        let t557 = t556 + 0.0676;
-        let t559 = 0.2704 * t552;
-        let t561 = t559 - t557 * t557;
-        ::overact::guard::reach(t561, "leg3")?;
-        let t562 = ::overact::math::sqrt(t561);
-        let minus_c_arm_leg3 = (t550 * t557 + t20 * t562) / t559;
-        let t567 = 2.972651605231867 * t555;
-        ::overact::guard::reach(t567, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t567);
+            * (s_armcross_leg2 * t324 + c_armcross_leg2 * acceleration[2]
+                + t339 * rate_arm_leg2 + t401 + t401 + c_cross_leg2 * t405);
+        let t409 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t410 = t288 * t409;
+        let t412 = t396 + t410 + t396;
+        let t413 = c_rod_leg2 * t412;
+        let t414 = t303 * t413;
+        let t416 = t297 * t352;
+        let t417 = t303 * t416;
+        let t418 = minus_grod_vx_leg2 * t417;
+        let t420 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t420;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t420;
+        let grod_wz_leg2 = t281 * minus_grod_vx_leg2;
+        let t426 = grod_wz_leg2 * t417;
+        let gcross_wz_leg2 = t281 * minus_gcross_vx_leg2 - t287 * minus_gcross_vy_leg2;
+        let t432 = t414 - minus_rate_dot_cross_leg2;
+        let t434 = t413 - t303 * t432;
+        let t436 = t303 * t417;
+        let t437 = t436 - t416;
+        let t445 = t303 * t296;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t362;
+        let t448 = t445 * (t417 + minus_rate_dot_rod_leg2);
+        let t452 = t301 * t448 + c_rod_leg2 * (t345 - t436);
+        let t467 = 1.7241379310344827 * t360;
+        let t482 = t331 * (t432 / c_rod_leg2) - (t296 * (t416 + t345) + t448);
+        let t484 = t405 - t375;
+        let t485 = 0.26 * t484;
+        let t486 = garm_vx_leg2 * t485;
+        let t492 = t380 - 0.26 * t341;
+        let t495 = c_rod_leg2 * (c_cross_leg2 * t484 - s_cross_leg2 * t492);
+        let t506 = c_cross_leg2 * t492 + s_cross_leg2 * t484;
+        let t507 = 1.7241379310344827 * t506;
+        let t508 = t281 * t507;
+        let t517 = t296 * (minus_rate_dot_rod_leg2 - t417) - t445 * (t436 + t345)
+            - t331 * t412;
+        let t519 = t303 * t495;
+        let t535 = t331 * t352 - minus_rate_dot_cross_leg2 * t299;
+        let t552 = pose[0] - t4 + 0.24;
+        let t553 = 0.52 * t552;
+        let t555 = t552 * t552 + t9;
+        let t556 = pose[1] - t13;
+        let t557 = t556 * t556;
+        let t558 = 0.3364 - t557;
+        let t559 = t555 - t558;
+        let t560 = t559 + 0.0676;
+        let t562 = 0.2704 * t555;
+        let t564 = t562 - t560 * t560;
+        ::overact::guard::reach(t564, "leg3")?;
+        let t565 = ::overact::math::sqrt(t564);
+        let minus_c_arm_leg3 = (t553 * t560 + t20 * t565) / t562;
+        let t570 = 2.972651605231867 * t558;
+        ::overact::guard::reach(t570, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t570);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let c_cross_leg3 = (-0.0676 + t556) / (0.3016 * c_rod_leg3);
-        let s_arm_leg3 = (t550 * t562 - t20 * t557) / t559;
-        let t576 = 0.8620689655172413 * t562;
-        let t577 = t576 / c_rod_leg3;
-        let s_cross_leg3 = 3.8461538461538463 * t577;
+        let t572 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t559) / t572;
+        let s_arm_leg3 = (t553 * t565 - t20 * t560) / t562;
+        let s_cross_leg3 = t565 / t572;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t581 = 3.8461538461538463 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t581;
-        let t584 = acceleration[0] + t44 + t47;
+        let t582 = 3.8461538461538463 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t582;
+        let t585 = acceleration[0] + t48 + t51;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t591 = twist[0] + t56;
-        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t596 = t553 * minus_grod_vy_leg3;
-        let t597 = twist[1] - t46;
-        let t598 = t596 * t597;
-        let t599 = minus_c_armcross_leg3 * t591 - s_armcross_leg3 * twist[2] + t598;
-        let rate_arm_leg3 = t581 * t599;
-        let t601 = t599 * rate_arm_leg3;
-        let t602 = t601 / s_cross_leg3;
-        let t604 = 0.58 * c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t597;
-        let t606 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t610 = 0.26 * c_cross_leg3;
-        let t612 = s_armcross_leg3 * t591 + minus_c_armcross_leg3 * twist[2]
-            - t610 * rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t612;
-        let t614 = rate_cross_leg3 * rate_cross_leg3;
-        let t615 = t606 + t614;
-        let t620 = acceleration[1] - t83 + t85;
-        let t622 = t620 + t553 * t606;
-        let rate_dot_arm_leg3 = t581
-            * (minus_c_armcross_leg3 * t584 - s_armcross_leg3 * acceleration[2]
-                + c_cross_leg3 * t602 + t604 * t615 + t596 * t622);
-        let t626 = garm_vx_leg3 * rate_dot_arm_leg3;
-        let garm_vy_leg3 = t581 * t596;
-        let t628 = garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t581;
-        let t630 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let t592 = twist[0] + t59;
+        let minus_grod_vy_leg3 = 0.52 / t572;
+        let t597 = t556 * minus_grod_vy_leg3;
+        let t598 = twist[1] - t50;
+        let t599 = t597 * t598;
+        let t600 = minus_c_armcross_leg3 * t592 - s_armcross_leg3 * twist[2] + t599;
+        let rate_arm_leg3 = t582 * t600;
+        let t602 = t600 * rate_arm_leg3;
+        let t603 = t602 / s_cross_leg3;
+        let t605 = 0.58 * c_rod_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t598;
+        let t607 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t611 = 0.26 * c_cross_leg3;
+        let t613 = s_armcross_leg3 * t592 + minus_c_armcross_leg3 * twist[2]
+            - t611 * rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t613;
+        let t615 = rate_cross_leg3 * rate_cross_leg3;
+        let t621 = acceleration[1] - t88 + t90;
+        let t623 = t621 + t556 * t607;
+        let t625 = minus_c_armcross_leg3 * t585 - s_armcross_leg3 * acceleration[2]
+            + c_cross_leg3 * t603 + t605 * (t607 + t615) + t597 * t623;
+        let rate_dot_arm_leg3 = t582 * t625;
+        let t627 = garm_vx_leg3 * rate_dot_arm_leg3;
+        let garm_vy_leg3 = t582 * t597;
+        let t629 = garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t582;
+        let t631 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
         let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let t634 = garm_wz_leg3 * rate_dot_arm_leg3;
-        let t635 = 9.81 * minus_c_arm_leg3;
-        let t640 = 9.81 * s_arm_leg3;
-        let t653 = minus_grod_vy_leg3 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t653;
-        let t656 = minus_rate_rod_leg3 * (1.7241379310344827 * t612);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t553;
-        let t661 = t598 * rate_cross_leg3;
-        let t665 = 0.26 * rate_dot_arm_leg3;
+        let t635 = garm_wz_leg3 * rate_dot_arm_leg3;
+        let t636 = 9.81 * minus_c_arm_leg3;
+        let t641 = 9.81 * s_arm_leg3;
+        let t654 = minus_grod_vy_leg3 / s_cross_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t654;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t556;
+        let t658 = minus_rate_rod_leg3 * (1.7241379310344827 * t613);
+        let t662 = t599 * rate_cross_leg3;
+        let t666 = 0.26 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t584 + minus_c_armcross_leg3 * acceleration[2]
-                - (t601 - (t661 + t661)) - c_cross_leg3 * t665);
-        let t669 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t671 = t656 + t669 + t656;
-        let t672 = c_rod_leg3 * t671;
-        let t673 = t596 * t672;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t610 * garm_vy_leg3);
-        let t678 = 2.972651605231867 * t614;
-        let t679 = t553 * t678;
-        let gcross_vz_leg3 = s_arm_leg3 * t653;
+            * (s_armcross_leg3 * t585 + minus_c_armcross_leg3 * acceleration[2]
+                - (t602 - (t662 + t662)) - c_cross_leg3 * t666);
+        let t670 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t672 = t658 + t670 + t658;
+        let t673 = minus_s_rod_leg3 * t672;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t611 * garm_vy_leg3);
+        let t678 = 2.972651605231867 * t615;
+        let t679 = t556 * t678;
+        let gcross_vz_leg3 = s_arm_leg3 * t654;
         let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
-        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
-        let t688 = t604 * t679;
-        let t689 = grod_wz_leg3 * t688;
-        let t691 = rate_dot_cross_leg3 - t673;
-        let t693 = t596 * t691 + t672;
-        let t696 = t554 * t678;
-        let t697 = t615 - t696;
-        let t698 = t696 + t606;
-        let t699 = t698 - t697;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t622;
-        let t707 = t688 + minus_rate_dot_rod_leg3;
-        let t711 = minus_s_rod_leg3 * t707 + c_rod_leg3 * (t606 - t696);
-        let t726 = 1.7241379310344827 * t620;
+        let t687 = t4 * t679;
+        let t689 = rate_dot_cross_leg3 - t673;
+        let t692 = t597 * t689 + c_rod_leg3 * t672;
+        let t695 = t557 * t678;
+        let t696 = t607 - t695;
+        let t697 = t615 + t696;
+        let t698 = t695 + t607;
+        let t700 = minus_grod_vy_leg3 * (t698 - t697);
+        let t706 = t605 * t679;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t623;
+        let t708 = t706 + minus_rate_dot_rod_leg3;
+        let t711 = minus_s_rod_leg3 * t708 + c_rod_leg3 * t696;
+        let t713 = minus_grod_vy_leg3 * t670;
+        let t726 = 1.7241379310344827 * t621;
         let t729 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t737 = t640 + t602;
-        let t739 = t635 + t665;
+        let t735 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
+        let t737 = t641 + t603;
+        let t739 = t636 + t666;
         let t741 = s_cross_leg3 * t737 + c_cross_leg3 * t739;
         let t742 = c_rod_leg3 * t741;
-        let t745 = t596 * t576;
-        let t750 = t576 * t697 + t745 * t707 - t610 * (t691 / c_rod_leg3);
-        let t754 = 0.26 * t739;
-        let t755 = garm_vy_leg3 * t754;
-        let t766 = s_cross_leg3 * t739 - c_cross_leg3 * t737;
-        let t767 = 1.7241379310344827 * t766;
-        let t768 = t4 * t767;
-        let t776 = t576 * (minus_rate_dot_rod_leg3 - t688) - t745 * t698 + t610 * t671;
-        let t778 = minus_s_rod_leg3 * t741;
-        let t794 = rate_dot_cross_leg3 * t577 + t610 * t614;
-        let t811 = pose[1] - t279 + 0.24;
-        let t813 = t811 * t811 + t9;
-        let t814 = 0.2704 * t813;
-        let t815 = pose[0] - t285;
-        let t817 = 0.3364 - t815 * t815;
-        let t818 = t813 - t817;
-        let t819 = t818 + 0.0676;
-        let t821 = t814 - t819 * t819;
-        ::overact::guard::reach(t821, "leg4")?;
-        let t822 = ::overact::math::sqrt(t821);
-        let t823 = 2.972651605231867 * t817;
-        ::overact::guard::reach(t823, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t823);
+        let t744 = 0.8620689655172413 * t565;
+        let t746 = t597 * t744;
+        let t751 = t744 * t697 + t746 * t708 - t611 * (t689 / c_rod_leg3);
+        let t755 = 0.26 * t739;
+        let t756 = garm_vy_leg3 * t755;
+        let t767 = s_cross_leg3 * t739 - c_cross_leg3 * t737;
+        let t768 = 1.7241379310344827 * t767;
+        let t769 = t4 * t768;
+        let t777 = t744 * (minus_rate_dot_rod_leg3 - t706) - t746 * t698 + t611 * t672;
+        let t779 = minus_s_rod_leg3 * t741;
+        let t796 = rate_dot_cross_leg3 * (t744 / c_rod_leg3) + t611 * t615;
+        let t812 = pose[0] - t287;
+        let t814 = 0.3364 - t812 * t812;
+        let t815 = 2.972651605231867 * t814;
+        ::overact::guard::reach(t815, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t815);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t825 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t822 / t825;
+        let t817 = 1.0 / c_rod_leg4;
+        let t819 = pose[1] - t281 + 0.24;
+        let t821 = t819 * t819 + t9;
+        let t822 = 0.2704 * t821;
+        let t823 = t821 - t814;
+        let t824 = t823 + 0.0676;
+        let t826 = t822 - t824 * t824;
+        ::overact::guard::reach(t826, "leg4")?;
+        let t827 = ::overact::math::sqrt(t826);
+        let t828 = 0.8620689655172413 * t827;
+        let t829 = t817 * t828;
+        let s_cross_leg4 = 3.8461538461538463 * t829;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t827 = 3.8461538461538463 / s_cross_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t829 = t815 * grod_vx_leg4;
-        let garm_vx_leg4 = t827 * t829;
-        let t831 = 0.52 * t811;
-        let minus_c_arm_leg4 = (t831 * t819 + t20 * t822) / t814;
-        let c_cross_leg4 = (-0.0676 + t818) / t825;
-        let s_arm_leg4 = (t831 * t822 - t20 * t819) / t814;
+        let t831 = 3.8461538461538463 / s_cross_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t817;
+        let t833 = t812 * grod_vx_leg4;
+        let garm_vx_leg4 = t831 * t833;
+        let t835 = 0.52 * t819;
+        let minus_c_arm_leg4 = (t835 * t824 + t20 * t827) / t822;
+        let c_cross_leg4 = (-0.0676 + t823) / (0.3016 * c_rod_leg4);
+        let s_arm_leg4 = (t835 * t827 - t20 * t824) / t822;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t846 = acceleration[1] - t318 + t321;
+        let t851 = acceleration[1] - t320 + t323;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t853 = twist[1] - t329;
-        let t857 = twist[0] + t320;
-        let t858 = t829 * t857;
-        let t859 = minus_c_armcross_leg4 * t853 - s_armcross_leg4 * twist[2] + t858;
-        let rate_arm_leg4 = t827 * t859;
-        let t861 = 0.26 * c_cross_leg4;
-        let t862 = t861 * rate_arm_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t857;
-        let t866 = rate_rod_leg4 * rate_rod_leg4;
-        let t870 = s_armcross_leg4 * t853 + minus_c_armcross_leg4 * twist[2] - t862;
-        let rate_cross_leg4 = grod_vx_leg4 * t870;
-        let t872 = rate_cross_leg4 * rate_cross_leg4;
-        let t878 = acceleration[0] + t356 + t358;
-        let t880 = t878 + t858 * rate_rod_leg4;
-        let t882 = minus_c_armcross_leg4 * t846 - s_armcross_leg4 * acceleration[2]
-            + rate_arm_leg4 * t862 + 0.58 * c_rod_leg4 * (t866 + t872) + t829 * t880;
-        let rate_dot_arm_leg4 = t827 * t882;
-        let t884 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t827;
-        let t886 = garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t827;
-        let t888 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let garm_wz_leg4 = t279 * garm_vx_leg4 - t285 * garm_vy_leg4;
-        let t892 = garm_wz_leg4 * rate_dot_arm_leg4;
-        let t893 = 9.81 * minus_c_arm_leg4;
-        let t898 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t861 * garm_vx_leg4);
-        let t913 = 1.7241379310344827 * t870;
-        let t914 = rate_rod_leg4 * t913;
-        let t918 = t859 * rate_arm_leg4;
-        let t919 = t858 * rate_cross_leg4;
+        let t858 = 0.26 * c_cross_leg4;
+        let t859 = twist[1] - t332;
+        let t863 = twist[0] + t322;
+        let t864 = t833 * t863;
+        let t865 = minus_c_armcross_leg4 * t859 - s_armcross_leg4 * twist[2] + t864;
+        let rate_arm_leg4 = t831 * t865;
+        let t867 = rate_arm_leg4 * rate_arm_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t863;
+        let t871 = rate_rod_leg4 * rate_rod_leg4;
+        let t876 = s_armcross_leg4 * t859 + minus_c_armcross_leg4 * twist[2]
+            - t858 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t876;
+        let t878 = rate_cross_leg4 * rate_cross_leg4;
+        let t879 = t871 + t878;
+        let t884 = acceleration[0] + t357 + t359;
+        let t886 = t884 + t812 * t871;
+        let t888 = minus_c_armcross_leg4 * t851 - s_armcross_leg4 * acceleration[2]
+            + t858 * t867 + 0.58 * c_rod_leg4 * t879 + t833 * t886;
+        let rate_dot_arm_leg4 = t831 * t888;
+        let t890 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t831;
+        let t892 = garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t831;
+        let t894 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let garm_wz_leg4 = t281 * garm_vx_leg4 - t287 * garm_vy_leg4;
+        let t898 = garm_wz_leg4 * rate_dot_arm_leg4;
+        let t899 = 9.81 * minus_c_arm_leg4;
+        let t904 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t858 * garm_vx_leg4);
+        let t920 = rate_rod_leg4 * (1.7241379310344827 * t876);
+        let s_rod_leg4 = 1.7241379310344827 * t812;
+        let t926 = t864 * rate_cross_leg4;
+        let t930 = 0.26 * rate_dot_arm_leg4;
         let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t846 + minus_c_armcross_leg4 * acceleration[2]
-                - (t918 - (t919 + t919)) - t861 * rate_dot_arm_leg4);
-        let t926 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t927 = t815 * t926;
-        let t929 = t914 + t927 + t914;
-        let t930 = c_rod_leg4 * t929;
-        let t931 = t829 * t930;
-        let t933 = t913 * t913;
-        let t934 = t829 * t933;
-        let t935 = grod_vx_leg4 * t934;
-        let t937 = grod_vx_leg4 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t937;
-        let gcross_vz_leg4 = s_arm_leg4 * t937;
-        let minus_gcross_wz_leg4 = t279 * minus_gcross_vx_leg4
-            - t285 * minus_gcross_vy_leg4;
-        let t946 = t279 * t935;
-        let t948 = t815 * t935;
-        let t950 = grod_vx_leg4 * (t948 - t933);
-        let t951 = rate_dot_cross_leg4 - t931;
-        let t953 = t930 + t829 * t951;
-        let t962 = 0.8620689655172413 * t822;
-        let t963 = t829 * t962;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t880;
-        let t966 = t963 * (t934 + rate_dot_rod_leg4);
-        let t970 = t827 * t966 + c_rod_leg4 * (t866 - t948);
-        let t975 = t279 * t926;
-        let t985 = 1.7241379310344827 * t878;
-        let t992 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t999 = t962 * (t933 + t866) + t966 - t861 * (t951 / c_rod_leg4);
-        let t1002 = t893 + 0.26 * rate_dot_arm_leg4;
-        let t1003 = 0.26 * t1002;
-        let t1004 = garm_vx_leg4 * t1003;
-        let t1008 = t898 + t918 / s_cross_leg4;
-        let t1012 = c_rod_leg4 * (s_cross_leg4 * t1008 + c_cross_leg4 * t1002);
-        let t1024 = s_cross_leg4 * t1002 - c_cross_leg4 * t1008;
-        let t1025 = 1.7241379310344827 * t1024;
-        let t1026 = t279 * t1025;
-        let t1035 = t962 * (t934 - rate_dot_rod_leg4) + t963 * (t948 + t866)
-            - t861 * t929;
-        let t1037 = t829 * t1012;
-        let t1054 = rate_dot_cross_leg4 * (t962 / c_rod_leg4) + t861 * t872;
-        let t1070 = twist[3] * twist[3];
-        let t1073 = c_phi * t1070 + s_phi * acceleration[3];
-        let t1076 = s_phi * t1070 - c_phi * acceleration[3];
+            * (s_armcross_leg4 * t851 + minus_c_armcross_leg4 * acceleration[2]
+                - (t865 * rate_arm_leg4 - (t926 + t926)) - c_cross_leg4 * t930);
+        let t934 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t936 = t920 + t934 + t920;
+        let t937 = c_rod_leg4 * t936;
+        let t938 = t833 * t937;
+        let t940 = t815 * t878;
+        let t941 = t833 * t940;
+        let t942 = grod_vx_leg4 * t941;
+        let t944 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t944;
+        let gcross_vz_leg4 = s_arm_leg4 * t944;
+        let minus_gcross_wz_leg4 = t281 * minus_gcross_vx_leg4
+            - t287 * minus_gcross_vy_leg4;
+        let grod_wz_leg4 = t281 * grod_vx_leg4;
+        let t954 = grod_wz_leg4 * t941;
+        let t956 = t940 + t871;
+        let t957 = t879 - t940;
+        let t958 = t957 - t956;
+        let t960 = rate_dot_cross_leg4 - t938;
+        let t962 = t937 + t833 * t960;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t886;
+        let t972 = t941 + rate_dot_rod_leg4;
+        let t976 = s_rod_leg4 * t972 + c_rod_leg4 * (t956 - t878);
+        let t990 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t991 = 1.7241379310344827 * t884;
+        let t1002 = t833 * t828;
+        let t1007 = t828 * t956 + t1002 * t972 - t858 * (t817 * t960);
+        let t1009 = t899 + t930;
+        let t1010 = 0.26 * t1009;
+        let t1011 = garm_vx_leg4 * t1010;
+        let t1015 = t904 + 0.26 * t867;
+        let t1018 = s_cross_leg4 * t1015 + c_cross_leg4 * t1009;
+        let t1019 = c_rod_leg4 * t1018;
+        let t1031 = s_cross_leg4 * t1009 - c_cross_leg4 * t1015;
+        let t1032 = 1.7241379310344827 * t1031;
+        let t1033 = t281 * t1032;
+        let t1041 = t828 * (t941 - rate_dot_rod_leg4) + t1002 * t957 - t858 * t936;
+        let t1043 = s_rod_leg4 * t1018;
+        let t1059 = rate_dot_cross_leg4 * t829 + t858 * t878;
+        let t1075 = twist[3] * twist[3];
+        let t1078 = c_phi * t1075 + s_phi * acceleration[3];
+        let t1081 = s_phi * t1075 - c_phi * acceleration[3];
         Ok([
             [
-                t92, -(garm_vx_leg1 * t101), -(garm_vx_leg1 * t106), t92,
+                t97, -(garm_vx_leg1 * t106), -(garm_vx_leg1 * t111), t97,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
-                garm_vx_leg1, minus_gcross_vx_leg1 * t140, -(minus_gcross_vx_leg1 * t158),
-                -(minus_gcross_vx_leg1 * t180), -(minus_gcross_vx_leg1 * t156),
+                garm_vx_leg1, minus_gcross_vx_leg1 * t142, -(minus_gcross_vx_leg1 * t163),
+                -(minus_gcross_vx_leg1 * t181), -(minus_gcross_vx_leg1 * t160),
                 -(minus_gcross_vx_leg1 * t196), 0.0,
-                garm_vx_leg1 * t210 - minus_gcross_vx_leg1 * t218,
-                garm_vx_leg1 * t244 + minus_gcross_vx_leg1 * t246,
-                garm_vx_leg1 * t263 - minus_gcross_vx_leg1 * t234, garm_vx_leg1 * t222, t365,
-                -(garm_vx_leg2 * t374), -(garm_vx_leg2 * t379), t365, garm_vx_leg2 * rate_arm_leg2,
+                garm_vx_leg1 * t213 - minus_gcross_vx_leg1 * t221,
+                garm_vx_leg1 * t247 + minus_gcross_vx_leg1 * t249,
+                garm_vx_leg1 * t265 - minus_gcross_vx_leg1 * t237, garm_vx_leg1 * t225, t366,
+                -(garm_vx_leg2 * t375), -(garm_vx_leg2 * t380), t366, garm_vx_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t411 - t415, -(minus_gcross_vx_leg2 * t432 + t436),
-                -(minus_gcross_vx_leg2 * t448 + minus_grod_vx_leg2 * t408),
-                t415 - minus_gcross_vx_leg2 * t429, minus_gcross_vx_leg2 * t465 + t455, t472,
-                garm_vx_leg2 * t480 - 1.7241379310344827 * t484,
-                garm_vx_leg2 * t514 - minus_gcross_vx_leg2 * t516 + t504,
-                garm_vx_leg2 * t532 - minus_gcross_vx_leg2 * t503, t484, t626, garm_vx_leg3 * t635,
-                garm_vx_leg3 * t640, t626, garm_vx_leg3 * rate_arm_leg3,
+                minus_gcross_vx_leg2 * t414 - t418,
+                -(minus_gcross_vx_leg2 * t434 + minus_grod_vx_leg2 * t437),
+                -(minus_gcross_vx_leg2 * t452 + minus_grod_vx_leg2 * t410),
+                t418 - minus_gcross_vx_leg2 * t432, minus_gcross_vx_leg2 * t467 + t409,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                garm_vx_leg2 * t482 - 1.7241379310344827 * t486,
+                garm_vx_leg2 * t517 - minus_gcross_vx_leg2 * t519 + t507,
+                garm_vx_leg2 * t535 - minus_gcross_vx_leg2 * t506, t486, t627, garm_vx_leg3 * t636,
+                garm_vx_leg3 * t641, t627, garm_vx_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3), garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t673), minus_gcross_vx_leg3 * t693,
-                -(minus_gcross_vx_leg3 * t711), -(minus_gcross_vx_leg3 * t691),
+                -(minus_gcross_vx_leg3 * t673), minus_gcross_vx_leg3 * t692,
+                -(minus_gcross_vx_leg3 * t711), -(minus_gcross_vx_leg3 * t689),
                 minus_gcross_vx_leg3 * t726, 0.0,
-                -(minus_gcross_vx_leg3 * t742 + garm_vx_leg3 * t750),
-                garm_vx_leg3 * t776 - minus_gcross_vx_leg3 * t778,
-                garm_vx_leg3 * t794 - minus_gcross_vx_leg3 * t766, garm_vx_leg3 * t754, t884,
-                garm_vx_leg4 * t893, garm_vx_leg4 * t898, t884, garm_vx_leg4 * rate_arm_leg4,
+                -(minus_gcross_vx_leg3 * t742 + garm_vx_leg3 * t751),
+                garm_vx_leg3 * t777 - minus_gcross_vx_leg3 * t779,
+                garm_vx_leg3 * t796 - minus_gcross_vx_leg3 * t767, garm_vx_leg3 * t755, t890,
+                garm_vx_leg4 * t899, garm_vx_leg4 * t904, t890, garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t931 + t935), t950 - minus_gcross_vx_leg4 * t953,
-                grod_vx_leg4 * t927 - minus_gcross_vx_leg4 * t970,
-                t935 - minus_gcross_vx_leg4 * t951, t926 - minus_gcross_vx_leg4 * t985, t992,
-                -(garm_vx_leg4 * t999 + 1.7241379310344827 * t1004),
-                garm_vx_leg4 * t1035 + minus_gcross_vx_leg4 * t1037 - t1025,
-                garm_vx_leg4 * t1054 - minus_gcross_vx_leg4 * t1024, t1004, 0.0, -t1073, t1076,
+                -(minus_gcross_vx_leg4 * t938 + t942),
+                grod_vx_leg4 * t958 - minus_gcross_vx_leg4 * t962,
+                grod_vx_leg4 * t934 - minus_gcross_vx_leg4 * t976,
+                t942 - minus_gcross_vx_leg4 * t960, t990 - minus_gcross_vx_leg4 * t991,
+                grod_vx_leg4 * rate_dot_rod_leg4,
+                -(garm_vx_leg4 * t1007 + 1.7241379310344827 * t1011),
+                garm_vx_leg4 * t1041 + minus_gcross_vx_leg4 * t1043 - t1032,
+                garm_vx_leg4 * t1059 - minus_gcross_vx_leg4 * t1031, t1011, 0.0, -t1078, t1081,
                 acceleration[0],
             ],
             [
-                t94, -(garm_vy_leg1 * t101), -(garm_vy_leg1 * t106), t94,
+                t99, -(garm_vy_leg1 * t106), -(garm_vy_leg1 * t111), t99,
                 garm_vy_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
-                garm_vy_leg1, minus_gcross_vy_leg1 * t140 - t146,
-                t164 - minus_gcross_vy_leg1 * t158,
-                -(minus_gcross_vy_leg1 * t180 + grod_vy_leg1 * t136),
-                t146 - minus_gcross_vy_leg1 * t156, -(minus_gcross_vy_leg1 * t196 + t135), t203,
-                garm_vy_leg1 * t210 - 1.7241379310344827 * t223,
-                garm_vy_leg1 * t244 + minus_gcross_vy_leg1 * t246 - t235,
-                garm_vy_leg1 * t263 - minus_gcross_vy_leg1 * t234, t223, t367,
-                -(garm_vy_leg2 * t374), -(garm_vy_leg2 * t379), t367, garm_vy_leg2 * rate_arm_leg2,
+                garm_vy_leg1, minus_gcross_vy_leg1 * t142 - t148,
+                grod_vy_leg1 * t169 - minus_gcross_vy_leg1 * t163,
+                -(minus_gcross_vy_leg1 * t181 + grod_vy_leg1 * t139),
+                t148 - minus_gcross_vy_leg1 * t160, -(minus_gcross_vy_leg1 * t196 + t199),
+                grod_vy_leg1 * rate_dot_rod_leg1, garm_vy_leg1 * t213 - 1.7241379310344827 * t226,
+                garm_vy_leg1 * t247 + minus_gcross_vy_leg1 * t249 - t238,
+                garm_vy_leg1 * t265 - minus_gcross_vy_leg1 * t237, t226, t368,
+                -(garm_vy_leg2 * t375), -(garm_vy_leg2 * t380), t368, garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2), garm_vy_leg2,
-                minus_gcross_vy_leg2 * t411, -(minus_gcross_vy_leg2 * t432),
-                -(minus_gcross_vy_leg2 * t448), -(minus_gcross_vy_leg2 * t429),
-                minus_gcross_vy_leg2 * t465, 0.0, garm_vy_leg2 * t480 - minus_gcross_vy_leg2 * t492,
-                garm_vy_leg2 * t514 - minus_gcross_vy_leg2 * t516,
-                garm_vy_leg2 * t532 - minus_gcross_vy_leg2 * t503, garm_vy_leg2 * t483, t628,
-                garm_vy_leg3 * t635, garm_vy_leg3 * t640, t628, garm_vy_leg3 * rate_arm_leg3,
+                minus_gcross_vy_leg2 * t414, -(minus_gcross_vy_leg2 * t434),
+                -(minus_gcross_vy_leg2 * t452), -(minus_gcross_vy_leg2 * t432),
+                minus_gcross_vy_leg2 * t467, 0.0, garm_vy_leg2 * t482 - minus_gcross_vy_leg2 * t495,
+                garm_vy_leg2 * t517 - minus_gcross_vy_leg2 * t519,
+                garm_vy_leg2 * t535 - minus_gcross_vy_leg2 * t506, garm_vy_leg2 * t485, t629,
+                garm_vy_leg3 * t636, garm_vy_leg3 * t641, t629, garm_vy_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3), garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t673 + t679),
-                -(minus_grod_vy_leg3 * t699 - minus_gcross_vy_leg3 * t693),
-                minus_grod_vy_leg3 * t669 - minus_gcross_vy_leg3 * t711,
-                t679 - minus_gcross_vy_leg3 * t691, minus_gcross_vy_leg3 * t726 - t729,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
-                -(garm_vy_leg3 * t750 + 1.7241379310344827 * t755),
-                garm_vy_leg3 * t776 - minus_gcross_vy_leg3 * t778 + t767,
-                garm_vy_leg3 * t794 - minus_gcross_vy_leg3 * t766, t755, t886, garm_vy_leg4 * t893,
-                garm_vy_leg4 * t898, t886, garm_vy_leg4 * rate_arm_leg4,
+                -(minus_gcross_vy_leg3 * t673 + t679), -(t700 - minus_gcross_vy_leg3 * t692),
+                t713 - minus_gcross_vy_leg3 * t711, t679 - minus_gcross_vy_leg3 * t689,
+                minus_gcross_vy_leg3 * t726 - t729, t735,
+                -(garm_vy_leg3 * t751 + 1.7241379310344827 * t756),
+                garm_vy_leg3 * t777 - minus_gcross_vy_leg3 * t779 + t768,
+                garm_vy_leg3 * t796 - minus_gcross_vy_leg3 * t767, t756, t892, garm_vy_leg4 * t899,
+                garm_vy_leg4 * t904, t892, garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t931), -(minus_gcross_vy_leg4 * t953),
-                -(minus_gcross_vy_leg4 * t970), -(minus_gcross_vy_leg4 * t951),
-                -(minus_gcross_vy_leg4 * t985), 0.0,
-                -(minus_gcross_vy_leg4 * t1012 + garm_vy_leg4 * t999),
-                garm_vy_leg4 * t1035 + minus_gcross_vy_leg4 * t1037,
-                garm_vy_leg4 * t1054 - minus_gcross_vy_leg4 * t1024, garm_vy_leg4 * t1003, 0.0,
-                -t1076, -t1073, acceleration[1],
+                -(minus_gcross_vy_leg4 * t938), -(minus_gcross_vy_leg4 * t962),
+                -(minus_gcross_vy_leg4 * t976), -(minus_gcross_vy_leg4 * t960),
+                -(minus_gcross_vy_leg4 * t991), 0.0,
+                -(minus_gcross_vy_leg4 * t1019 + garm_vy_leg4 * t1007),
+                garm_vy_leg4 * t1041 + minus_gcross_vy_leg4 * t1043,
+                garm_vy_leg4 * t1059 - minus_gcross_vy_leg4 * t1031, garm_vy_leg4 * t1010, 0.0,
+                -t1081, -t1078, acceleration[1],
             ],
             [
-                -t96, minus_garm_vz_leg1 * t101, minus_garm_vz_leg1 * t106, -t96,
+                -t101, minus_garm_vz_leg1 * t106, minus_garm_vz_leg1 * t111, -t101,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                minus_gcross_vz_leg1 * t140, -(minus_gcross_vz_leg1 * t158),
-                -(minus_gcross_vz_leg1 * t180), -(minus_gcross_vz_leg1 * t156),
+                minus_gcross_vz_leg1 * t142, -(minus_gcross_vz_leg1 * t163),
+                -(minus_gcross_vz_leg1 * t181), -(minus_gcross_vz_leg1 * t160),
                 -(minus_gcross_vz_leg1 * t196), 0.0,
-                -(minus_garm_vz_leg1 * t210 + minus_gcross_vz_leg1 * t218),
-                minus_gcross_vz_leg1 * t246 - minus_garm_vz_leg1 * t244,
-                -(minus_garm_vz_leg1 * t263 + minus_gcross_vz_leg1 * t234),
-                -(minus_garm_vz_leg1 * t222), -t369, minus_garm_vz_leg2 * t374,
-                minus_garm_vz_leg2 * t379, -t369, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_garm_vz_leg1 * t213 + minus_gcross_vz_leg1 * t221),
+                minus_gcross_vz_leg1 * t249 - minus_garm_vz_leg1 * t247,
+                -(minus_garm_vz_leg1 * t265 + minus_gcross_vz_leg1 * t237),
+                -(minus_garm_vz_leg1 * t225), -t370, minus_garm_vz_leg2 * t375,
+                minus_garm_vz_leg2 * t380, -t370, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                minus_gcross_vz_leg2 * t411, -(minus_gcross_vz_leg2 * t432),
-                -(minus_gcross_vz_leg2 * t448), -(minus_gcross_vz_leg2 * t429),
-                minus_gcross_vz_leg2 * t465, 0.0,
-                -(minus_gcross_vz_leg2 * t492 + minus_garm_vz_leg2 * t480),
-                -(minus_gcross_vz_leg2 * t516 + minus_garm_vz_leg2 * t514),
-                -(minus_gcross_vz_leg2 * t503 + minus_garm_vz_leg2 * t532),
-                -(minus_garm_vz_leg2 * t483), -t630, -(minus_garm_vz_leg3 * t635),
-                -(minus_garm_vz_leg3 * t640), -t630, -(minus_garm_vz_leg3 * rate_arm_leg3),
+                minus_gcross_vz_leg2 * t414, -(minus_gcross_vz_leg2 * t434),
+                -(minus_gcross_vz_leg2 * t452), -(minus_gcross_vz_leg2 * t432),
+                minus_gcross_vz_leg2 * t467, 0.0,
+                -(minus_gcross_vz_leg2 * t495 + minus_garm_vz_leg2 * t482),
+                -(minus_gcross_vz_leg2 * t519 + minus_garm_vz_leg2 * t517),
+                -(minus_gcross_vz_leg2 * t506 + minus_garm_vz_leg2 * t535),
+                -(minus_garm_vz_leg2 * t485), -t631, -(minus_garm_vz_leg3 * t636),
+                -(minus_garm_vz_leg3 * t641), -t631, -(minus_garm_vz_leg3 * rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3), -minus_garm_vz_leg3,
-                gcross_vz_leg3 * t673, -(gcross_vz_leg3 * t693), gcross_vz_leg3 * t711,
-                gcross_vz_leg3 * t691, -(gcross_vz_leg3 * t726), 0.0,
-                minus_garm_vz_leg3 * t750 + gcross_vz_leg3 * t742,
-                gcross_vz_leg3 * t778 - minus_garm_vz_leg3 * t776,
-                gcross_vz_leg3 * t766 - minus_garm_vz_leg3 * t794, -(minus_garm_vz_leg3 * t754),
-                -t888, -(minus_garm_vz_leg4 * t893), -(minus_garm_vz_leg4 * t898), -t888,
+                gcross_vz_leg3 * t673, -(gcross_vz_leg3 * t692), gcross_vz_leg3 * t711,
+                gcross_vz_leg3 * t689, -(gcross_vz_leg3 * t726), 0.0,
+                minus_garm_vz_leg3 * t751 + gcross_vz_leg3 * t742,
+                gcross_vz_leg3 * t779 - minus_garm_vz_leg3 * t777,
+                gcross_vz_leg3 * t767 - minus_garm_vz_leg3 * t796, -(minus_garm_vz_leg3 * t755),
+                -t894, -(minus_garm_vz_leg4 * t899), -(minus_garm_vz_leg4 * t904), -t894,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t931, gcross_vz_leg4 * t953, gcross_vz_leg4 * t970,
-                gcross_vz_leg4 * t951, gcross_vz_leg4 * t985, 0.0,
-                minus_garm_vz_leg4 * t999 + gcross_vz_leg4 * t1012,
-                -(minus_garm_vz_leg4 * t1035 + gcross_vz_leg4 * t1037),
-                gcross_vz_leg4 * t1024 - minus_garm_vz_leg4 * t1054, -(minus_garm_vz_leg4 * t1003),
+                gcross_vz_leg4 * t938, gcross_vz_leg4 * t962, gcross_vz_leg4 * t976,
+                gcross_vz_leg4 * t960, gcross_vz_leg4 * t991, 0.0,
+                minus_garm_vz_leg4 * t1007 + gcross_vz_leg4 * t1019,
+                -(minus_garm_vz_leg4 * t1041 + gcross_vz_leg4 * t1043),
+                gcross_vz_leg4 * t1031 - minus_garm_vz_leg4 * t1059, -(minus_garm_vz_leg4 * t1010),
                 0.0, 0.0, 0.0, acceleration[2] + 9.81,
             ],
             [
-                t100, -(garm_wz_leg1 * t101), -(garm_wz_leg1 * t106), t100,
+                t105, -(garm_wz_leg1 * t106), -(garm_wz_leg1 * t111), t105,
                 garm_wz_leg1 * rate_arm_leg1, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
-                garm_wz_leg1, -(gcross_wz_leg1 * t140 + t154), gcross_wz_leg1 * t158 + t4 * t164,
-                gcross_wz_leg1 * t180 - t62 * t187, gcross_wz_leg1 * t156 + t154,
-                gcross_wz_leg1 * t196 - t187, t4 * t203,
-                garm_wz_leg1 * t210 + gcross_wz_leg1 * t218 - t62 * t236,
-                garm_wz_leg1 * t244 - gcross_wz_leg1 * t246 - t236,
-                garm_wz_leg1 * t263 + gcross_wz_leg1 * t234, garm_wz_leg1 * t222, t373,
-                -(garm_wz_leg2 * t374), -(garm_wz_leg2 * t379), t373, garm_wz_leg2 * rate_arm_leg2,
+                garm_wz_leg1, -(gcross_wz_leg1 * t142 + t158),
+                gcross_wz_leg1 * t163 + grod_wz_leg1 * t169,
+                gcross_wz_leg1 * t181 - grod_wz_leg1 * t139, gcross_wz_leg1 * t160 + t158,
+                gcross_wz_leg1 * t196 - t4 * t199, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t213 + gcross_wz_leg1 * t221 - t65 * t239,
+                garm_wz_leg1 * t247 - gcross_wz_leg1 * t249 - t239,
+                garm_wz_leg1 * t265 + gcross_wz_leg1 * t237, garm_wz_leg1 * t225, t374,
+                -(garm_wz_leg2 * t375), -(garm_wz_leg2 * t380), t374, garm_wz_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2), garm_wz_leg2,
-                t422 - gcross_wz_leg2 * t411, gcross_wz_leg2 * t432 + t279 * t436,
-                gcross_wz_leg2 * t448 + t302 * t456, gcross_wz_leg2 * t429 - t422,
-                -(gcross_wz_leg2 * t465 + t456), -(t279 * t472),
-                garm_wz_leg2 * t480 + gcross_wz_leg2 * t492 + t302 * t505,
-                garm_wz_leg2 * t514 + gcross_wz_leg2 * t516 - t505,
-                garm_wz_leg2 * t532 + gcross_wz_leg2 * t503, garm_wz_leg2 * t483, t634,
-                garm_wz_leg3 * t635, garm_wz_leg3 * t640, t634, garm_wz_leg3 * rate_arm_leg3,
+                t426 - gcross_wz_leg2 * t414, gcross_wz_leg2 * t434 + grod_wz_leg2 * t437,
+                gcross_wz_leg2 * t452 + grod_wz_leg2 * t410, gcross_wz_leg2 * t432 - t426,
+                -(gcross_wz_leg2 * t467 + t281 * t409), -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                garm_wz_leg2 * t482 + gcross_wz_leg2 * t495 + t303 * t508,
+                garm_wz_leg2 * t517 + gcross_wz_leg2 * t519 - t508,
+                garm_wz_leg2 * t535 + gcross_wz_leg2 * t506, garm_wz_leg2 * t485, t635,
+                garm_wz_leg3 * t636, garm_wz_leg3 * t641, t635, garm_wz_leg3 * rate_arm_leg3,
                 ::overact::math::signed(garm_wz_leg3, rate_arm_leg3), garm_wz_leg3,
-                gcross_wz_leg3 * t673 + t689, grod_wz_leg3 * t699 - gcross_wz_leg3 * t693,
-                gcross_wz_leg3 * t711 - grod_wz_leg3 * t669, gcross_wz_leg3 * t691 - t689,
-                t4 * t729 - gcross_wz_leg3 * t726, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
-                gcross_wz_leg3 * t742 - garm_wz_leg3 * t750 + t596 * t768,
-                garm_wz_leg3 * t776 + gcross_wz_leg3 * t778 - t768,
-                garm_wz_leg3 * t794 + gcross_wz_leg3 * t766, garm_wz_leg3 * t754, t892,
-                garm_wz_leg4 * t893, garm_wz_leg4 * t898, t892, garm_wz_leg4 * rate_arm_leg4,
+                gcross_wz_leg3 * t673 + t687, t4 * t700 - gcross_wz_leg3 * t692,
+                gcross_wz_leg3 * t711 - t4 * t713, gcross_wz_leg3 * t689 - t687,
+                t4 * t729 - gcross_wz_leg3 * t726, -(t4 * t735),
+                gcross_wz_leg3 * t742 - garm_wz_leg3 * t751 + t597 * t769,
+                garm_wz_leg3 * t777 + gcross_wz_leg3 * t779 - t769,
+                garm_wz_leg3 * t796 + gcross_wz_leg3 * t767, garm_wz_leg3 * t755, t898,
+                garm_wz_leg4 * t899, garm_wz_leg4 * t904, t898, garm_wz_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t931 + t946), t279 * t950 - minus_gcross_wz_leg4 * t953,
-                t829 * t975 - minus_gcross_wz_leg4 * t970, t946 - minus_gcross_wz_leg4 * t951,
-                t975 - minus_gcross_wz_leg4 * t985, t279 * t992,
-                -(garm_wz_leg4 * t999 + minus_gcross_wz_leg4 * t1012 + t829 * t1026),
-                garm_wz_leg4 * t1035 + minus_gcross_wz_leg4 * t1037 - t1026,
-                garm_wz_leg4 * t1054 - minus_gcross_wz_leg4 * t1024, garm_wz_leg4 * t1003,
+                -(minus_gcross_wz_leg4 * t938 + t954),
+                grod_wz_leg4 * t958 - minus_gcross_wz_leg4 * t962,
+                grod_wz_leg4 * t934 - minus_gcross_wz_leg4 * t976,
+                t954 - minus_gcross_wz_leg4 * t960, t281 * t990 - minus_gcross_wz_leg4 * t991,
+                grod_wz_leg4 * rate_dot_rod_leg4,
+                -(garm_wz_leg4 * t1007 + minus_gcross_wz_leg4 * t1019 + t833 * t1033),
+                garm_wz_leg4 * t1041 + minus_gcross_wz_leg4 * t1043 - t1033,
+                garm_wz_leg4 * t1059 - minus_gcross_wz_leg4 * t1031, garm_wz_leg4 * t1010,
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -2807,7 +2810,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 945 operations (290 additions, 633 multiplications, 22 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 734 intermediates.
+    /// 954 operations (289 additions, 646 multiplications, 19 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 743 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2847,487 +2850,490 @@ impl Schoenflies4 {
         let t22 = t21 * twist[3];
         let t23 = twist[3] * t22;
         let t24 = acceleration[0] - t17 - t23;
-        let t28 = 0.26 * c_cross_leg1;
-        let t29 = t16 * twist[3];
-        let t30 = twist[0] - t29;
-        let t36 = s_rod_leg1 / c_rod_leg1;
-        let t37 = twist[1] + t22;
-        let t38 = t36 * t37;
-        let rate_arm_leg1 = t10
-            * (c_armcross_leg1 * t30 - s_armcross_leg1 * twist[2] + t38);
-        let t41 = rate_arm_leg1 * rate_arm_leg1;
+        let t28 = t16 * twist[3];
+        let t29 = twist[0] - t28;
+        let t35 = s_rod_leg1 / c_rod_leg1;
+        let t36 = twist[1] + t22;
+        let t37 = t35 * t36;
+        let t38 = c_armcross_leg1 * t29 - s_armcross_leg1 * twist[2] + t37;
+        let rate_arm_leg1 = t10 * t38;
+        let t40 = t38 * rate_arm_leg1;
+        let t41 = t40 / s_cross_leg1;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t49 = t28 * rate_arm_leg1 + s_armcross_leg1 * t30
+        let t45 = 0.26 * c_cross_leg1;
+        let t50 = t45 * rate_arm_leg1 + s_armcross_leg1 * t29
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t49;
-        let t51 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t37;
-        let t53 = rate_rod_leg1 * rate_rod_leg1;
-        let t54 = t51 + t53;
-        let t58 = t21 * acceleration[3];
-        let t60 = twist[3] * t29;
-        let t61 = acceleration[1] + t58 - t60;
-        let t63 = t61 + t38 * rate_rod_leg1;
-        let t65 = c_armcross_leg1 * t24 - s_armcross_leg1 * acceleration[2] + t28 * t41
-            + 0.58 * c_rod_leg1 * t54 + t36 * t63;
-        let rate_dot_arm_leg1 = t10 * t65;
-        let t67 = garm_vx_leg1 * rate_dot_arm_leg1;
-        let garm_vy_leg1 = t10 * t36;
-        let t69 = garm_vy_leg1 * rate_dot_arm_leg1;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t50;
+        let t52 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t36;
+        let t54 = rate_rod_leg1 * rate_rod_leg1;
+        let t59 = t21 * acceleration[3];
+        let t61 = twist[3] * t28;
+        let t62 = acceleration[1] + t59 - t61;
+        let t64 = t62 + t37 * rate_rod_leg1;
+        let t66 = c_armcross_leg1 * t24 - s_armcross_leg1 * acceleration[2]
+            + c_cross_leg1 * t41 + 0.58 * c_rod_leg1 * (t52 + t54) + t35 * t64;
+        let rate_dot_arm_leg1 = t10 * t66;
+        let t68 = garm_vx_leg1 * rate_dot_arm_leg1;
+        let garm_vy_leg1 = t10 * t35;
+        let t70 = garm_vy_leg1 * rate_dot_arm_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t10;
-        let t71 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
+        let t72 = minus_garm_vz_leg1 * rate_dot_arm_leg1;
         let garm_wz_leg1 = garm_vy_leg1 * t21 - t16 * garm_vx_leg1;
-        let t75 = garm_wz_leg1 * rate_dot_arm_leg1;
-        let t76 = 9.81 * c_arm_leg1;
-        let t81 = 9.81 * s_arm_leg1;
-        let t94 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t94;
-        let t96 = 1.7241379310344827 * t49;
-        let t97 = rate_rod_leg1 * t96;
-        let t102 = 0.26 * s_cross_leg1;
-        let t104 = t38 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (t28 * rate_dot_arm_leg1 + s_armcross_leg1 * t24
-                + c_armcross_leg1 * acceleration[2] + t102 * t41 + t104 + t104);
-        let t110 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t112 = t97 + t110 + t97;
-        let t113 = s_rod_leg1 * t112;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t28 * garm_vy_leg1);
-        let t118 = t96 * t96;
-        let t119 = t36 * t118;
-        let t120 = grod_vy_leg1 * t119;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t94;
+        let t76 = garm_wz_leg1 * rate_dot_arm_leg1;
+        let t77 = 9.81 * c_arm_leg1;
+        let t82 = 9.81 * s_arm_leg1;
+        let t95 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t95;
+        let t97 = 1.7241379310344827 * t50;
+        let t98 = rate_rod_leg1 * t97;
+        let t103 = t37 * minus_rate_cross_leg1;
+        let t104 = t103 + t103;
+        let t107 = t45 * rate_dot_arm_leg1 + s_armcross_leg1 * t24
+            + c_armcross_leg1 * acceleration[2] + t40 + t104;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t107;
+        let t109 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t111 = t98 + t109 + t98;
+        let t112 = s_rod_leg1 * t111;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t45 * garm_vy_leg1);
+        let t117 = t97 * t97;
+        let t118 = t35 * t117;
+        let t119 = grod_vy_leg1 * t118;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t95;
         let gcross_wz_leg1 = t16 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t21;
-        let t128 = t21 * t120;
-        let t130 = t113 - minus_rate_dot_cross_leg1;
-        let t133 = t36 * t130 - c_rod_leg1 * t112;
-        let t135 = t118 + t53;
-        let t136 = t54 - t118;
-        let t138 = grod_vy_leg1 * (t136 - t135);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t63;
-        let t146 = t119 + rate_dot_rod_leg1;
-        let t150 = s_rod_leg1 * t146 + c_rod_leg1 * (t135 - t51);
-        let t153 = grod_vy_leg1 * t110;
-        let t165 = 1.7241379310344827 * t61;
-        let t168 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t174 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t178 = c_rod_leg1 * t102;
-        let t180 = t102 * s_rod_leg1;
-        let t183 = t28 * (t130 / c_rod_leg1) - (t178 * t135 + t180 * t146);
-        let t186 = t81 + 0.26 * t41;
-        let t189 = 0.26 * rate_dot_arm_leg1 - t76;
-        let t191 = s_cross_leg1 * t186 + c_cross_leg1 * t189;
-        let t192 = c_rod_leg1 * t191;
-        let t196 = 0.26 * t189;
-        let t197 = garm_vy_leg1 * t196;
-        let t208 = s_cross_leg1 * t189 - c_cross_leg1 * t186;
-        let t209 = 1.7241379310344827 * t208;
-        let t210 = t21 * t209;
-        let t218 = t178 * (t119 - rate_dot_rod_leg1) + t180 * t136 + t28 * t112;
-        let t220 = s_rod_leg1 * t191;
-        let t236 = t28 * t51 - t102 * minus_rate_dot_cross_leg1;
-        let t254 = 3.8461538461538463 / s_cross_leg2;
-        let t257 = s_rod_leg2 / c_rod_leg2;
-        let minus_garm_vx_leg2 = t254 * t257;
+        let grod_wz_leg1 = grod_vy_leg1 * t21;
+        let t128 = grod_wz_leg1 * t118;
+        let t131 = 1.7241379310344827 * (t104 - t107);
+        let t132 = c_rod_leg1 * t131;
+        let t135 = t35 * t132 - c_rod_leg1 * t111;
+        let t137 = t35 * t118;
+        let t138 = t137 - t117;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t64;
+        let t147 = t118 + rate_dot_rod_leg1;
+        let t151 = s_rod_leg1 * t147 + c_rod_leg1 * (t54 - t137);
+        let t166 = 1.7241379310344827 * t62;
+        let t169 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t178 = 0.26 * s_cross_leg1;
+        let t179 = c_rod_leg1 * t178;
+        let t182 = t178 * s_rod_leg1;
+        let t185 = t45 * t131 - (t179 * (t117 + t54) + t182 * t147);
+        let t187 = t82 + t41;
+        let t190 = 0.26 * rate_dot_arm_leg1 - t77;
+        let t192 = s_cross_leg1 * t187 + c_cross_leg1 * t190;
+        let t193 = c_rod_leg1 * t192;
+        let t197 = 0.26 * t190;
+        let t198 = garm_vy_leg1 * t197;
+        let t209 = s_cross_leg1 * t190 - c_cross_leg1 * t187;
+        let t210 = 1.7241379310344827 * t209;
+        let t211 = t21 * t210;
+        let t220 = t179 * (t118 - rate_dot_rod_leg1) + t182 * (t137 + t54) + t45 * t111;
+        let t222 = s_rod_leg1 * t192;
+        let t238 = t45 * t52 - t178 * minus_rate_dot_cross_leg1;
+        let t256 = 3.8461538461538463 / s_cross_leg2;
+        let t259 = s_rod_leg2 / c_rod_leg2;
+        let minus_garm_vx_leg2 = t256 * t259;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t267 = t15 - t14;
-        let t268 = t267 * acceleration[3];
-        let t270 = t20 + t19;
-        let t271 = t270 * twist[3];
-        let t272 = twist[3] * t271;
-        let t273 = acceleration[1] + t268 - t272;
-        let t277 = t267 * twist[3];
-        let t278 = twist[1] + t277;
-        let t282 = twist[0] - t271;
-        let t283 = t257 * t282;
-        let t284 = c_armcross_leg2 * t278 - s_armcross_leg2 * twist[2] - t283;
-        let rate_arm_leg2 = t254 * t284;
-        let t286 = 0.26 * c_cross_leg2;
-        let t287 = t286 * rate_arm_leg2;
+        let t269 = t15 - t14;
+        let t270 = t269 * acceleration[3];
+        let t272 = t20 + t19;
+        let t273 = t272 * twist[3];
+        let t274 = twist[3] * t273;
+        let t275 = acceleration[1] + t270 - t274;
+        let t279 = t269 * twist[3];
+        let t280 = twist[1] + t279;
+        let t284 = twist[0] - t273;
+        let t285 = t259 * t284;
+        let t286 = c_armcross_leg2 * t280 - s_armcross_leg2 * twist[2] - t285;
+        let rate_arm_leg2 = t256 * t286;
+        let t288 = t286 * rate_arm_leg2;
+        let t289 = t288 / s_cross_leg2;
         let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t282;
-        let t292 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t296 = s_armcross_leg2 * t278 + c_armcross_leg2 * twist[2] + t287;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t296;
-        let t298 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t299 = t292 + t298;
-        let t303 = t270 * acceleration[3];
-        let t305 = twist[3] * t277;
-        let t306 = acceleration[0] - t303 - t305;
-        let t308 = t306 - t283 * minus_rate_rod_leg2;
-        let t310 = c_armcross_leg2 * t273 - s_armcross_leg2 * acceleration[2]
-            + rate_arm_leg2 * t287 + 0.58 * c_rod_leg2 * t299 - t257 * t308;
-        let rate_dot_arm_leg2 = t254 * t310;
-        let t312 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t254;
-        let t314 = garm_vy_leg2 * rate_dot_arm_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t254;
-        let t316 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
-        let garm_wz_leg2 = t267 * garm_vy_leg2 + minus_garm_vx_leg2 * t270;
-        let t320 = garm_wz_leg2 * rate_dot_arm_leg2;
-        let t321 = 9.81 * c_arm_leg2;
-        let t326 = 9.81 * s_arm_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t286 * minus_garm_vx_leg2);
-        let t344 = t284 * rate_arm_leg2;
-        let t345 = t283 * minus_rate_cross_leg2;
-        let t346 = t345 + t345;
-        let t350 = s_armcross_leg2 * t273 + c_armcross_leg2 * acceleration[2] + t344
-            - t346 + t286 * rate_dot_arm_leg2;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t350;
-        let t352 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t353 = 1.7241379310344827 * t296;
-        let t354 = minus_rate_rod_leg2 * t353;
-        let t356 = t354 - t352 + t354;
-        let t357 = s_rod_leg2 * t356;
-        let t359 = t353 * t353;
-        let t360 = t257 * t359;
-        let t361 = minus_grod_vx_leg2 * t360;
-        let t363 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t363;
-        let gcross_vz_leg2 = s_arm_leg2 * t363;
-        let minus_gcross_wz_leg2 = t267 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t270;
-        let t372 = t270 * t361;
-        let t375 = 1.7241379310344827 * (t350 + t346);
-        let t376 = c_rod_leg2 * t375;
-        let t379 = c_rod_leg2 * t356 - t257 * t376;
-        let t381 = t359 + t292;
-        let t382 = t299 - t359;
-        let t384 = minus_grod_vx_leg2 * (t382 - t381);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t308;
-        let t392 = t360 - minus_rate_dot_rod_leg2;
-        let t396 = s_rod_leg2 * t392 + c_rod_leg2 * (t381 - t298);
-        let t398 = minus_grod_vx_leg2 * t352;
-        let t411 = 1.7241379310344827 * t306;
-        let t413 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t420 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t423 = 0.26 * s_cross_leg2;
-        let t424 = c_rod_leg2 * t423;
-        let t426 = t423 * s_rod_leg2;
-        let t429 = t286 * t375 + t424 * t381 + t426 * t392;
-        let t432 = 0.26 * rate_dot_arm_leg2 - t321;
-        let t433 = 0.26 * t432;
-        let t434 = minus_garm_vx_leg2 * t433;
-        let t439 = t326 + t344 / s_cross_leg2;
-        let t442 = s_cross_leg2 * t439 + c_cross_leg2 * t432;
-        let t443 = c_rod_leg2 * t442;
-        let t454 = s_cross_leg2 * t432 - c_cross_leg2 * t439;
-        let t455 = 1.7241379310344827 * t454;
-        let t456 = t270 * t455;
-        let t464 = t424 * (t360 + minus_rate_dot_rod_leg2) + t426 * t382 - t286 * t356;
-        let t466 = s_rod_leg2 * t442;
-        let t483 = t286 * t298 - t423 * minus_rate_dot_cross_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t284;
+        let t294 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t298 = 0.26 * c_cross_leg2;
+        let t300 = s_armcross_leg2 * t280 + c_armcross_leg2 * twist[2]
+            + t298 * rate_arm_leg2;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t300;
+        let t302 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t307 = t272 * acceleration[3];
+        let t309 = twist[3] * t279;
+        let t310 = acceleration[0] - t307 - t309;
+        let t312 = t310 - t285 * minus_rate_rod_leg2;
+        let t314 = c_armcross_leg2 * t275 - s_armcross_leg2 * acceleration[2]
+            + c_cross_leg2 * t289 + 0.58 * c_rod_leg2 * (t294 + t302) - t259 * t312;
+        let rate_dot_arm_leg2 = t256 * t314;
+        let t316 = minus_garm_vx_leg2 * rate_dot_arm_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t256;
+        let t318 = garm_vy_leg2 * rate_dot_arm_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t256;
+        let t320 = minus_garm_vz_leg2 * rate_dot_arm_leg2;
+        let garm_wz_leg2 = t269 * garm_vy_leg2 + minus_garm_vx_leg2 * t272;
+        let t324 = garm_wz_leg2 * rate_dot_arm_leg2;
+        let t325 = 9.81 * c_arm_leg2;
+        let t330 = 9.81 * s_arm_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * (t298 * minus_garm_vx_leg2);
+        let t348 = t285 * minus_rate_cross_leg2;
+        let t349 = t348 + t348;
+        let t353 = s_armcross_leg2 * t275 + c_armcross_leg2 * acceleration[2] + t288
+            - t349 + t298 * rate_dot_arm_leg2;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t353;
+        let t355 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t356 = 1.7241379310344827 * t300;
+        let t357 = minus_rate_rod_leg2 * t356;
+        let t359 = t357 - t355 + t357;
+        let t360 = s_rod_leg2 * t359;
+        let t362 = t356 * t356;
+        let t363 = t259 * t362;
+        let t364 = minus_grod_vx_leg2 * t363;
+        let t366 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t366;
+        let gcross_vz_leg2 = s_arm_leg2 * t366;
+        let minus_gcross_wz_leg2 = t269 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t272;
+        let grod_wz_leg2 = minus_grod_vx_leg2 * t272;
+        let t376 = grod_wz_leg2 * t363;
+        let t379 = 1.7241379310344827 * (t353 + t349);
+        let t382 = c_rod_leg2 * t359 - s_rod_leg2 * t379;
+        let t384 = t259 * t363;
+        let t385 = t384 - t362;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t312;
+        let t394 = t363 - minus_rate_dot_rod_leg2;
+        let t398 = s_rod_leg2 * t394 + c_rod_leg2 * (t294 - t384);
+        let t407 = c_rod_leg2 * t379;
+        let t414 = 1.7241379310344827 * t310;
+        let t416 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t426 = 0.26 * s_cross_leg2;
+        let t427 = c_rod_leg2 * t426;
+        let t430 = t426 * s_rod_leg2;
+        let t433 = t298 * t379 + t427 * (t362 + t294) + t430 * t394;
+        let t436 = 0.26 * rate_dot_arm_leg2 - t325;
+        let t437 = 0.26 * t436;
+        let t438 = minus_garm_vx_leg2 * t437;
+        let t442 = t330 + t289;
+        let t445 = s_cross_leg2 * t442 + c_cross_leg2 * t436;
+        let t446 = c_rod_leg2 * t445;
+        let t457 = s_cross_leg2 * t436 - c_cross_leg2 * t442;
+        let t458 = 1.7241379310344827 * t457;
+        let t459 = t272 * t458;
+        let t468 = t427 * (t363 + minus_rate_dot_rod_leg2) + t430 * (t384 + t294)
+            - t298 * t359;
+        let t470 = s_rod_leg2 * t445;
+        let t487 = t298 * t302 - t426 * minus_rate_dot_cross_leg2;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t508 = 3.8461538461538463 / s_cross_leg3;
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t508;
-        let t510 = twist[0] + t29;
-        let t516 = s_rod_leg3 / c_rod_leg3;
-        let t517 = twist[1] - t22;
-        let t518 = t516 * t517;
-        let t519 = c_armcross_leg3 * t510 + s_armcross_leg3 * twist[2] + t518;
-        let minus_rate_arm_leg3 = t508 * t519;
-        let t521 = 0.26 * c_cross_leg3;
-        let t522 = t521 * minus_rate_arm_leg3;
+        let t512 = 3.8461538461538463 / s_cross_leg3;
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t512;
+        let t514 = 0.26 * c_cross_leg3;
+        let t515 = twist[0] + t28;
+        let t521 = s_rod_leg3 / c_rod_leg3;
+        let t522 = twist[1] - t22;
+        let t523 = t521 * t522;
+        let minus_rate_arm_leg3 = t512
+            * (c_armcross_leg3 * t515 + s_armcross_leg3 * twist[2] + t523);
+        let t526 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t517;
-        let t527 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t531 = s_armcross_leg3 * t510 - c_armcross_leg3 * twist[2] + t522;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t531;
-        let t533 = rate_cross_leg3 * rate_cross_leg3;
-        let t538 = acceleration[0] + t17 + t23;
-        let t544 = acceleration[1] - t58 + t60;
-        let t546 = t544 - t518 * minus_rate_rod_leg3;
-        let t548 = minus_rate_arm_leg3 * t522 + 0.58 * c_rod_leg3 * (t527 + t533)
-            - (c_armcross_leg3 * t538 + s_armcross_leg3 * acceleration[2]) - t516 * t546;
-        let rate_dot_arm_leg3 = t508 * t548;
-        let t550 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vy_leg3 = t508 * t516;
-        let t552 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t508;
-        let t554 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t522;
+        let t531 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t536 = s_armcross_leg3 * t515 - c_armcross_leg3 * twist[2]
+            + t514 * minus_rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t536;
+        let t538 = rate_cross_leg3 * rate_cross_leg3;
+        let t543 = acceleration[0] + t17 + t23;
+        let t549 = acceleration[1] - t59 + t61;
+        let t551 = t549 - t523 * minus_rate_rod_leg3;
+        let t553 = t514 * t526 + 0.58 * c_rod_leg3 * (t531 + t538)
+            - (c_armcross_leg3 * t543 + s_armcross_leg3 * acceleration[2]) - t521 * t551;
+        let rate_dot_arm_leg3 = t512 * t553;
+        let t555 = minus_garm_vx_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vy_leg3 = t512 * t521;
+        let t557 = minus_garm_vy_leg3 * rate_dot_arm_leg3;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t512;
+        let t559 = minus_garm_vz_leg3 * rate_dot_arm_leg3;
         let garm_wz_leg3 = t21 * minus_garm_vy_leg3 - t16 * minus_garm_vx_leg3;
-        let t558 = garm_wz_leg3 * rate_dot_arm_leg3;
-        let t559 = 9.81 * c_arm_leg3;
-        let t564 = 9.81 * s_arm_leg3;
-        let t577 = minus_grod_vy_leg3 / s_cross_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t577;
-        let t582 = t519 * minus_rate_arm_leg3;
-        let t583 = t518 * rate_cross_leg3;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t538 - c_armcross_leg3 * acceleration[2]
-                - (t582 + t583 + t583) - t521 * rate_dot_arm_leg3);
-        let t590 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t591 = 1.7241379310344827 * t531;
-        let t592 = minus_rate_rod_leg3 * t591;
-        let t594 = t590 - t592 - t592;
-        let t595 = c_rod_leg3 * t594;
-        let t596 = t516 * t595;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t521 * minus_garm_vy_leg3);
-        let t601 = t591 * t591;
-        let t602 = t516 * t601;
-        let t603 = minus_grod_vy_leg3 * t602;
-        let gcross_vz_leg3 = s_arm_leg3 * t577;
+        let t563 = garm_wz_leg3 * rate_dot_arm_leg3;
+        let t564 = 9.81 * c_arm_leg3;
+        let t569 = 9.81 * s_arm_leg3;
+        let t582 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t582;
+        let t587 = 0.26 * s_cross_leg3;
+        let t589 = t523 * rate_cross_leg3;
+        let t590 = t589 + t589;
+        let t594 = s_armcross_leg3 * t543 - c_armcross_leg3 * acceleration[2]
+            - (t587 * t526 + t590) - t514 * rate_dot_arm_leg3;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t594;
+        let t596 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t597 = 1.7241379310344827 * t536;
+        let t598 = minus_rate_rod_leg3 * t597;
+        let t600 = t596 - t598 - t598;
+        let t601 = c_rod_leg3 * t600;
+        let t602 = t521 * t601;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t514 * minus_garm_vy_leg3);
+        let t607 = t597 * t597;
+        let t608 = t521 * t607;
+        let t609 = minus_grod_vy_leg3 * t608;
+        let gcross_vz_leg3 = s_arm_leg3 * t582;
         let gcross_wz_leg3 = t16 * gcross_vx_leg3 - t21 * gcross_vy_leg3;
-        let t611 = t21 * t603;
-        let t613 = rate_dot_cross_leg3 - t596;
-        let t615 = t516 * t613 + t595;
-        let t618 = t533 - t601;
-        let t620 = minus_grod_vy_leg3 * (t618 - t601);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t546;
-        let t627 = t602 - minus_rate_dot_rod_leg3;
-        let t631 = s_rod_leg3 * t627 + c_rod_leg3 * (t527 - t618);
-        let t638 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t639 = t21 * t638;
-        let t648 = 1.7241379310344827 * t544;
-        let t655 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
-        let t658 = t564 + t582 / s_cross_leg3;
-        let t661 = 0.26 * rate_dot_arm_leg3 - t559;
-        let t663 = s_cross_leg3 * t658 + c_cross_leg3 * t661;
-        let t664 = c_rod_leg3 * t663;
-        let t668 = 0.26 * s_cross_leg3;
-        let t669 = c_rod_leg3 * t668;
-        let t672 = t668 * s_rod_leg3;
-        let t675 = t521 * (t613 / c_rod_leg3) - (t669 * (t601 + t527) + t672 * t627);
-        let t679 = 0.26 * t661;
-        let t680 = minus_garm_vy_leg3 * t679;
-        let t691 = s_cross_leg3 * t661 - c_cross_leg3 * t658;
-        let t692 = 1.7241379310344827 * t691;
-        let t693 = t21 * t692;
-        let t702 = t669 * (t602 + minus_rate_dot_rod_leg3) + t672 * (t618 + t527)
-            - t521 * t594;
-        let t704 = s_rod_leg3 * t663;
-        let t721 = t668 * rate_dot_cross_leg3 + t521 * t533;
-        let t738 = 3.8461538461538463 / s_cross_leg4;
-        let t741 = s_rod_leg4 / c_rod_leg4;
-        let garm_vx_leg4 = t738 * t741;
-        let t743 = twist[0] + t271;
-        let t744 = t741 * t743;
+        let grod_wz_leg3 = t21 * minus_grod_vy_leg3;
+        let t618 = grod_wz_leg3 * t608;
+        let t621 = 1.7241379310344827 * (t594 + t590);
+        let t622 = c_rod_leg3 * t621;
+        let t624 = t521 * t622 + t601;
+        let t627 = t521 * t608;
+        let t628 = t627 - t607;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t551;
+        let t636 = t608 - minus_rate_dot_rod_leg3;
+        let t640 = s_rod_leg3 * t636 + c_rod_leg3 * (t531 - t627);
+        let t655 = 1.7241379310344827 * t549;
+        let t658 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t667 = t569 + 0.26 * t526;
+        let t670 = 0.26 * rate_dot_arm_leg3 - t564;
+        let t672 = s_cross_leg3 * t667 + c_cross_leg3 * t670;
+        let t673 = c_rod_leg3 * t672;
+        let t676 = c_rod_leg3 * t587;
+        let t679 = t587 * s_rod_leg3;
+        let t682 = t514 * t621 - (t676 * (t607 + t531) + t679 * t636);
+        let t686 = 0.26 * t670;
+        let t687 = minus_garm_vy_leg3 * t686;
+        let t698 = s_cross_leg3 * t670 - c_cross_leg3 * t667;
+        let t699 = 1.7241379310344827 * t698;
+        let t700 = t21 * t699;
+        let t709 = t676 * (t608 + minus_rate_dot_rod_leg3) + t679 * (t627 + t531)
+            - t514 * t600;
+        let t711 = s_rod_leg3 * t672;
+        let t728 = t587 * rate_dot_cross_leg3 + t514 * t538;
+        let t745 = 3.8461538461538463 / s_cross_leg4;
+        let t748 = s_rod_leg4 / c_rod_leg4;
+        let garm_vx_leg4 = t745 * t748;
+        let t750 = twist[0] + t273;
+        let t751 = t748 * t750;
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t753 = twist[1] - t277;
-        let t757 = t744 - (c_armcross_leg4 * t753 + s_armcross_leg4 * twist[2]);
-        let rate_arm_leg4 = t738 * t757;
-        let t759 = t757 * rate_arm_leg4;
-        let t760 = t759 / s_cross_leg4;
+        let t760 = twist[1] - t279;
+        let t764 = t751 - (c_armcross_leg4 * t760 + s_armcross_leg4 * twist[2]);
+        let rate_arm_leg4 = t745 * t764;
+        let t766 = 0.26 * c_cross_leg4;
+        let t767 = t766 * rate_arm_leg4;
         let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t743;
-        let t765 = rate_rod_leg4 * rate_rod_leg4;
-        let t769 = 0.26 * c_cross_leg4;
-        let t771 = s_armcross_leg4 * t753 - c_armcross_leg4 * twist[2]
-            - t769 * rate_arm_leg4;
-        let rate_cross_leg4 = grod_vx_leg4 * t771;
-        let t773 = rate_cross_leg4 * rate_cross_leg4;
-        let t774 = t765 + t773;
-        let t778 = acceleration[1] - t268 + t272;
-        let t784 = acceleration[0] + t303 + t305;
-        let t786 = t784 + t744 * rate_rod_leg4;
-        let t788 = c_cross_leg4 * t760 + 0.58 * c_rod_leg4 * t774
-            - (c_armcross_leg4 * t778 + s_armcross_leg4 * acceleration[2]) + t741 * t786;
-        let rate_dot_arm_leg4 = t738 * t788;
-        let t790 = garm_vx_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t738;
-        let t792 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t738;
-        let t794 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
-        let garm_wz_leg4 = t267 * minus_garm_vy_leg4 + t270 * garm_vx_leg4;
-        let t798 = garm_wz_leg4 * rate_dot_arm_leg4;
-        let t799 = 9.81 * c_arm_leg4;
-        let t804 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t769 * garm_vx_leg4);
-        let t819 = 1.7241379310344827 * t771;
-        let t820 = rate_rod_leg4 * t819;
-        let t824 = t744 * rate_cross_leg4;
-        let t828 = 0.26 * rate_dot_arm_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t778 - c_armcross_leg4 * acceleration[2]
-                - (t759 - (t824 + t824)) - c_cross_leg4 * t828);
-        let t832 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t834 = t820 + t832 + t820;
-        let t835 = s_rod_leg4 * t834;
-        let t837 = t819 * t819;
-        let t838 = t741 * t837;
-        let t839 = grod_vx_leg4 * t838;
-        let t841 = grod_vx_leg4 / s_cross_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t841;
-        let gcross_vz_leg4 = s_arm_leg4 * t841;
-        let minus_gcross_wz_leg4 = t267 * gcross_vy_leg4 + t270 * minus_gcross_vx_leg4;
-        let t850 = t270 * t839;
-        let t852 = t837 + t765;
-        let t853 = t774 - t837;
-        let t855 = grod_vx_leg4 * (t853 - t852);
-        let t857 = rate_dot_cross_leg4 - t835;
-        let t859 = c_rod_leg4 * t834 + t741 * t857;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t786;
-        let t869 = t838 + rate_dot_rod_leg4;
-        let t873 = s_rod_leg4 * t869 + c_rod_leg4 * (t852 - t773);
-        let t878 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t879 = t270 * t878;
-        let t889 = 1.7241379310344827 * t784;
-        let t896 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t898 = 0.26 * s_cross_leg4;
-        let t899 = c_rod_leg4 * t898;
-        let t901 = t898 * s_rod_leg4;
-        let t906 = t899 * t852 + t901 * t869 - t769 * (t857 / c_rod_leg4);
-        let t908 = t828 - t799;
-        let t909 = 0.26 * t908;
-        let t910 = garm_vx_leg4 * t909;
-        let t914 = t804 + t760;
-        let t917 = s_cross_leg4 * t914 + c_cross_leg4 * t908;
-        let t918 = c_rod_leg4 * t917;
-        let t929 = s_cross_leg4 * t908 - c_cross_leg4 * t914;
-        let t930 = 1.7241379310344827 * t929;
-        let t931 = t270 * t930;
-        let t939 = t899 * (t838 - rate_dot_rod_leg4) + t901 * t853 - t769 * t834;
-        let t941 = s_rod_leg4 * t917;
-        let t957 = t898 * rate_dot_cross_leg4 + t769 * t773;
-        let t973 = twist[3] * twist[3];
-        let t976 = c_phi * t973 + s_phi * acceleration[3];
-        let t979 = s_phi * t973 - c_phi * acceleration[3];
+        let rate_rod_leg4 = grod_vx_leg4 * t750;
+        let t772 = rate_rod_leg4 * rate_rod_leg4;
+        let t776 = s_armcross_leg4 * t760 - c_armcross_leg4 * twist[2] - t767;
+        let rate_cross_leg4 = grod_vx_leg4 * t776;
+        let t778 = rate_cross_leg4 * rate_cross_leg4;
+        let t783 = acceleration[1] - t270 + t274;
+        let t789 = acceleration[0] + t307 + t309;
+        let t791 = t789 + t751 * rate_rod_leg4;
+        let t793 = rate_arm_leg4 * t767 + 0.58 * c_rod_leg4 * (t772 + t778)
+            - (c_armcross_leg4 * t783 + s_armcross_leg4 * acceleration[2]) + t748 * t791;
+        let rate_dot_arm_leg4 = t745 * t793;
+        let t795 = garm_vx_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t745;
+        let t797 = minus_garm_vy_leg4 * rate_dot_arm_leg4;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t745;
+        let t799 = minus_garm_vz_leg4 * rate_dot_arm_leg4;
+        let garm_wz_leg4 = t269 * minus_garm_vy_leg4 + t272 * garm_vx_leg4;
+        let t803 = garm_wz_leg4 * rate_dot_arm_leg4;
+        let t804 = 9.81 * c_arm_leg4;
+        let t809 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t766 * garm_vx_leg4);
+        let t824 = 1.7241379310344827 * t776;
+        let t825 = rate_rod_leg4 * t824;
+        let t829 = t764 * rate_arm_leg4;
+        let t830 = t751 * rate_cross_leg4;
+        let t831 = t830 + t830;
+        let t835 = s_armcross_leg4 * t783 - c_armcross_leg4 * acceleration[2]
+            - (t829 - t831) - t766 * rate_dot_arm_leg4;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t835;
+        let t837 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t839 = t825 + t837 + t825;
+        let t840 = s_rod_leg4 * t839;
+        let t842 = t824 * t824;
+        let t843 = t748 * t842;
+        let t844 = grod_vx_leg4 * t843;
+        let t846 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t846;
+        let gcross_vz_leg4 = s_arm_leg4 * t846;
+        let minus_gcross_wz_leg4 = t269 * gcross_vy_leg4 + t272 * minus_gcross_vx_leg4;
+        let t855 = t272 * t844;
+        let t857 = t748 * t843;
+        let t859 = grod_vx_leg4 * (t857 - t842);
+        let t862 = 1.7241379310344827 * (t831 - t835);
+        let t863 = c_rod_leg4 * t862;
+        let t865 = c_rod_leg4 * t839 - t748 * t863;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t791;
+        let t875 = t843 + rate_dot_rod_leg4;
+        let t879 = s_rod_leg4 * t875 + c_rod_leg4 * (t772 - t857);
+        let t884 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t885 = t272 * t884;
+        let t895 = 1.7241379310344827 * t789;
+        let t902 = grod_vx_leg4 * rate_dot_rod_leg4;
+        let t904 = 0.26 * s_cross_leg4;
+        let t905 = c_rod_leg4 * t904;
+        let t908 = t904 * s_rod_leg4;
+        let t912 = t905 * (t842 + t772) + t908 * t875 + t766 * t862;
+        let t915 = 0.26 * rate_dot_arm_leg4 - t804;
+        let t916 = 0.26 * t915;
+        let t917 = garm_vx_leg4 * t916;
+        let t922 = t809 + t829 / s_cross_leg4;
+        let t925 = s_cross_leg4 * t922 + c_cross_leg4 * t915;
+        let t926 = c_rod_leg4 * t925;
+        let t937 = s_cross_leg4 * t915 - c_cross_leg4 * t922;
+        let t938 = 1.7241379310344827 * t937;
+        let t939 = t272 * t938;
+        let t948 = t905 * (t843 - rate_dot_rod_leg4) + t908 * (t857 + t772)
+            - t766 * t839;
+        let t950 = s_rod_leg4 * t925;
+        let t966 = t904 * rate_dot_cross_leg4 + t766 * t778;
+        let t982 = twist[3] * twist[3];
+        let t985 = c_phi * t982 + s_phi * acceleration[3];
+        let t988 = s_phi * t982 - c_phi * acceleration[3];
         Ok([
             [
-                t67, -(garm_vx_leg1 * t76), garm_vx_leg1 * t81, t67, garm_vx_leg1 * rate_arm_leg1,
+                t68, -(garm_vx_leg1 * t77), garm_vx_leg1 * t82, t68, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t113, -(minus_gcross_vx_leg1 * t133),
-                -(minus_gcross_vx_leg1 * t150), -(minus_gcross_vx_leg1 * t130),
-                -(minus_gcross_vx_leg1 * t165), 0.0,
-                garm_vx_leg1 * t183 - minus_gcross_vx_leg1 * t192,
-                garm_vx_leg1 * t218 + minus_gcross_vx_leg1 * t220,
-                garm_vx_leg1 * t236 - minus_gcross_vx_leg1 * t208, garm_vx_leg1 * t196, -t312,
-                minus_garm_vx_leg2 * t321, -(minus_garm_vx_leg2 * t326), -t312,
+                minus_gcross_vx_leg1 * t112, -(minus_gcross_vx_leg1 * t135),
+                -(minus_gcross_vx_leg1 * t151), -(minus_gcross_vx_leg1 * t132),
+                -(minus_gcross_vx_leg1 * t166), 0.0,
+                garm_vx_leg1 * t185 - minus_gcross_vx_leg1 * t193,
+                garm_vx_leg1 * t220 + minus_gcross_vx_leg1 * t222,
+                garm_vx_leg1 * t238 - minus_gcross_vx_leg1 * t209, garm_vx_leg1 * t197, -t316,
+                minus_garm_vx_leg2 * t325, -(minus_garm_vx_leg2 * t330), -t316,
                 -(minus_garm_vx_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2), -minus_garm_vx_leg2,
-                gcross_vx_leg2 * t357 + t361, gcross_vx_leg2 * t379 - t384,
-                gcross_vx_leg2 * t396 + t398, -(gcross_vx_leg2 * t376 + t361),
-                -(gcross_vx_leg2 * t411 - t413), t420,
-                minus_garm_vx_leg2 * t429 + 1.7241379310344827 * t434,
-                t455 - (minus_garm_vx_leg2 * t464 + gcross_vx_leg2 * t466),
-                gcross_vx_leg2 * t454 - minus_garm_vx_leg2 * t483, -t434, -t550,
-                minus_garm_vx_leg3 * t559, -(minus_garm_vx_leg3 * t564), -t550,
+                gcross_vx_leg2 * t360 + t364, gcross_vx_leg2 * t382 - minus_grod_vx_leg2 * t385,
+                gcross_vx_leg2 * t398 + minus_grod_vx_leg2 * t355, -(gcross_vx_leg2 * t407 + t364),
+                -(gcross_vx_leg2 * t414 - t416), minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                minus_garm_vx_leg2 * t433 + 1.7241379310344827 * t438,
+                t458 - (minus_garm_vx_leg2 * t468 + gcross_vx_leg2 * t470),
+                gcross_vx_leg2 * t457 - minus_garm_vx_leg2 * t487, -t438, -t555,
+                minus_garm_vx_leg3 * t564, -(minus_garm_vx_leg3 * t569), -t555,
                 minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
-                -minus_garm_vx_leg3, gcross_vx_leg3 * t596, gcross_vx_leg3 * t615,
-                gcross_vx_leg3 * t631, gcross_vx_leg3 * t613, -(gcross_vx_leg3 * t648), 0.0,
-                gcross_vx_leg3 * t664 - minus_garm_vx_leg3 * t675,
-                -(minus_garm_vx_leg3 * t702 + gcross_vx_leg3 * t704),
-                gcross_vx_leg3 * t691 - minus_garm_vx_leg3 * t721, -(minus_garm_vx_leg3 * t679),
-                t790, -(garm_vx_leg4 * t799), garm_vx_leg4 * t804, t790,
+                -minus_garm_vx_leg3, gcross_vx_leg3 * t602, gcross_vx_leg3 * t624,
+                gcross_vx_leg3 * t640, gcross_vx_leg3 * t622, -(gcross_vx_leg3 * t655), 0.0,
+                gcross_vx_leg3 * t673 - minus_garm_vx_leg3 * t682,
+                -(minus_garm_vx_leg3 * t709 + gcross_vx_leg3 * t711),
+                gcross_vx_leg3 * t698 - minus_garm_vx_leg3 * t728, -(minus_garm_vx_leg3 * t686),
+                t795, -(garm_vx_leg4 * t804), garm_vx_leg4 * t809, t795,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg4, rate_arm_leg4),
-                garm_vx_leg4, -(minus_gcross_vx_leg4 * t835 + t839),
-                t855 - minus_gcross_vx_leg4 * t859,
-                grod_vx_leg4 * t832 - minus_gcross_vx_leg4 * t873,
-                t839 - minus_gcross_vx_leg4 * t857, t878 - minus_gcross_vx_leg4 * t889, t896,
-                -(garm_vx_leg4 * t906 + 1.7241379310344827 * t910),
-                garm_vx_leg4 * t939 + minus_gcross_vx_leg4 * t941 - t930,
-                garm_vx_leg4 * t957 - minus_gcross_vx_leg4 * t929, t910, 0.0, -t976, t979,
+                garm_vx_leg4, -(minus_gcross_vx_leg4 * t840 + t844),
+                t859 - minus_gcross_vx_leg4 * t865,
+                grod_vx_leg4 * t837 - minus_gcross_vx_leg4 * t879,
+                t844 + minus_gcross_vx_leg4 * t863, t884 - minus_gcross_vx_leg4 * t895, t902,
+                -(garm_vx_leg4 * t912 + 1.7241379310344827 * t917),
+                garm_vx_leg4 * t948 + minus_gcross_vx_leg4 * t950 - t938,
+                garm_vx_leg4 * t966 - minus_gcross_vx_leg4 * t937, t917, 0.0, -t985, t988,
                 acceleration[0],
             ],
             [
-                t69, -(garm_vy_leg1 * t76), garm_vy_leg1 * t81, t69, garm_vy_leg1 * rate_arm_leg1,
+                t70, -(garm_vy_leg1 * t77), garm_vy_leg1 * t82, t70, garm_vy_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t113 - t120, t138 - minus_gcross_vy_leg1 * t133,
-                -(minus_gcross_vy_leg1 * t150 + t153), t120 - minus_gcross_vy_leg1 * t130,
-                -(minus_gcross_vy_leg1 * t165 + t168), t174,
-                garm_vy_leg1 * t183 - 1.7241379310344827 * t197,
-                garm_vy_leg1 * t218 + minus_gcross_vy_leg1 * t220 - t209,
-                garm_vy_leg1 * t236 - minus_gcross_vy_leg1 * t208, t197, t314,
-                -(garm_vy_leg2 * t321), garm_vy_leg2 * t326, t314, garm_vy_leg2 * rate_arm_leg2,
+                minus_gcross_vy_leg1 * t112 - t119,
+                grod_vy_leg1 * t138 - minus_gcross_vy_leg1 * t135,
+                -(minus_gcross_vy_leg1 * t151 + grod_vy_leg1 * t109),
+                t119 - minus_gcross_vy_leg1 * t132, -(minus_gcross_vy_leg1 * t166 + t169),
+                grod_vy_leg1 * rate_dot_rod_leg1, garm_vy_leg1 * t185 - 1.7241379310344827 * t198,
+                garm_vy_leg1 * t220 + minus_gcross_vy_leg1 * t222 - t210,
+                garm_vy_leg1 * t238 - minus_gcross_vy_leg1 * t209, t198, t318,
+                -(garm_vy_leg2 * t325), garm_vy_leg2 * t330, t318, garm_vy_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2), garm_vy_leg2,
-                -(minus_gcross_vy_leg2 * t357), -(minus_gcross_vy_leg2 * t379),
-                -(minus_gcross_vy_leg2 * t396), minus_gcross_vy_leg2 * t376,
-                minus_gcross_vy_leg2 * t411, 0.0,
-                -(garm_vy_leg2 * t429 + minus_gcross_vy_leg2 * t443),
-                garm_vy_leg2 * t464 + minus_gcross_vy_leg2 * t466,
-                garm_vy_leg2 * t483 - minus_gcross_vy_leg2 * t454, garm_vy_leg2 * t433, -t552,
-                minus_garm_vy_leg3 * t559, -(minus_garm_vy_leg3 * t564), -t552,
+                -(minus_gcross_vy_leg2 * t360), -(minus_gcross_vy_leg2 * t382),
+                -(minus_gcross_vy_leg2 * t398), minus_gcross_vy_leg2 * t407,
+                minus_gcross_vy_leg2 * t414, 0.0,
+                -(garm_vy_leg2 * t433 + minus_gcross_vy_leg2 * t446),
+                garm_vy_leg2 * t468 + minus_gcross_vy_leg2 * t470,
+                garm_vy_leg2 * t487 - minus_gcross_vy_leg2 * t457, garm_vy_leg2 * t437, -t557,
+                minus_garm_vy_leg3 * t564, -(minus_garm_vy_leg3 * t569), -t557,
                 minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
-                -minus_garm_vy_leg3, gcross_vy_leg3 * t596 + t603, gcross_vy_leg3 * t615 - t620,
-                gcross_vy_leg3 * t631 - minus_grod_vy_leg3 * t590, gcross_vy_leg3 * t613 - t603,
-                -(gcross_vy_leg3 * t648 + t638), t655,
-                1.7241379310344827 * t680 - minus_garm_vy_leg3 * t675,
-                t692 - (minus_garm_vy_leg3 * t702 + gcross_vy_leg3 * t704),
-                gcross_vy_leg3 * t691 - minus_garm_vy_leg3 * t721, -t680, -t792,
-                minus_garm_vy_leg4 * t799, -(minus_garm_vy_leg4 * t804), -t792,
+                -minus_garm_vy_leg3, gcross_vy_leg3 * t602 + t609,
+                gcross_vy_leg3 * t624 - minus_grod_vy_leg3 * t628,
+                gcross_vy_leg3 * t640 - minus_grod_vy_leg3 * t596, gcross_vy_leg3 * t622 - t609,
+                -(gcross_vy_leg3 * t655 + t658), minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                1.7241379310344827 * t687 - minus_garm_vy_leg3 * t682,
+                t699 - (minus_garm_vy_leg3 * t709 + gcross_vy_leg3 * t711),
+                gcross_vy_leg3 * t698 - minus_garm_vy_leg3 * t728, -t687, -t797,
+                minus_garm_vy_leg4 * t804, -(minus_garm_vy_leg4 * t809), -t797,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), -minus_garm_vy_leg4,
-                gcross_vy_leg4 * t835, gcross_vy_leg4 * t859, gcross_vy_leg4 * t873,
-                gcross_vy_leg4 * t857, gcross_vy_leg4 * t889, 0.0,
-                minus_garm_vy_leg4 * t906 + gcross_vy_leg4 * t918,
-                -(minus_garm_vy_leg4 * t939 + gcross_vy_leg4 * t941),
-                gcross_vy_leg4 * t929 - minus_garm_vy_leg4 * t957, -(minus_garm_vy_leg4 * t909),
-                0.0, -t979, -t976, acceleration[1],
+                gcross_vy_leg4 * t840, gcross_vy_leg4 * t865, gcross_vy_leg4 * t879,
+                -(gcross_vy_leg4 * t863), gcross_vy_leg4 * t895, 0.0,
+                minus_garm_vy_leg4 * t912 + gcross_vy_leg4 * t926,
+                -(minus_garm_vy_leg4 * t948 + gcross_vy_leg4 * t950),
+                gcross_vy_leg4 * t937 - minus_garm_vy_leg4 * t966, -(minus_garm_vy_leg4 * t916),
+                0.0, -t988, -t985, acceleration[1],
             ],
             [
-                -t71, minus_garm_vz_leg1 * t76, -(minus_garm_vz_leg1 * t81), -t71,
+                -t72, minus_garm_vz_leg1 * t77, -(minus_garm_vz_leg1 * t82), -t72,
                 -(minus_garm_vz_leg1 * rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1), -minus_garm_vz_leg1,
-                -(minus_minus_gcross_vz_leg1 * t113), minus_minus_gcross_vz_leg1 * t133,
-                minus_minus_gcross_vz_leg1 * t150, minus_minus_gcross_vz_leg1 * t130,
-                minus_minus_gcross_vz_leg1 * t165, 0.0,
-                -(minus_garm_vz_leg1 * t183 - minus_minus_gcross_vz_leg1 * t192),
-                -(minus_minus_gcross_vz_leg1 * t220 + minus_garm_vz_leg1 * t218),
-                -(minus_garm_vz_leg1 * t236 - minus_minus_gcross_vz_leg1 * t208),
-                -(minus_garm_vz_leg1 * t196), -t316, minus_garm_vz_leg2 * t321,
-                -(minus_garm_vz_leg2 * t326), -t316, -(minus_garm_vz_leg2 * rate_arm_leg2),
+                -(minus_minus_gcross_vz_leg1 * t112), minus_minus_gcross_vz_leg1 * t135,
+                minus_minus_gcross_vz_leg1 * t151, minus_minus_gcross_vz_leg1 * t132,
+                minus_minus_gcross_vz_leg1 * t166, 0.0,
+                -(minus_garm_vz_leg1 * t185 - minus_minus_gcross_vz_leg1 * t193),
+                -(minus_minus_gcross_vz_leg1 * t222 + minus_garm_vz_leg1 * t220),
+                -(minus_garm_vz_leg1 * t238 - minus_minus_gcross_vz_leg1 * t209),
+                -(minus_garm_vz_leg1 * t197), -t320, minus_garm_vz_leg2 * t325,
+                -(minus_garm_vz_leg2 * t330), -t320, -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -::overact::math::signed(minus_garm_vz_leg2, rate_arm_leg2), -minus_garm_vz_leg2,
-                gcross_vz_leg2 * t357, gcross_vz_leg2 * t379, gcross_vz_leg2 * t396,
-                -(gcross_vz_leg2 * t376), -(gcross_vz_leg2 * t411), 0.0,
-                gcross_vz_leg2 * t443 + minus_garm_vz_leg2 * t429,
-                -(minus_garm_vz_leg2 * t464 + gcross_vz_leg2 * t466),
-                gcross_vz_leg2 * t454 - minus_garm_vz_leg2 * t483, -(minus_garm_vz_leg2 * t433),
-                -t554, minus_garm_vz_leg3 * t559, -(minus_garm_vz_leg3 * t564), -t554,
+                gcross_vz_leg2 * t360, gcross_vz_leg2 * t382, gcross_vz_leg2 * t398,
+                -(gcross_vz_leg2 * t407), -(gcross_vz_leg2 * t414), 0.0,
+                gcross_vz_leg2 * t446 + minus_garm_vz_leg2 * t433,
+                -(minus_garm_vz_leg2 * t468 + gcross_vz_leg2 * t470),
+                gcross_vz_leg2 * t457 - minus_garm_vz_leg2 * t487, -(minus_garm_vz_leg2 * t437),
+                -t559, minus_garm_vz_leg3 * t564, -(minus_garm_vz_leg3 * t569), -t559,
                 minus_garm_vz_leg3 * minus_rate_arm_leg3,
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t596, gcross_vz_leg3 * t615,
-                gcross_vz_leg3 * t631, gcross_vz_leg3 * t613, -(gcross_vz_leg3 * t648), 0.0,
-                gcross_vz_leg3 * t664 - minus_garm_vz_leg3 * t675,
-                -(minus_garm_vz_leg3 * t702 + gcross_vz_leg3 * t704),
-                gcross_vz_leg3 * t691 - minus_garm_vz_leg3 * t721, -(minus_garm_vz_leg3 * t679),
-                -t794, minus_garm_vz_leg4 * t799, -(minus_garm_vz_leg4 * t804), -t794,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t602, gcross_vz_leg3 * t624,
+                gcross_vz_leg3 * t640, gcross_vz_leg3 * t622, -(gcross_vz_leg3 * t655), 0.0,
+                gcross_vz_leg3 * t673 - minus_garm_vz_leg3 * t682,
+                -(minus_garm_vz_leg3 * t709 + gcross_vz_leg3 * t711),
+                gcross_vz_leg3 * t698 - minus_garm_vz_leg3 * t728, -(minus_garm_vz_leg3 * t686),
+                -t799, minus_garm_vz_leg4 * t804, -(minus_garm_vz_leg4 * t809), -t799,
                 -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg4,
-                gcross_vz_leg4 * t835, gcross_vz_leg4 * t859, gcross_vz_leg4 * t873,
-                gcross_vz_leg4 * t857, gcross_vz_leg4 * t889, 0.0,
-                minus_garm_vz_leg4 * t906 + gcross_vz_leg4 * t918,
-                -(minus_garm_vz_leg4 * t939 + gcross_vz_leg4 * t941),
-                gcross_vz_leg4 * t929 - minus_garm_vz_leg4 * t957, -(minus_garm_vz_leg4 * t909),
+                gcross_vz_leg4 * t840, gcross_vz_leg4 * t865, gcross_vz_leg4 * t879,
+                -(gcross_vz_leg4 * t863), gcross_vz_leg4 * t895, 0.0,
+                minus_garm_vz_leg4 * t912 + gcross_vz_leg4 * t926,
+                -(minus_garm_vz_leg4 * t948 + gcross_vz_leg4 * t950),
+                gcross_vz_leg4 * t937 - minus_garm_vz_leg4 * t966, -(minus_garm_vz_leg4 * t916),
                 0.0, 0.0, 0.0, acceleration[2] + 9.81,
             ],
             [
-                t75, -(garm_wz_leg1 * t76), garm_wz_leg1 * t81, t75, garm_wz_leg1 * rate_arm_leg1,
+                t76, -(garm_wz_leg1 * t77), garm_wz_leg1 * t82, t76, garm_wz_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_wz_leg1, rate_arm_leg1), garm_wz_leg1,
-                -(gcross_wz_leg1 * t113 + t128), gcross_wz_leg1 * t133 + t21 * t138,
-                gcross_wz_leg1 * t150 - t21 * t153, gcross_wz_leg1 * t130 + t128,
-                gcross_wz_leg1 * t165 - t21 * t168, t21 * t174,
-                garm_wz_leg1 * t183 + gcross_wz_leg1 * t192 - t36 * t210,
-                garm_wz_leg1 * t218 - gcross_wz_leg1 * t220 - t210,
-                garm_wz_leg1 * t236 + gcross_wz_leg1 * t208, garm_wz_leg1 * t196, t320,
-                -(garm_wz_leg2 * t321), garm_wz_leg2 * t326, t320, garm_wz_leg2 * rate_arm_leg2,
+                -(gcross_wz_leg1 * t112 + t128), gcross_wz_leg1 * t135 + grod_wz_leg1 * t138,
+                gcross_wz_leg1 * t151 - grod_wz_leg1 * t109, gcross_wz_leg1 * t132 + t128,
+                gcross_wz_leg1 * t166 - t21 * t169, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t185 + gcross_wz_leg1 * t193 - t35 * t211,
+                garm_wz_leg1 * t220 - gcross_wz_leg1 * t222 - t211,
+                garm_wz_leg1 * t238 + gcross_wz_leg1 * t209, garm_wz_leg1 * t197, t324,
+                -(garm_wz_leg2 * t325), garm_wz_leg2 * t330, t324, garm_wz_leg2 * rate_arm_leg2,
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2), garm_wz_leg2,
-                -(minus_gcross_wz_leg2 * t357 + t372), t270 * t384 - minus_gcross_wz_leg2 * t379,
-                -(t270 * t398 + minus_gcross_wz_leg2 * t396), t372 + minus_gcross_wz_leg2 * t376,
-                minus_gcross_wz_leg2 * t411 - t270 * t413, -(t270 * t420),
-                -(garm_wz_leg2 * t429 + minus_gcross_wz_leg2 * t443 + t257 * t456),
-                garm_wz_leg2 * t464 + minus_gcross_wz_leg2 * t466 - t456,
-                garm_wz_leg2 * t483 - minus_gcross_wz_leg2 * t454, garm_wz_leg2 * t433, t558,
-                -(garm_wz_leg3 * t559), garm_wz_leg3 * t564, t558,
+                -(minus_gcross_wz_leg2 * t360 + t376),
+                grod_wz_leg2 * t385 - minus_gcross_wz_leg2 * t382,
+                -(grod_wz_leg2 * t355 + minus_gcross_wz_leg2 * t398),
+                t376 + minus_gcross_wz_leg2 * t407, minus_gcross_wz_leg2 * t414 - t272 * t416,
+                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                -(garm_wz_leg2 * t433 + minus_gcross_wz_leg2 * t446 + t259 * t459),
+                garm_wz_leg2 * t468 + minus_gcross_wz_leg2 * t470 - t459,
+                garm_wz_leg2 * t487 - minus_gcross_wz_leg2 * t457, garm_wz_leg2 * t437, t563,
+                -(garm_wz_leg3 * t564), garm_wz_leg3 * t569, t563,
                 -(garm_wz_leg3 * minus_rate_arm_leg3),
                 -::overact::math::signed(garm_wz_leg3, minus_rate_arm_leg3), garm_wz_leg3,
-                gcross_wz_leg3 * t596 - t611, gcross_wz_leg3 * t615 + t21 * t620,
-                gcross_wz_leg3 * t631 + t516 * t639, gcross_wz_leg3 * t613 + t611,
-                t639 - gcross_wz_leg3 * t648, -(t21 * t655),
-                garm_wz_leg3 * t675 + gcross_wz_leg3 * t664 - t516 * t693,
-                garm_wz_leg3 * t702 - gcross_wz_leg3 * t704 - t693,
-                garm_wz_leg3 * t721 + gcross_wz_leg3 * t691, garm_wz_leg3 * t679, t798,
-                -(garm_wz_leg4 * t799), garm_wz_leg4 * t804, t798, garm_wz_leg4 * rate_arm_leg4,
+                gcross_wz_leg3 * t602 - t618, gcross_wz_leg3 * t624 + grod_wz_leg3 * t628,
+                gcross_wz_leg3 * t640 + grod_wz_leg3 * t596, gcross_wz_leg3 * t622 + t618,
+                t21 * t658 - gcross_wz_leg3 * t655, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
+                garm_wz_leg3 * t682 + gcross_wz_leg3 * t673 - t521 * t700,
+                garm_wz_leg3 * t709 - gcross_wz_leg3 * t711 - t700,
+                garm_wz_leg3 * t728 + gcross_wz_leg3 * t698, garm_wz_leg3 * t686, t803,
+                -(garm_wz_leg4 * t804), garm_wz_leg4 * t809, t803, garm_wz_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t835 + t850), t270 * t855 - minus_gcross_wz_leg4 * t859,
-                t741 * t879 - minus_gcross_wz_leg4 * t873, t850 - minus_gcross_wz_leg4 * t857,
-                t879 - minus_gcross_wz_leg4 * t889, t270 * t896,
-                -(garm_wz_leg4 * t906 + minus_gcross_wz_leg4 * t918 + t741 * t931),
-                garm_wz_leg4 * t939 + minus_gcross_wz_leg4 * t941 - t931,
-                garm_wz_leg4 * t957 - minus_gcross_wz_leg4 * t929, garm_wz_leg4 * t909,
+                -(minus_gcross_wz_leg4 * t840 + t855), t272 * t859 - minus_gcross_wz_leg4 * t865,
+                t748 * t885 - minus_gcross_wz_leg4 * t879, t855 + minus_gcross_wz_leg4 * t863,
+                t885 - minus_gcross_wz_leg4 * t895, t272 * t902,
+                -(garm_wz_leg4 * t912 + minus_gcross_wz_leg4 * t926 + t748 * t939),
+                garm_wz_leg4 * t948 + minus_gcross_wz_leg4 * t950 - t939,
+                garm_wz_leg4 * t966 - minus_gcross_wz_leg4 * t937, garm_wz_leg4 * t916,
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
             ],
@@ -3344,7 +3350,7 @@ impl Schoenflies4 {
     /// Output: 4 x 72.
     /// Columns: `PARAMETERS`.
     ///
-    /// 1230 operations (419 additions, 765 multiplications, 46 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1001 intermediates.
+    /// 1260 operations (429 additions, 793 multiplications, 38 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 1031 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3361,653 +3367,662 @@ impl Schoenflies4 {
         let t4 = t2 - t3;
         let t6 = pose[0] + t4 - 0.24;
         let t7 = 0.52 * t6;
-        let t9 = pose[2] * pose[2];
-        let t10 = t6 * t6 + t9;
-        let t11 = 0.05 * s_phi;
-        let t12 = 0.08660254037844387 * c_phi;
-        let t13 = t11 + t12;
-        let t14 = pose[1] + t13;
-        let t16 = t14 * t14 + -0.3364;
-        let t17 = t10 + t16;
+        let t8 = t6 * t6;
+        let t9 = 0.05 * s_phi;
+        let t10 = 0.08660254037844387 * c_phi;
+        let t11 = t9 + t10;
+        let t12 = pose[1] + t11;
+        let t13 = t12 * t12;
+        let t15 = pose[2] * pose[2];
+        let t17 = t8 + t13 + t15 - 0.3364;
         let t18 = t17 + 0.0676;
         let t20 = 0.52 * pose[2];
-        let t21 = 0.2704 * t10;
-        let t23 = t21 - t18 * t18;
-        ::overact::guard::reach(t23, "leg1")?;
-        let t24 = ::overact::math::sqrt(t23);
-        let c_arm_leg1 = (t7 * t18 - t20 * t24) / t21;
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t16));
-        let t32 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t17 + -0.0676) / t32;
-        let minus_s_arm_leg1 = (t20 * t18 + t7 * t24) / t21;
-        let s_cross_leg1 = t24 / t32;
+        let t22 = 0.2704 * (t8 + t15);
+        let t24 = t22 - t18 * t18;
+        ::overact::guard::reach(t24, "leg1")?;
+        let t25 = ::overact::math::sqrt(t24);
+        let c_arm_leg1 = (t7 * t18 - t20 * t25) / t22;
+        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * (t13 + -0.3364)));
+        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
+        let c_cross_leg1 = (t17 + -0.0676) / (0.3016 * c_rod_leg1);
+        let minus_s_arm_leg1 = (t20 * t18 + t7 * t25) / t22;
+        let t42 = 0.58 * c_rod_leg1;
+        let s_cross_leg1 = 1.9230769230769231 * t25 / t42;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t42 = 3.8461538461538463 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t42;
-        let t44 = garm_vx_leg1 * actuator_accelerations[0];
-        let t45 = 0.3016 / t32;
-        let grod_vy_leg1 = 1.7241379310344827 * t45;
-        let t47 = t14 * grod_vy_leg1;
-        let garm_vy_leg1 = t42 * t47;
-        let t49 = garm_vy_leg1 * actuator_accelerations[0];
+        let t46 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t46;
+        let t48 = garm_vx_leg1 * actuator_accelerations[0];
+        let t49 = 1.0 / c_rod_leg1;
+        let grod_vy_leg1 = 1.7241379310344827 * t49;
+        let t51 = t12 * grod_vy_leg1;
+        let garm_vy_leg1 = t46 * t51;
+        let t53 = garm_vy_leg1 * actuator_accelerations[0];
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t42;
-        let t54 = minus_garm_vz_leg1 * actuator_accelerations[0];
-        let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
-        let t58 = garm_wz_leg1 * actuator_accelerations[0];
-        let t59 = 9.81 * c_arm_leg1;
-        let t64 = 9.81 * minus_s_arm_leg1;
-        let t69 = garm_vx_leg1 * actuator_velocities[0];
-        let t70 = garm_vy_leg1 * actuator_velocities[0];
-        let t71 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t72 = garm_wz_leg1 * actuator_velocities[0];
-        let t77 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t77;
-        let t79 = t3 + t2;
-        let t81 = pose[1] + t79 - 0.24;
-        let t82 = 0.52 * t81;
-        let t84 = t81 * t81 + t9;
-        let t85 = t12 - t11;
-        let t86 = pose[0] + t85;
-        let t88 = 0.3364 - t86 * t86;
-        let t89 = t84 - t88;
-        let t90 = t89 + 0.0676;
-        let t92 = 0.2704 * t84;
-        let t94 = t92 - t90 * t90;
-        ::overact::guard::reach(t94, "leg2")?;
-        let t95 = ::overact::math::sqrt(t94);
-        let c_arm_leg2 = (t82 * t90 - t20 * t95) / t92;
-        let t100 = 2.972651605231867 * t88;
-        ::overact::guard::reach(t100, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t100);
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t46;
+        let t58 = minus_garm_vz_leg1 * actuator_accelerations[0];
+        let garm_wz_leg1 = t4 * garm_vy_leg1 - t11 * garm_vx_leg1;
+        let t62 = garm_wz_leg1 * actuator_accelerations[0];
+        let t63 = 9.81 * c_arm_leg1;
+        let t68 = 9.81 * minus_s_arm_leg1;
+        let t73 = garm_vx_leg1 * actuator_velocities[0];
+        let t74 = garm_vy_leg1 * actuator_velocities[0];
+        let t75 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t76 = garm_wz_leg1 * actuator_velocities[0];
+        let t81 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t81;
+        let s_rod_leg1 = 1.7241379310344827 * t12;
+        let t85 = t3 + t2;
+        let t87 = pose[1] + t85 - 0.24;
+        let t88 = 0.52 * t87;
+        let t89 = t10 - t9;
+        let t90 = pose[0] + t89;
+        let t91 = t90 * t90;
+        let t92 = t87 * t87;
+        let t95 = t91 + t92 + t15 - 0.3364;
+        let t96 = t95 + 0.0676;
+        let t99 = 0.2704 * (t92 + t15);
+        let t101 = t99 - t96 * t96;
+        ::overact::guard::reach(t101, "leg2")?;
+        let t102 = ::overact::math::sqrt(t101);
+        let c_arm_leg2 = (t88 * t96 - t20 * t102) / t99;
+        let t108 = 1.0 - 2.972651605231867 * t91;
+        ::overact::guard::reach(t108, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t108);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t102 = 0.3016 * c_rod_leg2;
-        let c_cross_leg2 = (-0.0676 + t89) / t102;
-        let minus_s_arm_leg2 = (t20 * t90 + t82 * t95) / t92;
-        let t109 = 0.8620689655172413 * t95;
-        let t110 = t109 / c_rod_leg2;
-        let s_cross_leg2 = 3.8461538461538463 * t110;
+        let t110 = 0.3016 * c_rod_leg2;
+        let c_cross_leg2 = (-0.0676 + t95) / t110;
+        let minus_s_arm_leg2 = (t20 * t96 + t88 * t102) / t99;
+        let t118 = 0.58 * c_rod_leg2;
+        let s_cross_leg2 = 1.9230769230769231 * t102 / t118;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t114 = 3.8461538461538463 / s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t114;
-        let t116 = garm_vy_leg2 * actuator_velocities[1];
-        let t119 = pose[0] - t4 + 0.24;
-        let t121 = t119 * t119 + t9;
-        let t122 = 0.2704 * t121;
-        let t123 = pose[1] - t13;
-        let t125 = 0.3364 - t123 * t123;
-        let t126 = t121 - t125;
-        let t127 = t126 + 0.0676;
-        let t129 = t122 - t127 * t127;
-        ::overact::guard::reach(t129, "leg3")?;
-        let t130 = ::overact::math::sqrt(t129);
-        let t131 = 2.972651605231867 * t125;
-        ::overact::guard::reach(t131, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t131);
+        let t122 = 3.8461538461538463 / s_cross_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t122;
+        let t127 = pose[0] - t4 + 0.24;
+        let t128 = t127 * t127;
+        let t130 = 0.2704 * (t128 + t15);
+        let t131 = pose[1] - t11;
+        let t132 = t131 * t131;
+        let t135 = t128 + t132 + t15 - 0.3364;
+        let t136 = t135 + 0.0676;
+        let t138 = t130 - t136 * t136;
+        ::overact::guard::reach(t138, "leg3")?;
+        let t139 = ::overact::math::sqrt(t138);
+        let t142 = 1.0 - 2.972651605231867 * t132;
+        ::overact::guard::reach(t142, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t142);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t133 = 0.3016 * c_rod_leg3;
-        let s_cross_leg3 = t130 / t133;
+        let t144 = 0.58 * c_rod_leg3;
+        let s_cross_leg3 = 1.9230769230769231 * t139 / t144;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
-        let t135 = 3.8461538461538463 / s_cross_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t137 = t123 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t135 * t137;
-        let t139 = garm_vy_leg3 * actuator_velocities[2];
-        let t142 = pose[1] - t79 + 0.24;
-        let t143 = 0.52 * t142;
-        let t145 = t142 * t142 + t9;
-        let t146 = pose[0] - t85;
-        let t148 = 0.3364 - t146 * t146;
-        let t149 = t145 - t148;
-        let t150 = t149 + 0.0676;
-        let t152 = 0.2704 * t145;
-        let t154 = t152 - t150 * t150;
-        ::overact::guard::reach(t154, "leg4")?;
-        let t155 = ::overact::math::sqrt(t154);
-        let minus_c_arm_leg4 = (t143 * t150 + t20 * t155) / t152;
-        let t160 = 2.972651605231867 * t148;
-        ::overact::guard::reach(t160, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t160);
+        let t146 = 1.0 / s_cross_leg3;
+        let t147 = 3.8461538461538463 * t146;
+        let t148 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t148;
+        let t150 = t131 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t147 * t150;
+        let t155 = pose[1] - t85 + 0.24;
+        let t156 = 0.52 * t155;
+        let t157 = pose[0] - t89;
+        let t158 = t157 * t157;
+        let t159 = t155 * t155;
+        let t162 = t158 + t159 + t15 - 0.3364;
+        let t163 = t162 + 0.0676;
+        let t166 = 0.2704 * (t159 + t15);
+        let t168 = t166 - t163 * t163;
+        ::overact::guard::reach(t168, "leg4")?;
+        let t169 = ::overact::math::sqrt(t168);
+        let minus_c_arm_leg4 = (t156 * t163 + t20 * t169) / t166;
+        let t175 = 1.0 - 2.972651605231867 * t158;
+        ::overact::guard::reach(t175, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t175);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let c_cross_leg4 = (-0.0676 + t149) / (0.3016 * c_rod_leg4);
-        let s_arm_leg4 = (t143 * t155 - t20 * t150) / t152;
-        let t169 = 0.8620689655172413 * t155;
-        let t170 = t169 / c_rod_leg4;
-        let s_cross_leg4 = 3.8461538461538463 * t170;
+        let c_cross_leg4 = (-0.0676 + t162) / (0.3016 * c_rod_leg4);
+        let s_arm_leg4 = (t156 * t169 - t20 * t163) / t166;
+        let t185 = 0.58 * c_rod_leg4;
+        let s_cross_leg4 = 1.9230769230769231 * t169 / t185;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t174 = 3.8461538461538463 / s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t174;
-        let t176 = garm_vy_leg4 * actuator_velocities[3];
-        let minus_grod_vx_leg2 = 0.52 / t102;
-        let t179 = t86 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t114 * t179;
-        let t181 = garm_vx_leg2 * actuator_velocities[1];
-        let t183 = 0.52 * t119;
-        let minus_c_arm_leg3 = (t183 * t127 + t20 * t130) / t122;
-        let c_cross_leg3 = (-0.0676 + t126) / t133;
-        let s_arm_leg3 = (t183 * t130 - t20 * t127) / t122;
+        let t189 = 1.0 / s_cross_leg4;
+        let t190 = 3.8461538461538463 * t189;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t190;
+        let minus_grod_vx_leg2 = 0.52 / t110;
+        let t196 = t90 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t122 * t196;
+        let t200 = 0.52 * t127;
+        let minus_c_arm_leg3 = (t200 * t136 + t20 * t139) / t130;
+        let c_cross_leg3 = (-0.0676 + t135) / (0.3016 * c_rod_leg3);
+        let s_arm_leg3 = (t200 * t139 - t20 * t136) / t130;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t135;
-        let t198 = garm_vx_leg3 * actuator_velocities[2];
-        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t201 = t146 * grod_vx_leg4;
-        let garm_vx_leg4 = t174 * t201;
-        let t203 = garm_vx_leg4 * actuator_velocities[3];
-        let t204 = t69 + t181 + t198 + t203;
-        let t211 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t147;
+        let t218 = 1.0 / c_rod_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t218;
+        let t220 = t157 * grod_vx_leg4;
+        let garm_vx_leg4 = t190 * t220;
+        let t223 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t218 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t230 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t218, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t218, 19.507470815645043, "actuators")?;
-        let t219 = t211 / t218;
-        let t221 = t70 + t116 + t139 + t176 - t204 * t219;
-        let t230 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t211 * t219;
-        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t230, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t230, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t230, 19.507470815645043, "actuators")?;
+        let t231 = 1.0 / t230;
+        let t232 = t223 * t231;
+        let t234 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t223 * t232;
+        ::overact::guard::platform(t234, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t234, 16.505615550045768, "actuators")?;
+        let t235 = 1.0 / t234;
+        let t236 = garm_vy_leg2 * actuator_velocities[1];
+        let t238 = garm_vy_leg3 * actuator_velocities[2];
+        let t240 = garm_vy_leg4 * actuator_velocities[3];
+        let t242 = garm_vx_leg2 * actuator_velocities[1];
+        let t244 = garm_vx_leg3 * actuator_velocities[2];
+        let t246 = garm_vx_leg4 * actuator_velocities[3];
+        let t247 = t73 + t242 + t244 + t246;
+        let t249 = t74 + t236 + t238 + t240 - t247 * t232;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t114;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t122;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t135;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t147;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t174;
-        let t250 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t190;
+        let t269 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t251 = t250 / t218;
-        let t260 = t211 * t251
+        let t270 = t269 * t231;
+        let t279 = t223 * t270
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t261 = t260 / t230;
-        let t263 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t265 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t267 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t271 = t204 * t251 - (t71 + t263 + t265 + t267) - t261 * t221;
-        let t282 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+        let t280 = t279 * t235;
+        let t282 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t284 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t286 = minus_garm_vz_leg4 * actuator_velocities[3];
+        let t290 = t247 * t270 - (t75 + t282 + t284 + t286) - t280 * t249;
+        let t301 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t250 * t251 - t260 * t261;
-        ::overact::guard::platform(t282, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t282, 31.11733818900117, "actuators")?;
-        let garm_wz_leg2 = t85 * garm_vy_leg2 - t79 * garm_vx_leg2;
-        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let garm_wz_leg4 = t79 * garm_vx_leg4 - t85 * garm_vy_leg4;
-        let t299 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t269 * t270 - t279 * t280;
+        ::overact::guard::platform(t301, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t301, 31.11733818900117, "actuators")?;
+        let garm_wz_leg2 = t89 * garm_vy_leg2 - t85 * garm_vx_leg2;
+        let garm_wz_leg3 = t11 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let garm_wz_leg4 = t85 * garm_vx_leg4 - t89 * garm_vy_leg4;
+        let t318 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
             + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t300 = t299 / t218;
-        let t318 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t211 * t300;
-        let t319 = t318 / t230;
-        let t321 = t250 * t300
+        let t319 = t318 * t231;
+        let t337 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t223 * t319;
+        let t338 = t337 * t235;
+        let t340 = t269 * t319
             - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
                 + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t260 * t319;
-        let t322 = t321 / t282;
-        let t323 = garm_wz_leg2 * actuator_velocities[1];
-        let t325 = garm_wz_leg3 * actuator_velocities[2];
-        let t327 = garm_wz_leg4 * actuator_velocities[3];
-        let t345 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t299 * t300
-            - t318 * t319;
-        let t347 = t345 - t321 * t322;
-        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
-        let t348 = (t72 + t323 + t325 + t327 - t204 * t300 - t319 * t221 - t322 * t271)
-            / t347;
-        let t350 = t271 / t282 - t322 * t348;
-        let t354 = t221 / t230 - t261 * t350 - t319 * t348;
-        let t355 = t4 * t348;
-        let t356 = t354 + t355;
-        let t357 = 0.26 * c_cross_leg1;
-        let t365 = t204 / t218 - t219 * t354 + t251 * t350 - t300 * t348;
-        let t366 = t13 * t348;
+            - t279 * t338;
+        let t341 = t340 / t301;
+        let t342 = garm_wz_leg2 * actuator_velocities[1];
+        let t344 = garm_wz_leg3 * actuator_velocities[2];
+        let t346 = garm_wz_leg4 * actuator_velocities[3];
+        let t364 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t318 * t319
+            - t337 * t338;
+        let t366 = t364 - t340 * t341;
+        ::overact::guard::platform(t366, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t366, 0.35106548211906174, "actuators")?;
+        let t367 = (t76 + t342 + t344 + t346 - t247 * t319 - t338 * t249 - t341 * t290)
+            / t366;
+        let t369 = t290 / t301 - t341 * t367;
+        let t373 = t235 * t249 - t280 * t369 - t338 * t367;
+        let t374 = t4 * t367;
+        let t375 = t373 + t374;
+        let t376 = 0.26 * c_cross_leg1;
+        let t384 = t247 * t231 - t232 * t373 + t270 * t369 - t319 * t367;
+        let t385 = t11 * t367;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (actuator_velocities[0] * t357 + s_armcross_leg1 * (t365 - t366)
-                + c_armcross_leg1 * t350);
-        let t373 = t356 * minus_rate_cross_leg1;
-        let t374 = 1.7241379310344827 * t373;
-        let s_rod_leg1 = 1.7241379310344827 * t14;
-        let t376 = 0.26 * actuator_accelerations[0];
-        let t378 = actuator_velocities[0] * actuator_velocities[0];
-        let t380 = 0.58 * c_rod_leg1;
-        let t381 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t356;
-        let t383 = rate_rod_leg1 * rate_rod_leg1;
-        let t387 = t348 * t355;
-        let t390 = t348 * t366;
-        let t391 = t14 * t383;
-        let rate_dot_arm_leg1 = t42
-            * (t357 * t378 + t380 * (t381 + t383) - c_armcross_leg1 * t387
-                - t47 * (t390 - t391));
-        let t396 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t398 = 0.26 * c_cross_leg2;
-        let t399 = actuator_velocities[1] * actuator_velocities[1];
-        let t402 = t79 * t348;
-        let t403 = t365 - t402;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t403;
-        let t405 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t406 = t85 * t348;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * (t354 + t406) + c_armcross_leg2 * t350
-                + actuator_velocities[1] * t398);
-        let t414 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t418 = t348 * t402;
-        let t421 = t348 * t406;
-        let t422 = t86 * t405;
-        let t425 = t398 * t399 + 0.58 * c_rod_leg2 * (t405 + t414)
-            - c_armcross_leg2 * t418 - t179 * (t421 - t422);
-        let rate_dot_arm_leg2 = t114 * t425;
-        let t427 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t431 = 0.26 * c_cross_leg3;
-        let t432 = actuator_velocities[2] * actuator_velocities[2];
-        let t434 = 0.58 * c_rod_leg3;
-        let t435 = t354 - t355;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t435;
-        let t437 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * (t365 + t366) + minus_c_armcross_leg3 * t350
-                - actuator_velocities[2] * t431);
-        let t445 = rate_cross_leg3 * rate_cross_leg3;
-        let t446 = t437 + t445;
-        let t450 = t123 * t437;
-        let rate_dot_arm_leg3 = t135
-            * (minus_c_armcross_leg3 * t387 + t431 * t432 + t434 * t446
-                + t137 * (t390 + t450));
-        let t455 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t459 = 0.26 * c_cross_leg4;
-        let t460 = actuator_velocities[3] * actuator_velocities[3];
-        let t463 = t365 + t402;
-        let rate_rod_leg4 = grod_vx_leg4 * t463;
-        let t465 = rate_rod_leg4 * rate_rod_leg4;
-        let rate_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * (t354 - t406) + minus_c_armcross_leg4 * t350
-                - actuator_velocities[3] * t459);
-        let t473 = rate_cross_leg4 * rate_cross_leg4;
-        let t478 = t146 * t465;
-        let t481 = minus_c_armcross_leg4 * t418 + t459 * t460
-            + 0.58 * c_rod_leg4 * (t465 + t473) + t201 * (t421 + t478);
-        let rate_dot_arm_leg4 = t174 * t481;
-        let t483 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t485 = garm_vx_leg1 * t396 + garm_vx_leg2 * t427 + garm_vx_leg3 * t455
-            + garm_vx_leg4 * t483;
-        let t495 = garm_vy_leg1 * t396 + garm_vy_leg2 * t427 + garm_vy_leg3 * t455
-            + garm_vy_leg4 * t483 - t219 * t485;
-        let t507 = t251 * t485
-            - (minus_garm_vz_leg1 * t396 + minus_garm_vz_leg2 * t427
-                + minus_garm_vz_leg3 * t455 + minus_garm_vz_leg4 * t483) - t261 * t495;
-        let t519 = garm_wz_leg1 * t396 + garm_wz_leg2 * t427 + garm_wz_leg3 * t455
-            + garm_wz_leg4 * t483 - t300 * t485 - t319 * t495;
-        let t522 = (t519 - t322 * t507) / t347;
-        let t524 = t507 / t282 - t322 * t522;
-        let t528 = t495 / t230 - t261 * t524 - t319 * t522;
-        let t534 = t485 / t218 - t219 * t528 + t251 * t524 - t300 * t522;
-        let t535 = t13 * t522;
-        let t541 = 0.26 * t378;
-        let t543 = t47 * t373;
-        let t547 = c_cross_leg1 * t376 + s_armcross_leg1 * (t534 - t535 - t387)
-            + c_armcross_leg1 * t524 + s_cross_leg1 * t541 + t543 + t543;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t547;
-        let t549 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t551 = t374 + t549 + t374;
-        let t552 = c_rod_leg1 * t551;
-        let t553 = t47 * t552;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t357 * garm_vy_leg1);
-        let t559 = t14 * (2.972651605231867 * t381);
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t77;
-        let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
+            * (actuator_velocities[0] * t376 + s_armcross_leg1 * (t384 - t385)
+                + c_armcross_leg1 * t369);
+        let t392 = t375 * minus_rate_cross_leg1;
+        let t393 = 1.7241379310344827 * t392;
+        let t394 = 0.26 * actuator_accelerations[0];
+        let t396 = actuator_velocities[0] * actuator_velocities[0];
+        let t398 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t375;
+        let t400 = rate_rod_leg1 * rate_rod_leg1;
+        let t404 = t367 * t374;
+        let t407 = t367 * t385;
+        let t408 = t12 * t400;
+        let rate_dot_arm_leg1 = t46
+            * (t376 * t396 + t42 * (t398 + t400) - c_armcross_leg1 * t404
+                - t51 * (t407 - t408));
+        let t413 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t415 = 0.26 * c_cross_leg2;
+        let t416 = actuator_velocities[1] * actuator_velocities[1];
+        let t418 = t85 * t367;
+        let t419 = t384 - t418;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t419;
+        let t421 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t422 = t415 * garm_vx_leg2;
+        let t423 = t422 * t419;
+        let t426 = t89 * t367;
+        let t432 = actuator_velocities[1] * t415 - t423 + s_armcross_leg2 * (t373 + t426)
+            + c_armcross_leg2 * t369 + t423;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t432;
+        let t434 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t438 = t367 * t418;
+        let t441 = t367 * t426;
+        let t442 = t90 * t421;
+        let rate_dot_arm_leg2 = t122
+            * (t415 * t416 + t118 * (t421 + t434) - c_armcross_leg2 * t438
+                - t196 * (t441 - t442));
+        let t447 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t451 = 0.26 * c_cross_leg3;
+        let t452 = actuator_velocities[2] * actuator_velocities[2];
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * (t373 - t374);
+        let t456 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t462 = s_armcross_leg3 * (t384 + t385) + minus_c_armcross_leg3 * t369
+            - actuator_velocities[2] * t451;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t462;
+        let t464 = rate_cross_leg3 * rate_cross_leg3;
+        let t465 = t456 + t464;
+        let t469 = t131 * t456;
+        let rate_dot_arm_leg3 = t147
+            * (minus_c_armcross_leg3 * t404 + t451 * t452 + t144 * t465
+                + t150 * (t407 + t469));
+        let t474 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t478 = 0.26 * c_cross_leg4;
+        let t479 = actuator_velocities[3] * actuator_velocities[3];
+        let rate_rod_leg4 = grod_vx_leg4 * (t384 + t418);
+        let t483 = rate_rod_leg4 * rate_rod_leg4;
+        let t489 = s_armcross_leg4 * (t373 - t426) + minus_c_armcross_leg4 * t369
+            - actuator_velocities[3] * t478;
+        let rate_cross_leg4 = grod_vx_leg4 * t489;
+        let t491 = rate_cross_leg4 * rate_cross_leg4;
+        let t496 = t157 * t483;
+        let rate_dot_arm_leg4 = t190
+            * (minus_c_armcross_leg4 * t438 + t478 * t479 + t185 * (t483 + t491)
+                + t220 * (t441 + t496));
+        let t501 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t503 = garm_vx_leg1 * t413 + garm_vx_leg2 * t447 + garm_vx_leg3 * t474
+            + garm_vx_leg4 * t501;
+        let t513 = garm_vy_leg1 * t413 + garm_vy_leg2 * t447 + garm_vy_leg3 * t474
+            + garm_vy_leg4 * t501 - t232 * t503;
+        let t525 = t270 * t503
+            - (minus_garm_vz_leg1 * t413 + minus_garm_vz_leg2 * t447
+                + minus_garm_vz_leg3 * t474 + minus_garm_vz_leg4 * t501) - t280 * t513;
+        let t537 = garm_wz_leg1 * t413 + garm_wz_leg2 * t447 + garm_wz_leg3 * t474
+            + garm_wz_leg4 * t501 - t319 * t503 - t338 * t513;
+        let t540 = (t537 - t341 * t525) / t366;
+        let t542 = t525 / t301 - t341 * t540;
+        let t546 = t235 * t513 - t280 * t542 - t338 * t540;
+        let t552 = t231 * t503 - t232 * t546 + t270 * t542 - t319 * t540;
+        let t553 = t11 * t540;
+        let t559 = 0.26 * t396;
+        let t561 = t51 * t392;
+        let t565 = c_cross_leg1 * t394 + s_armcross_leg1 * (t552 - t553 - t404)
+            + c_armcross_leg1 * t542 + s_cross_leg1 * t559 + t561 + t561;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t565;
+        let t567 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t569 = t393 + t567 + t393;
+        let t570 = s_rod_leg1 * t569;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t376 * garm_vy_leg1);
+        let t575 = 2.972651605231867 * t398;
+        let t576 = t12 * t575;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t81;
+        let gcross_wz_leg1 = t11 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
         let grod_wz_leg1 = t4 * grod_vy_leg1;
-        let t568 = t380 * t559;
-        let t569 = grod_wz_leg1 * t568;
-        let t571 = t553 - minus_rate_dot_cross_leg1;
-        let t573 = t47 * t571 - t552;
-        let t575 = t47 * t568;
-        let t576 = t383 - t575;
-        let t577 = t381 + t576;
-        let t578 = t575 + t383;
-        let t579 = t578 - t577;
-        let t587 = t4 * t522;
-        let t589 = t528 + t587 - t390;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t589 + t391);
-        let t592 = t568 + rate_dot_rod_leg1;
-        let t595 = s_rod_leg1 * t592 + c_rod_leg1 * t576;
-        let t610 = 1.7241379310344827 * t589;
-        let t613 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t623 = 0.8620689655172413 * t24;
-        let t625 = t45 * t623;
-        let t626 = s_rod_leg1 * t625;
-        let t629 = t357 * (t45 * t571) - (t623 * t577 + t626 * t592);
-        let t631 = t376 - t59;
-        let t633 = t64 - t541;
-        let t635 = c_cross_leg1 * t631 - s_cross_leg1 * t633;
-        let t636 = c_rod_leg1 * t635;
-        let t640 = 0.26 * t631;
-        let t641 = garm_vy_leg1 * t640;
-        let t652 = c_cross_leg1 * t633 + s_cross_leg1 * t631;
-        let t653 = 1.7241379310344827 * t652;
-        let t654 = t4 * t653;
-        let t662 = t623 * (t568 - rate_dot_rod_leg1) + t626 * t578 + t357 * t551;
-        let t664 = s_rod_leg1 * t635;
-        let t680 = t357 * t381 - minus_rate_dot_cross_leg1 * t625;
-        let t696 = garm_vx_leg2 * actuator_accelerations[1];
-        let t697 = garm_vy_leg2 * actuator_accelerations[1];
-        let t698 = minus_garm_vz_leg2 * actuator_accelerations[1];
-        let t699 = garm_wz_leg2 * actuator_accelerations[1];
-        let t700 = 9.81 * c_arm_leg2;
-        let t705 = 9.81 * minus_s_arm_leg2;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t398 * garm_vx_leg2);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t86;
-        let t717 = t403 * minus_rate_cross_leg2;
-        let t718 = 1.7241379310344827 * t717;
-        let t719 = t85 * t522;
-        let t725 = 0.26 * t399;
-        let t727 = t179 * t717;
-        let t732 = s_armcross_leg2 * (t528 + t719 - t418) + c_armcross_leg2 * t524
-            + s_cross_leg2 * t725 + t727 + t727 + actuator_accelerations[1] * t398;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t732;
-        let t734 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t736 = t718 + t734 + t718;
-        let t737 = minus_s_rod_leg2 * t736;
-        let t739 = t100 * t414;
-        let t740 = t179 * t739;
-        let t741 = minus_grod_vx_leg2 * t740;
-        let t743 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t743;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t743;
-        let t748 = t79 * t741;
-        let gcross_wz_leg2 = t79 * minus_gcross_vx_leg2 - t85 * minus_gcross_vy_leg2;
-        let t755 = t737 - minus_rate_dot_cross_leg2;
-        let t757 = c_rod_leg2 * t736 - t179 * t755;
-        let t759 = t414 - t739;
-        let t761 = minus_grod_vx_leg2 * (t759 - t739);
-        let t768 = t79 * t522;
-        let t770 = t534 - t768 - t421;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t770 + t422);
-        let t773 = t740 + minus_rate_dot_rod_leg2;
-        let t777 = minus_s_rod_leg2 * t773 + c_rod_leg2 * (t405 - t759);
-        let t779 = minus_grod_vx_leg2 * t734;
-        let t792 = 1.7241379310344827 * t770;
-        let t794 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t801 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t807 = t179 * t109;
-        let t810 = t398 * (t755 / c_rod_leg2) - (t109 * (t739 + t405) + t807 * t773);
-        let t813 = 0.26 * actuator_accelerations[1] - t700;
-        let t814 = 0.26 * t813;
-        let t815 = garm_vx_leg2 * t814;
-        let t820 = t705 - t725;
-        let t822 = c_cross_leg2 * t813 - s_cross_leg2 * t820;
-        let t823 = c_rod_leg2 * t822;
-        let t834 = c_cross_leg2 * t820 + s_cross_leg2 * t813;
-        let t835 = 1.7241379310344827 * t834;
-        let t836 = t79 * t835;
-        let t845 = t109 * (minus_rate_dot_rod_leg2 - t740) - t807 * (t759 + t405)
-            - t398 * t736;
-        let t847 = minus_s_rod_leg2 * t822;
-        let t863 = t398 * t414 - minus_rate_dot_cross_leg2 * t110;
-        let t879 = garm_vx_leg3 * actuator_accelerations[2];
-        let t880 = garm_vy_leg3 * actuator_accelerations[2];
-        let t881 = minus_garm_vz_leg3 * actuator_accelerations[2];
-        let t882 = garm_wz_leg3 * actuator_accelerations[2];
-        let t883 = 9.81 * minus_c_arm_leg3;
-        let t888 = 9.81 * s_arm_leg3;
-        let t897 = minus_grod_vy_leg3 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t897;
-        let t899 = t435 * rate_cross_leg3;
-        let t900 = 1.7241379310344827 * t899;
-        let minus_s_rod_leg3 = 1.7241379310344827 * t123;
-        let t907 = 0.8620689655172413 * t130;
-        let t908 = t907 / c_rod_leg3;
-        let t910 = t137 * t899;
-        let t914 = 0.26 * actuator_accelerations[2];
-        let t916 = s_armcross_leg3 * (t534 + t535 + t387) + minus_c_armcross_leg3 * t524
-            - (t432 * t908 - (t910 + t910)) - c_cross_leg3 * t914;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t916;
-        let t918 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t920 = t900 + t918 + t900;
-        let t921 = c_rod_leg3 * t920;
-        let t922 = t137 * t921;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t431 * garm_vy_leg3);
-        let t928 = t123 * (2.972651605231867 * t445);
-        let gcross_vz_leg3 = s_arm_leg3 * t897;
-        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
-        let t936 = t4 * t928;
-        let t938 = rate_dot_cross_leg3 - t922;
-        let t939 = t938 / c_rod_leg3;
-        let t941 = minus_s_rod_leg3 * t939 + t921;
-        let t944 = t434 * t928;
-        let t945 = t137 * t944;
-        let t946 = t446 - t945;
-        let t947 = t945 + t437;
-        let t949 = minus_grod_vy_leg3 * (t947 - t946);
-        let t956 = t528 - t587 + t390;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t956 + t450);
-        let t959 = t944 + minus_rate_dot_rod_leg3;
-        let t963 = minus_s_rod_leg3 * t959 + c_rod_leg3 * (t437 - t945);
-        let t965 = minus_grod_vy_leg3 * t918;
-        let t978 = 1.7241379310344827 * t956;
-        let t981 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t987 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
-        let t990 = t888 + 0.26 * t432;
-        let t992 = t883 + t914;
-        let t994 = s_cross_leg3 * t990 + c_cross_leg3 * t992;
-        let t995 = c_rod_leg3 * t994;
-        let t998 = t137 * t907;
-        let t1002 = t907 * t946 + t998 * t959 - t431 * t939;
-        let t1006 = 0.26 * t992;
-        let t1007 = garm_vy_leg3 * t1006;
-        let t1018 = s_cross_leg3 * t992 - c_cross_leg3 * t990;
-        let t1019 = 1.7241379310344827 * t1018;
-        let t1020 = t4 * t1019;
-        let t1028 = t907 * (minus_rate_dot_rod_leg3 - t944) - t998 * t947 + t431 * t920;
-        let t1030 = minus_s_rod_leg3 * t994;
-        let t1046 = rate_dot_cross_leg3 * t908 + t431 * t445;
-        let t1062 = garm_vx_leg4 * actuator_accelerations[3];
-        let t1063 = garm_vy_leg4 * actuator_accelerations[3];
-        let t1064 = minus_garm_vz_leg4 * actuator_accelerations[3];
-        let t1065 = garm_wz_leg4 * actuator_accelerations[3];
-        let t1066 = 9.81 * minus_c_arm_leg4;
-        let t1071 = 9.81 * s_arm_leg4;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t459 * garm_vx_leg4);
-        let s_rod_leg4 = 1.7241379310344827 * t146;
-        let t1083 = t463 * rate_cross_leg4;
-        let t1084 = 1.7241379310344827 * t1083;
-        let t1091 = t201 * t1083;
-        let t1096 = s_armcross_leg4 * (t528 - t719 + t418) + minus_c_armcross_leg4 * t524
-            - (t460 * t170 - (t1091 + t1091)) - actuator_accelerations[3] * t459;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * t1096;
-        let t1098 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t1100 = t1084 + t1098 + t1084;
-        let t1101 = s_rod_leg4 * t1100;
-        let t1103 = t160 * t473;
-        let t1104 = t201 * t1103;
-        let t1105 = grod_vx_leg4 * t1104;
-        let t1107 = grod_vx_leg4 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t1107;
-        let gcross_vz_leg4 = s_arm_leg4 * t1107;
-        let minus_gcross_wz_leg4 = t79 * minus_gcross_vx_leg4
-            - t85 * minus_gcross_vy_leg4;
-        let t1116 = t79 * t1105;
-        let t1118 = t473 - t1103;
-        let t1120 = grod_vx_leg4 * (t1118 - t1103);
-        let t1122 = rate_dot_cross_leg4 - t1101;
-        let t1123 = t1122 / c_rod_leg4;
-        let t1125 = c_rod_leg4 * t1100 + s_rod_leg4 * t1123;
-        let t1133 = grod_vx_leg4 * t1098;
-        let t1135 = t534 + t768 + t421;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * (t1135 + t478);
-        let t1138 = t1104 + rate_dot_rod_leg4;
-        let t1142 = s_rod_leg4 * t1138 + c_rod_leg4 * (t465 - t1118);
-        let t1156 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t1157 = 1.7241379310344827 * t1135;
-        let t1165 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t1169 = s_rod_leg4 * t170;
-        let t1173 = t169 * (t1103 + t465) + t1169 * t1138 - t459 * t1123;
-        let t1176 = t1066 + 0.26 * actuator_accelerations[3];
-        let t1177 = 0.26 * t1176;
-        let t1178 = garm_vx_leg4 * t1177;
-        let t1182 = t1071 + 0.26 * t460;
-        let t1185 = s_cross_leg4 * t1182 + c_cross_leg4 * t1176;
-        let t1186 = c_rod_leg4 * t1185;
-        let t1198 = s_cross_leg4 * t1176 - c_cross_leg4 * t1182;
-        let t1199 = 1.7241379310344827 * t1198;
-        let t1200 = t79 * t1199;
-        let t1209 = t169 * (t1104 - rate_dot_rod_leg4) + t1169 * (t1118 + t465)
-            - t459 * t1100;
-        let t1211 = s_rod_leg4 * t1185;
-        let t1227 = rate_dot_cross_leg4 * t170 + t459 * t473;
-        let t1243 = t348 * t348;
-        let t1246 = c_phi * t1243 + s_phi * t522;
-        let t1249 = s_phi * t1243 - c_phi * t522;
+        let t585 = t42 * t576;
+        let t586 = grod_wz_leg1 * t585;
+        let t588 = t570 - minus_rate_dot_cross_leg1;
+        let t589 = t49 * t588;
+        let t592 = s_rod_leg1 * t589 - c_rod_leg1 * t569;
+        let t594 = t13 * t575;
+        let t595 = t400 - t594;
+        let t596 = t398 + t595;
+        let t597 = t594 + t400;
+        let t598 = t597 - t596;
+        let t606 = t4 * t540;
+        let t608 = t546 + t606 - t407;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t608 + t408);
+        let t611 = t585 + rate_dot_rod_leg1;
+        let t614 = s_rod_leg1 * t611 + c_rod_leg1 * t595;
+        let t629 = 1.7241379310344827 * t608;
+        let t632 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t641 = 0.8620689655172413 * t25;
+        let t643 = t49 * t641;
+        let t644 = s_rod_leg1 * t643;
+        let t647 = t376 * t589 - (t641 * t596 + t644 * t611);
+        let t649 = t394 - t63;
+        let t651 = t68 - t559;
+        let t653 = c_cross_leg1 * t649 - s_cross_leg1 * t651;
+        let t654 = c_rod_leg1 * t653;
+        let t658 = 0.26 * t649;
+        let t659 = garm_vy_leg1 * t658;
+        let t670 = c_cross_leg1 * t651 + s_cross_leg1 * t649;
+        let t671 = 1.7241379310344827 * t670;
+        let t672 = t4 * t671;
+        let t680 = t641 * (t585 - rate_dot_rod_leg1) + t644 * t597 + t376 * t569;
+        let t682 = s_rod_leg1 * t653;
+        let t698 = t376 * t398 - minus_rate_dot_cross_leg1 * t643;
+        let t714 = garm_vx_leg2 * actuator_accelerations[1];
+        let t715 = garm_vy_leg2 * actuator_accelerations[1];
+        let t716 = minus_garm_vz_leg2 * actuator_accelerations[1];
+        let t717 = garm_wz_leg2 * actuator_accelerations[1];
+        let t718 = 9.81 * c_arm_leg2;
+        let t723 = 9.81 * minus_s_arm_leg2;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t422;
+        let minus_s_rod_leg2 = 1.7241379310344827 * t90;
+        let t734 = t89 * t540;
+        let t741 = t90 * (minus_rate_cross_leg2 * minus_rate_rod_leg2);
+        let t742 = 0.26 * t416;
+        let t748 = s_armcross_leg2 * (t546 + t734 - t438) + c_armcross_leg2 * t542 + t741
+            + s_cross_leg2 * t742 + t741 + actuator_accelerations[1] * t415;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t748;
+        let t750 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t752 = minus_rate_rod_leg2 * (1.7241379310344827 * t432);
+        let t753 = t750 + t752;
+        let t757 = minus_s_rod_leg2 * t753 + c_rod_leg2 * (1.7241379310344827 * t741);
+        let t759 = t108 * t434;
+        let t760 = t196 * t759;
+        let t761 = t760 / t118;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * (minus_grod_vx_leg2 / s_cross_leg2);
+        let gcross_vz_leg2 = minus_grod_vx_leg2
+            * (minus_garm_vz_leg2 * t415 - c_armcross_leg2);
+        let grod_wz_leg2 = t85 * minus_grod_vx_leg2;
+        let t771 = grod_wz_leg2 * t760;
+        let gcross_wz_leg2 = t85 * minus_gcross_vx_leg2 - t89 * minus_gcross_vy_leg2;
+        let t777 = t752 + t753;
+        let t779 = t757 - minus_rate_dot_cross_leg2;
+        let t781 = c_rod_leg2 * t777 - t196 * t779;
+        let t783 = t90 * t761;
+        let t784 = t783 - t759;
+        let t792 = t85 * t540;
+        let t794 = t552 - t792 - t441;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t794 + t442);
+        let t797 = t760 + minus_rate_dot_rod_leg2;
+        let t801 = minus_s_rod_leg2 * t797 + c_rod_leg2 * (t421 - t783);
+        let t816 = 1.7241379310344827 * t794;
+        let t818 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t829 = 0.8620689655172413 * t102;
+        let t832 = t196 * t829;
+        let t835 = t415 * (t779 / c_rod_leg2) - (t829 * (t759 + t421) + t832 * t797);
+        let t838 = 0.26 * actuator_accelerations[1] - t718;
+        let t839 = 0.26 * t838;
+        let t840 = garm_vx_leg2 * t839;
+        let t845 = t723 - t742;
+        let t847 = c_cross_leg2 * t838 - s_cross_leg2 * t845;
+        let t848 = c_rod_leg2 * t847;
+        let t859 = c_cross_leg2 * t845 + s_cross_leg2 * t838;
+        let t860 = 1.7241379310344827 * t859;
+        let t861 = t85 * t860;
+        let t870 = t829 * (minus_rate_dot_rod_leg2 - t760) - t832 * (t783 + t421)
+            - t415 * t777;
+        let t872 = minus_s_rod_leg2 * t847;
+        let t889 = t415 * t434 - minus_rate_dot_cross_leg2 * (s_cross_leg2 * 0.26);
+        let t905 = garm_vx_leg3 * actuator_accelerations[2];
+        let t906 = garm_vy_leg3 * actuator_accelerations[2];
+        let t907 = minus_garm_vz_leg3 * actuator_accelerations[2];
+        let t908 = garm_wz_leg3 * actuator_accelerations[2];
+        let t909 = 9.81 * minus_c_arm_leg3;
+        let t914 = 9.81 * s_arm_leg3;
+        let t923 = t146 / t144;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t923;
+        let t925 = minus_rate_rod_leg3 * t462;
+        let t926 = 1.7241379310344827 * t925;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t131;
+        let t933 = s_cross_leg3 * 0.26;
+        let t935 = t150 * t925;
+        let t940 = s_armcross_leg3 * (t552 + t553 + t404) + minus_c_armcross_leg3 * t542
+            - (t452 * t933 - (t935 + t935)) - actuator_accelerations[2] * t451;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t940;
+        let t942 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t944 = t926 + t942 + t926;
+        let t945 = c_rod_leg3 * t944;
+        let t946 = t150 * t945;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t451 * garm_vy_leg3);
+        let t951 = 2.972651605231867 * t464;
+        let t952 = t131 * t951;
+        let gcross_vz_leg3 = s_arm_leg3 * t923;
+        let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t11 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t961 = t144 * t952;
+        let t962 = grod_wz_leg3 * t961;
+        let t964 = rate_dot_cross_leg3 - t946;
+        let t966 = t150 * t964 + t945;
+        let t969 = t132 * t951;
+        let t970 = t465 - t969;
+        let t971 = t969 + t456;
+        let t972 = t971 - t970;
+        let t980 = t546 - t606 + t407;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t980 + t469);
+        let t983 = t961 + minus_rate_dot_rod_leg3;
+        let t987 = minus_s_rod_leg3 * t983 + c_rod_leg3 * (t456 - t969);
+        let t1002 = 1.7241379310344827 * t980;
+        let t1005 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t1014 = t914 + 0.26 * t452;
+        let t1017 = t909 + 0.26 * actuator_accelerations[2];
+        let t1019 = s_cross_leg3 * t1014 + c_cross_leg3 * t1017;
+        let t1020 = c_rod_leg3 * t1019;
+        let t1022 = 0.8620689655172413 * t139;
+        let t1024 = minus_s_rod_leg3 * t933;
+        let t1029 = t1022 * t970 + t1024 * t983 - t451 * (t148 * t964);
+        let t1033 = 0.26 * t1017;
+        let t1034 = garm_vy_leg3 * t1033;
+        let t1045 = s_cross_leg3 * t1017 - c_cross_leg3 * t1014;
+        let t1046 = 1.7241379310344827 * t1045;
+        let t1047 = t4 * t1046;
+        let t1055 = t1022 * (minus_rate_dot_rod_leg3 - t961) - t1024 * t971
+            + t451 * t944;
+        let t1057 = minus_s_rod_leg3 * t1019;
+        let t1073 = rate_dot_cross_leg3 * t933 + t451 * t464;
+        let t1089 = garm_vx_leg4 * actuator_accelerations[3];
+        let t1090 = garm_vy_leg4 * actuator_accelerations[3];
+        let t1091 = minus_garm_vz_leg4 * actuator_accelerations[3];
+        let t1092 = garm_wz_leg4 * actuator_accelerations[3];
+        let t1093 = 9.81 * minus_c_arm_leg4;
+        let t1098 = 9.81 * s_arm_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t478 * garm_vx_leg4);
+        let t1109 = rate_rod_leg4 * t489;
+        let t1110 = 1.7241379310344827 * t1109;
+        let s_rod_leg4 = 1.7241379310344827 * t157;
+        let t1117 = s_cross_leg4 * 0.26;
+        let t1119 = t220 * t1109;
+        let t1124 = s_armcross_leg4 * (t546 - t734 + t438) + minus_c_armcross_leg4 * t542
+            - (t479 * t1117 - (t1119 + t1119)) - actuator_accelerations[3] * t478;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t1124;
+        let t1126 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t1128 = t1110 + t1126 + t1110;
+        let t1129 = c_rod_leg4 * t1128;
+        let t1130 = t220 * t1129;
+        let t1132 = t175 * t491;
+        let t1133 = t220 * t1132;
+        let t1134 = grod_vx_leg4 * t1133;
+        let t1136 = t189 / t185;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t1136;
+        let gcross_vz_leg4 = s_arm_leg4 * t1136;
+        let minus_gcross_wz_leg4 = t85 * minus_gcross_vx_leg4
+            - t89 * minus_gcross_vy_leg4;
+        let grod_wz_leg4 = t85 * grod_vx_leg4;
+        let t1146 = grod_wz_leg4 * t1133;
+        let t1148 = t157 * t1134;
+        let t1149 = t1148 - t1132;
+        let t1151 = rate_dot_cross_leg4 - t1130;
+        let t1153 = t1129 + t220 * t1151;
+        let t1163 = t552 + t792 + t441;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * (t1163 + t496);
+        let t1166 = t1133 + rate_dot_rod_leg4;
+        let t1170 = s_rod_leg4 * t1166 + c_rod_leg4 * (t483 - t1148);
+        let t1184 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t1185 = 1.7241379310344827 * t1163;
+        let t1195 = 0.8620689655172413 * t169;
+        let t1198 = s_rod_leg4 * t1117;
+        let t1203 = t1195 * (t1132 + t483) + t1198 * t1166 - t478 * (t218 * t1151);
+        let t1206 = t1093 + 0.26 * actuator_accelerations[3];
+        let t1207 = 0.26 * t1206;
+        let t1208 = garm_vx_leg4 * t1207;
+        let t1212 = t1098 + 0.26 * t479;
+        let t1215 = s_cross_leg4 * t1212 + c_cross_leg4 * t1206;
+        let t1216 = c_rod_leg4 * t1215;
+        let t1228 = s_cross_leg4 * t1206 - c_cross_leg4 * t1212;
+        let t1229 = 1.7241379310344827 * t1228;
+        let t1230 = t85 * t1229;
+        let t1239 = t1195 * (t1133 - rate_dot_rod_leg4) + t1198 * (t1148 + t483)
+            - t478 * t1128;
+        let t1241 = s_rod_leg4 * t1215;
+        let t1257 = rate_dot_cross_leg4 * t1117 + t478 * t491;
+        let t1273 = t367 * t367;
+        let t1276 = c_phi * t1273 + s_phi * t540;
+        let t1279 = s_phi * t1273 - c_phi * t540;
         Ok([
             [
-                t44, -(garm_vx_leg1 * t59), -(garm_vx_leg1 * t64), t44, t69,
+                t48, -(garm_vx_leg1 * t63), -(garm_vx_leg1 * t68), t48, t73,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
-                minus_gcross_vx_leg1 * t553, -(minus_gcross_vx_leg1 * t573),
-                -(minus_gcross_vx_leg1 * t595), -(minus_gcross_vx_leg1 * t571),
-                -(minus_gcross_vx_leg1 * t610), 0.0,
-                garm_vx_leg1 * t629 - minus_gcross_vx_leg1 * t636,
-                garm_vx_leg1 * t662 + minus_gcross_vx_leg1 * t664,
-                garm_vx_leg1 * t680 - minus_gcross_vx_leg1 * t652, garm_vx_leg1 * t640, t696,
-                -(garm_vx_leg2 * t700), -(garm_vx_leg2 * t705), t696, t181,
+                minus_gcross_vx_leg1 * t570, -(minus_gcross_vx_leg1 * t592),
+                -(minus_gcross_vx_leg1 * t614), -(minus_gcross_vx_leg1 * t588),
+                -(minus_gcross_vx_leg1 * t629), 0.0,
+                garm_vx_leg1 * t647 - minus_gcross_vx_leg1 * t654,
+                garm_vx_leg1 * t680 + minus_gcross_vx_leg1 * t682,
+                garm_vx_leg1 * t698 - minus_gcross_vx_leg1 * t670, garm_vx_leg1 * t658, t714,
+                -(garm_vx_leg2 * t718), -(garm_vx_leg2 * t723), t714, t242,
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]), garm_vx_leg2,
-                minus_gcross_vx_leg2 * t737 - t741, -(minus_gcross_vx_leg2 * t757 + t761),
-                -(minus_gcross_vx_leg2 * t777 + t779), t741 - minus_gcross_vx_leg2 * t755,
-                minus_gcross_vx_leg2 * t792 + t794, t801,
-                garm_vx_leg2 * t810 - 1.7241379310344827 * t815,
-                garm_vx_leg2 * t845 - minus_gcross_vx_leg2 * t847 + t835,
-                garm_vx_leg2 * t863 - minus_gcross_vx_leg2 * t834, t815, t879, garm_vx_leg3 * t883,
-                garm_vx_leg3 * t888, t879, t198,
+                minus_gcross_vx_leg2 * t757 - t761,
+                -(minus_gcross_vx_leg2 * t781 + minus_grod_vx_leg2 * t784),
+                -(minus_gcross_vx_leg2 * t801 + minus_grod_vx_leg2 * t750),
+                t761 - minus_gcross_vx_leg2 * t779, minus_gcross_vx_leg2 * t816 + t818,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2,
+                garm_vx_leg2 * t835 - 1.7241379310344827 * t840,
+                garm_vx_leg2 * t870 - minus_gcross_vx_leg2 * t872 + t860,
+                garm_vx_leg2 * t889 - minus_gcross_vx_leg2 * t859, t840, t905, garm_vx_leg3 * t909,
+                garm_vx_leg3 * t914, t905, t244,
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]), garm_vx_leg3,
-                -(minus_gcross_vx_leg3 * t922), minus_gcross_vx_leg3 * t941,
-                -(minus_gcross_vx_leg3 * t963), -(minus_gcross_vx_leg3 * t938),
-                minus_gcross_vx_leg3 * t978, 0.0,
-                -(minus_gcross_vx_leg3 * t995 + garm_vx_leg3 * t1002),
-                garm_vx_leg3 * t1028 - minus_gcross_vx_leg3 * t1030,
-                garm_vx_leg3 * t1046 - minus_gcross_vx_leg3 * t1018, garm_vx_leg3 * t1006, t1062,
-                garm_vx_leg4 * t1066, garm_vx_leg4 * t1071, t1062, t203,
+                -(minus_gcross_vx_leg3 * t946), minus_gcross_vx_leg3 * t966,
+                -(minus_gcross_vx_leg3 * t987), -(minus_gcross_vx_leg3 * t964),
+                minus_gcross_vx_leg3 * t1002, 0.0,
+                -(minus_gcross_vx_leg3 * t1020 + garm_vx_leg3 * t1029),
+                garm_vx_leg3 * t1055 - minus_gcross_vx_leg3 * t1057,
+                garm_vx_leg3 * t1073 - minus_gcross_vx_leg3 * t1045, garm_vx_leg3 * t1033, t1089,
+                garm_vx_leg4 * t1093, garm_vx_leg4 * t1098, t1089, t246,
                 ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), garm_vx_leg4,
-                -(minus_gcross_vx_leg4 * t1101 + t1105), t1120 - minus_gcross_vx_leg4 * t1125,
-                t1133 - minus_gcross_vx_leg4 * t1142, t1105 - minus_gcross_vx_leg4 * t1122,
-                t1156 - minus_gcross_vx_leg4 * t1157, t1165,
-                -(garm_vx_leg4 * t1173 + 1.7241379310344827 * t1178),
-                garm_vx_leg4 * t1209 + minus_gcross_vx_leg4 * t1211 - t1199,
-                garm_vx_leg4 * t1227 - minus_gcross_vx_leg4 * t1198, t1178, 0.0, -t1246, t1249,
-                t534,
+                -(minus_gcross_vx_leg4 * t1130 + t1134),
+                grod_vx_leg4 * t1149 - minus_gcross_vx_leg4 * t1153,
+                grod_vx_leg4 * t1126 - minus_gcross_vx_leg4 * t1170,
+                t1134 - minus_gcross_vx_leg4 * t1151, t1184 - minus_gcross_vx_leg4 * t1185,
+                grod_vx_leg4 * rate_dot_rod_leg4,
+                -(garm_vx_leg4 * t1203 + 1.7241379310344827 * t1208),
+                garm_vx_leg4 * t1239 + minus_gcross_vx_leg4 * t1241 - t1229,
+                garm_vx_leg4 * t1257 - minus_gcross_vx_leg4 * t1228, t1208, 0.0, -t1276, t1279,
+                t552,
             ],
             [
-                t49, -(garm_vy_leg1 * t59), -(garm_vy_leg1 * t64), t49, t70,
+                t53, -(garm_vy_leg1 * t63), -(garm_vy_leg1 * t68), t53, t74,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]), garm_vy_leg1,
-                minus_gcross_vy_leg1 * t553 - t559,
-                grod_vy_leg1 * t579 - minus_gcross_vy_leg1 * t573,
-                -(minus_gcross_vy_leg1 * t595 + grod_vy_leg1 * t549),
-                t559 - minus_gcross_vy_leg1 * t571, -(minus_gcross_vy_leg1 * t610 + t613),
-                grod_vy_leg1 * rate_dot_rod_leg1, garm_vy_leg1 * t629 - 1.7241379310344827 * t641,
-                garm_vy_leg1 * t662 + minus_gcross_vy_leg1 * t664 - t653,
-                garm_vy_leg1 * t680 - minus_gcross_vy_leg1 * t652, t641, t697,
-                -(garm_vy_leg2 * t700), -(garm_vy_leg2 * t705), t697, t116,
+                minus_gcross_vy_leg1 * t570 - t576, t598 / t42 - minus_gcross_vy_leg1 * t592,
+                -(minus_gcross_vy_leg1 * t614 + grod_vy_leg1 * t567),
+                t576 - minus_gcross_vy_leg1 * t588, -(minus_gcross_vy_leg1 * t629 + t632),
+                grod_vy_leg1 * rate_dot_rod_leg1, garm_vy_leg1 * t647 - 1.7241379310344827 * t659,
+                garm_vy_leg1 * t680 + minus_gcross_vy_leg1 * t682 - t671,
+                garm_vy_leg1 * t698 - minus_gcross_vy_leg1 * t670, t659, t715,
+                -(garm_vy_leg2 * t718), -(garm_vy_leg2 * t723), t715, t236,
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]), garm_vy_leg2,
-                minus_gcross_vy_leg2 * t737, -(minus_gcross_vy_leg2 * t757),
-                -(minus_gcross_vy_leg2 * t777), -(minus_gcross_vy_leg2 * t755),
-                minus_gcross_vy_leg2 * t792, 0.0, garm_vy_leg2 * t810 - minus_gcross_vy_leg2 * t823,
-                garm_vy_leg2 * t845 - minus_gcross_vy_leg2 * t847,
-                garm_vy_leg2 * t863 - minus_gcross_vy_leg2 * t834, garm_vy_leg2 * t814, t880,
-                garm_vy_leg3 * t883, garm_vy_leg3 * t888, t880, t139,
+                minus_gcross_vy_leg2 * t757, -(minus_gcross_vy_leg2 * t781),
+                -(minus_gcross_vy_leg2 * t801), -(minus_gcross_vy_leg2 * t779),
+                minus_gcross_vy_leg2 * t816, 0.0, garm_vy_leg2 * t835 - minus_gcross_vy_leg2 * t848,
+                garm_vy_leg2 * t870 - minus_gcross_vy_leg2 * t872,
+                garm_vy_leg2 * t889 - minus_gcross_vy_leg2 * t859, garm_vy_leg2 * t839, t906,
+                garm_vy_leg3 * t909, garm_vy_leg3 * t914, t906, t238,
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]), garm_vy_leg3,
-                -(minus_gcross_vy_leg3 * t922 + t928), -(t949 - minus_gcross_vy_leg3 * t941),
-                t965 - minus_gcross_vy_leg3 * t963, t928 - minus_gcross_vy_leg3 * t938,
-                minus_gcross_vy_leg3 * t978 - t981, t987,
-                -(garm_vy_leg3 * t1002 + 1.7241379310344827 * t1007),
-                garm_vy_leg3 * t1028 - minus_gcross_vy_leg3 * t1030 + t1019,
-                garm_vy_leg3 * t1046 - minus_gcross_vy_leg3 * t1018, t1007, t1063,
-                garm_vy_leg4 * t1066, garm_vy_leg4 * t1071, t1063, t176,
+                -(minus_gcross_vy_leg3 * t946 + t952),
+                -(minus_grod_vy_leg3 * t972 - minus_gcross_vy_leg3 * t966),
+                minus_grod_vy_leg3 * t942 - minus_gcross_vy_leg3 * t987,
+                t952 - minus_gcross_vy_leg3 * t964, minus_gcross_vy_leg3 * t1002 - t1005,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                -(garm_vy_leg3 * t1029 + 1.7241379310344827 * t1034),
+                garm_vy_leg3 * t1055 - minus_gcross_vy_leg3 * t1057 + t1046,
+                garm_vy_leg3 * t1073 - minus_gcross_vy_leg3 * t1045, t1034, t1090,
+                garm_vy_leg4 * t1093, garm_vy_leg4 * t1098, t1090, t240,
                 ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]), garm_vy_leg4,
-                -(minus_gcross_vy_leg4 * t1101), -(minus_gcross_vy_leg4 * t1125),
-                -(minus_gcross_vy_leg4 * t1142), -(minus_gcross_vy_leg4 * t1122),
-                -(minus_gcross_vy_leg4 * t1157), 0.0,
-                -(minus_gcross_vy_leg4 * t1186 + garm_vy_leg4 * t1173),
-                garm_vy_leg4 * t1209 + minus_gcross_vy_leg4 * t1211,
-                garm_vy_leg4 * t1227 - minus_gcross_vy_leg4 * t1198, garm_vy_leg4 * t1177, 0.0,
-                -t1249, -t1246, t528,
+                -(minus_gcross_vy_leg4 * t1130), -(minus_gcross_vy_leg4 * t1153),
+                -(minus_gcross_vy_leg4 * t1170), -(minus_gcross_vy_leg4 * t1151),
+                -(minus_gcross_vy_leg4 * t1185), 0.0,
+                -(minus_gcross_vy_leg4 * t1216 + garm_vy_leg4 * t1203),
+                garm_vy_leg4 * t1239 + minus_gcross_vy_leg4 * t1241,
+                garm_vy_leg4 * t1257 - minus_gcross_vy_leg4 * t1228, garm_vy_leg4 * t1207, 0.0,
+                -t1279, -t1276, t546,
             ],
             [
-                -t54, minus_garm_vz_leg1 * t59, minus_garm_vz_leg1 * t64, -t54, -t71,
+                -t58, minus_garm_vz_leg1 * t63, minus_garm_vz_leg1 * t68, -t58, -t75,
                 -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
-                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t553, -(minus_gcross_vz_leg1 * t573),
-                -(minus_gcross_vz_leg1 * t595), -(minus_gcross_vz_leg1 * t571),
-                -(minus_gcross_vz_leg1 * t610), 0.0,
-                -(minus_garm_vz_leg1 * t629 + minus_gcross_vz_leg1 * t636),
-                minus_gcross_vz_leg1 * t664 - minus_garm_vz_leg1 * t662,
-                -(minus_garm_vz_leg1 * t680 + minus_gcross_vz_leg1 * t652),
-                -(minus_garm_vz_leg1 * t640), -t698, minus_garm_vz_leg2 * t700,
-                minus_garm_vz_leg2 * t705, -t698, -t263,
+                -minus_garm_vz_leg1, minus_gcross_vz_leg1 * t570, -(minus_gcross_vz_leg1 * t592),
+                -(minus_gcross_vz_leg1 * t614), -(minus_gcross_vz_leg1 * t588),
+                -(minus_gcross_vz_leg1 * t629), 0.0,
+                -(minus_garm_vz_leg1 * t647 + minus_gcross_vz_leg1 * t654),
+                minus_gcross_vz_leg1 * t682 - minus_garm_vz_leg1 * t680,
+                -(minus_garm_vz_leg1 * t698 + minus_gcross_vz_leg1 * t670),
+                -(minus_garm_vz_leg1 * t658), -t716, minus_garm_vz_leg2 * t718,
+                minus_garm_vz_leg2 * t723, -t716, -t282,
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
-                -minus_garm_vz_leg2, minus_gcross_vz_leg2 * t737, -(minus_gcross_vz_leg2 * t757),
-                -(minus_gcross_vz_leg2 * t777), -(minus_gcross_vz_leg2 * t755),
-                minus_gcross_vz_leg2 * t792, 0.0,
-                -(minus_gcross_vz_leg2 * t823 + minus_garm_vz_leg2 * t810),
-                -(minus_gcross_vz_leg2 * t847 + minus_garm_vz_leg2 * t845),
-                -(minus_gcross_vz_leg2 * t834 + minus_garm_vz_leg2 * t863),
-                -(minus_garm_vz_leg2 * t814), -t881, -(minus_garm_vz_leg3 * t883),
-                -(minus_garm_vz_leg3 * t888), -t881, -t265,
+                -minus_garm_vz_leg2, -(gcross_vz_leg2 * t757), gcross_vz_leg2 * t781,
+                gcross_vz_leg2 * t801, gcross_vz_leg2 * t779, -(gcross_vz_leg2 * t816), 0.0,
+                gcross_vz_leg2 * t848 - minus_garm_vz_leg2 * t835,
+                gcross_vz_leg2 * t872 - minus_garm_vz_leg2 * t870,
+                gcross_vz_leg2 * t859 - minus_garm_vz_leg2 * t889, -(minus_garm_vz_leg2 * t839),
+                -t907, -(minus_garm_vz_leg3 * t909), -(minus_garm_vz_leg3 * t914), -t907, -t284,
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
-                -minus_garm_vz_leg3, gcross_vz_leg3 * t922, -(gcross_vz_leg3 * t941),
-                gcross_vz_leg3 * t963, gcross_vz_leg3 * t938, -(gcross_vz_leg3 * t978), 0.0,
-                minus_garm_vz_leg3 * t1002 + gcross_vz_leg3 * t995,
-                gcross_vz_leg3 * t1030 - minus_garm_vz_leg3 * t1028,
-                gcross_vz_leg3 * t1018 - minus_garm_vz_leg3 * t1046, -(minus_garm_vz_leg3 * t1006),
-                -t1064, -(minus_garm_vz_leg4 * t1066), -(minus_garm_vz_leg4 * t1071), -t1064, -t267,
+                -minus_garm_vz_leg3, gcross_vz_leg3 * t946, -(gcross_vz_leg3 * t966),
+                gcross_vz_leg3 * t987, gcross_vz_leg3 * t964, -(gcross_vz_leg3 * t1002), 0.0,
+                minus_garm_vz_leg3 * t1029 + gcross_vz_leg3 * t1020,
+                gcross_vz_leg3 * t1057 - minus_garm_vz_leg3 * t1055,
+                gcross_vz_leg3 * t1045 - minus_garm_vz_leg3 * t1073, -(minus_garm_vz_leg3 * t1033),
+                -t1091, -(minus_garm_vz_leg4 * t1093), -(minus_garm_vz_leg4 * t1098), -t1091, -t286,
                 -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]),
-                -minus_garm_vz_leg4, gcross_vz_leg4 * t1101, gcross_vz_leg4 * t1125,
-                gcross_vz_leg4 * t1142, gcross_vz_leg4 * t1122, gcross_vz_leg4 * t1157, 0.0,
-                minus_garm_vz_leg4 * t1173 + gcross_vz_leg4 * t1186,
-                -(minus_garm_vz_leg4 * t1209 + gcross_vz_leg4 * t1211),
-                gcross_vz_leg4 * t1198 - minus_garm_vz_leg4 * t1227, -(minus_garm_vz_leg4 * t1177),
-                0.0, 0.0, 0.0, t524 + 9.81,
+                -minus_garm_vz_leg4, gcross_vz_leg4 * t1130, gcross_vz_leg4 * t1153,
+                gcross_vz_leg4 * t1170, gcross_vz_leg4 * t1151, gcross_vz_leg4 * t1185, 0.0,
+                minus_garm_vz_leg4 * t1203 + gcross_vz_leg4 * t1216,
+                -(minus_garm_vz_leg4 * t1239 + gcross_vz_leg4 * t1241),
+                gcross_vz_leg4 * t1228 - minus_garm_vz_leg4 * t1257, -(minus_garm_vz_leg4 * t1207),
+                0.0, 0.0, 0.0, t542 + 9.81,
             ],
             [
-                t58, -(garm_wz_leg1 * t59), -(garm_wz_leg1 * t64), t58, t72,
+                t62, -(garm_wz_leg1 * t63), -(garm_wz_leg1 * t68), t62, t76,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]), garm_wz_leg1,
-                -(gcross_wz_leg1 * t553 + t569), gcross_wz_leg1 * t573 + grod_wz_leg1 * t579,
-                gcross_wz_leg1 * t595 - grod_wz_leg1 * t549, gcross_wz_leg1 * t571 + t569,
-                gcross_wz_leg1 * t610 - t4 * t613, grod_wz_leg1 * rate_dot_rod_leg1,
-                garm_wz_leg1 * t629 + gcross_wz_leg1 * t636 - t47 * t654,
-                garm_wz_leg1 * t662 - gcross_wz_leg1 * t664 - t654,
-                garm_wz_leg1 * t680 + gcross_wz_leg1 * t652, garm_wz_leg1 * t640, t699,
-                -(garm_wz_leg2 * t700), -(garm_wz_leg2 * t705), t699, t323,
+                -(gcross_wz_leg1 * t570 + t586), gcross_wz_leg1 * t592 + grod_wz_leg1 * t598,
+                gcross_wz_leg1 * t614 - grod_wz_leg1 * t567, gcross_wz_leg1 * t588 + t586,
+                gcross_wz_leg1 * t629 - t4 * t632, grod_wz_leg1 * rate_dot_rod_leg1,
+                garm_wz_leg1 * t647 + gcross_wz_leg1 * t654 - t51 * t672,
+                garm_wz_leg1 * t680 - gcross_wz_leg1 * t682 - t672,
+                garm_wz_leg1 * t698 + gcross_wz_leg1 * t670, garm_wz_leg1 * t658, t717,
+                -(garm_wz_leg2 * t718), -(garm_wz_leg2 * t723), t717, t342,
                 ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]), garm_wz_leg2,
-                t748 - gcross_wz_leg2 * t737, gcross_wz_leg2 * t757 + t79 * t761,
-                gcross_wz_leg2 * t777 + t79 * t779, gcross_wz_leg2 * t755 - t748,
-                -(gcross_wz_leg2 * t792 + t79 * t794), -(t79 * t801),
-                garm_wz_leg2 * t810 + gcross_wz_leg2 * t823 + t179 * t836,
-                garm_wz_leg2 * t845 + gcross_wz_leg2 * t847 - t836,
-                garm_wz_leg2 * t863 + gcross_wz_leg2 * t834, garm_wz_leg2 * t814, t882,
-                garm_wz_leg3 * t883, garm_wz_leg3 * t888, t882, t325,
+                t771 - gcross_wz_leg2 * t757, gcross_wz_leg2 * t781 + grod_wz_leg2 * t784,
+                gcross_wz_leg2 * t801 + grod_wz_leg2 * t750, gcross_wz_leg2 * t779 - t771,
+                -(gcross_wz_leg2 * t816 + t85 * t818), -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                garm_wz_leg2 * t835 + gcross_wz_leg2 * t848 + t196 * t861,
+                garm_wz_leg2 * t870 + gcross_wz_leg2 * t872 - t861,
+                garm_wz_leg2 * t889 + gcross_wz_leg2 * t859, garm_wz_leg2 * t839, t908,
+                garm_wz_leg3 * t909, garm_wz_leg3 * t914, t908, t344,
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]), garm_wz_leg3,
-                gcross_wz_leg3 * t922 + t936, t4 * t949 - gcross_wz_leg3 * t941,
-                gcross_wz_leg3 * t963 - t4 * t965, gcross_wz_leg3 * t938 - t936,
-                t4 * t981 - gcross_wz_leg3 * t978, -(t4 * t987),
-                gcross_wz_leg3 * t995 - garm_wz_leg3 * t1002 + t137 * t1020,
-                garm_wz_leg3 * t1028 + gcross_wz_leg3 * t1030 - t1020,
-                garm_wz_leg3 * t1046 + gcross_wz_leg3 * t1018, garm_wz_leg3 * t1006, t1065,
-                garm_wz_leg4 * t1066, garm_wz_leg4 * t1071, t1065, t327,
+                gcross_wz_leg3 * t946 + t962, grod_wz_leg3 * t972 - gcross_wz_leg3 * t966,
+                gcross_wz_leg3 * t987 - grod_wz_leg3 * t942, gcross_wz_leg3 * t964 - t962,
+                t4 * t1005 - gcross_wz_leg3 * t1002, -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
+                gcross_wz_leg3 * t1020 - garm_wz_leg3 * t1029 + t150 * t1047,
+                garm_wz_leg3 * t1055 + gcross_wz_leg3 * t1057 - t1047,
+                garm_wz_leg3 * t1073 + gcross_wz_leg3 * t1045, garm_wz_leg3 * t1033, t1092,
+                garm_wz_leg4 * t1093, garm_wz_leg4 * t1098, t1092, t346,
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]), garm_wz_leg4,
-                -(minus_gcross_wz_leg4 * t1101 + t1116), t79 * t1120 - minus_gcross_wz_leg4 * t1125,
-                t79 * t1133 - minus_gcross_wz_leg4 * t1142, t1116 - minus_gcross_wz_leg4 * t1122,
-                t79 * t1156 - minus_gcross_wz_leg4 * t1157, t79 * t1165,
-                -(garm_wz_leg4 * t1173 + minus_gcross_wz_leg4 * t1186 + t201 * t1200),
-                garm_wz_leg4 * t1209 + minus_gcross_wz_leg4 * t1211 - t1200,
-                garm_wz_leg4 * t1227 - minus_gcross_wz_leg4 * t1198, garm_wz_leg4 * t1177, t522,
-                c_phi * t528 - s_phi * t534, -(s_phi * t528 + c_phi * t534), 0.0,
+                -(minus_gcross_wz_leg4 * t1130 + t1146),
+                grod_wz_leg4 * t1149 - minus_gcross_wz_leg4 * t1153,
+                grod_wz_leg4 * t1126 - minus_gcross_wz_leg4 * t1170,
+                t1146 - minus_gcross_wz_leg4 * t1151, t85 * t1184 - minus_gcross_wz_leg4 * t1185,
+                grod_wz_leg4 * rate_dot_rod_leg4,
+                -(garm_wz_leg4 * t1203 + minus_gcross_wz_leg4 * t1216 + t220 * t1230),
+                garm_wz_leg4 * t1239 + minus_gcross_wz_leg4 * t1241 - t1230,
+                garm_wz_leg4 * t1257 - minus_gcross_wz_leg4 * t1228, garm_wz_leg4 * t1207, t540,
+                c_phi * t546 - s_phi * t552, -(s_phi * t546 + c_phi * t552), 0.0,
             ],
         ])
     }
@@ -5948,7 +5963,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 941 operations (298 additions, 610 multiplications, 33 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 747 intermediates.
+    /// 959 operations (304 additions, 624 multiplications, 31 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 764 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5966,467 +5981,475 @@ impl Schoenflies4 {
         let t18 = t16 - t17;
         let t20 = pose[0] + t18 - 0.24;
         let t21 = 0.52 * t20;
-        let t23 = pose[2] * pose[2];
-        let t24 = t20 * t20 + t23;
-        let t25 = 0.05 * s_phi;
-        let t26 = 0.08660254037844387 * c_phi;
-        let t27 = t25 + t26;
-        let t28 = pose[1] + t27;
-        let t30 = t28 * t28 + -0.3364;
-        let t31 = t24 + t30;
+        let t22 = t20 * t20;
+        let t23 = 0.05 * s_phi;
+        let t24 = 0.08660254037844387 * c_phi;
+        let t25 = t23 + t24;
+        let t26 = pose[1] + t25;
+        let t27 = t26 * t26;
+        let t29 = pose[2] * pose[2];
+        let t31 = t22 + t27 + t29 - 0.3364;
         let t32 = t31 + 0.0676;
         let t34 = 0.52 * pose[2];
-        let t35 = 0.2704 * t24;
-        let t37 = t35 - t32 * t32;
-        ::overact::guard::reach(t37, "leg1")?;
-        let t38 = ::overact::math::sqrt(t37);
-        let c_arm_leg1 = (t21 * t32 - t34 * t38) / t35;
-        let c_rod_leg1 = ::overact::math::sqrt(-(2.972651605231867 * t30));
-        ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t46 = 0.3016 * c_rod_leg1;
-        let c_cross_leg1 = (t31 + -0.0676) / t46;
-        let minus_s_arm_leg1 = (t34 * t32 + t21 * t38) / t35;
-        let s_cross_leg1 = t38 / t46;
+        let t36 = 0.2704 * (t22 + t29);
+        let t38 = t36 - t32 * t32;
+        ::overact::guard::reach(t38, "leg1")?;
+        let t39 = ::overact::math::sqrt(t38);
+        let c_arm_leg1 = (t21 * t32 - t34 * t39) / t36;
+        let t45 = 1.0 - 2.972651605231867 * t27;
+        ::overact::guard::reach(t45, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t45);
+        let c_cross_leg1 = (t31 + -0.0676) / (0.3016 * c_rod_leg1);
+        let minus_s_arm_leg1 = (t34 * t32 + t21 * t39) / t36;
+        let t55 = 0.58 * c_rod_leg1;
+        let s_cross_leg1 = 1.9230769230769231 * t39 / t55;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let t56 = 3.8461538461538463 / s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t56;
-        let t58 = t27 * acceleration[3];
-        let t60 = t18 * twist[3];
-        let t61 = twist[3] * t60;
-        let t62 = acceleration[0] - t58 - t61;
+        let t59 = 3.8461538461538463 / s_cross_leg1;
+        let garm_vx_leg1 = c_armcross_leg1 * t59;
+        let t61 = t25 * acceleration[3];
+        let t63 = t18 * twist[3];
+        let t64 = twist[3] * t63;
+        let t65 = acceleration[0] - t61 - t64;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t69 = t27 * twist[3];
-        let t70 = twist[0] - t69;
-        let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t75 = t28 * grod_vy_leg1;
-        let t76 = twist[1] + t60;
-        let t77 = t75 * t76;
-        let t78 = c_armcross_leg1 * t70 - s_armcross_leg1 * twist[2] + t77;
-        let rate_arm_leg1 = t56 * t78;
-        let t80 = t78 * rate_arm_leg1;
-        let t81 = t80 / s_cross_leg1;
-        let t84 = 0.26 * c_cross_leg1;
-        let t89 = t84 * rate_arm_leg1 + s_armcross_leg1 * t70
-            + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t89;
-        let t91 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t76;
-        let t93 = rate_rod_leg1 * rate_rod_leg1;
-        let t98 = t18 * acceleration[3];
-        let t100 = twist[3] * t69;
-        let t101 = acceleration[1] + t98 - t100;
-        let t103 = t101 + t28 * t93;
-        let t105 = c_armcross_leg1 * t62 - s_armcross_leg1 * acceleration[2]
-            + c_cross_leg1 * t81 - grod_vy_leg1 * t30 * (t91 + t93) + t75 * t103;
-        let rate_dot_arm_leg1 = t56 * t105;
-        let garm_vy_leg1 = t56 * t75;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t56;
-        let garm_wz_leg1 = t18 * garm_vy_leg1 - t27 * garm_vx_leg1;
-        let t116 = t17 + t16;
-        let t118 = pose[1] + t116 - 0.24;
-        let t120 = t118 * t118 + t23;
-        let t121 = 0.2704 * t120;
-        let t122 = t26 - t25;
-        let t123 = pose[0] + t122;
-        let t125 = 0.3364 - t123 * t123;
-        let t126 = t120 - t125;
-        let t127 = t126 + 0.0676;
-        let t129 = t121 - t127 * t127;
-        ::overact::guard::reach(t129, "leg2")?;
-        let t130 = ::overact::math::sqrt(t129);
-        let t131 = 2.972651605231867 * t125;
-        ::overact::guard::reach(t131, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t131);
-        let t133 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t130 / t133;
+        let t72 = t25 * twist[3];
+        let t73 = twist[0] - t72;
+        let t76 = c_armcross_leg1 * t73 - s_armcross_leg1 * twist[2];
+        let grod_vy_leg1 = 1.0 / t55;
+        let t78 = t26 * grod_vy_leg1;
+        let t79 = twist[1] + t63;
+        let t80 = t78 * t79;
+        let t81 = t76 + t80;
+        let rate_arm_leg1 = t59 * t81;
+        let t83 = c_cross_leg1 / s_cross_leg1;
+        let t85 = 0.26 * c_cross_leg1;
+        let garm_vy_leg1 = t59 * t78;
+        let t87 = t85 * garm_vy_leg1;
+        let t89 = t83 * t76 + t87 * t79;
+        let t94 = t89 + s_armcross_leg1 * t73 + c_armcross_leg1 * twist[2];
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t94;
+        let t96 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t79;
+        let t98 = rate_rod_leg1 * rate_rod_leg1;
+        let t102 = c_armcross_leg1 * t65 - s_armcross_leg1 * acceleration[2]
+            + rate_arm_leg1 * t89 + t55 * (t96 + t98);
+        let t103 = t18 * acceleration[3];
+        let t105 = twist[3] * t72;
+        let t106 = acceleration[1] + t103 - t105;
+        let t108 = t106 + t80 * rate_rod_leg1;
+        let t110 = t102 + t78 * t108;
+        let rate_dot_arm_leg1 = t59 * t110;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t59;
+        let garm_wz_leg1 = t18 * garm_vy_leg1 - t25 * garm_vx_leg1;
+        let t120 = t17 + t16;
+        let t122 = pose[1] + t120 - 0.24;
+        let t124 = t122 * t122 + t29;
+        let t125 = 0.2704 * t124;
+        let t126 = t24 - t23;
+        let t127 = pose[0] + t126;
+        let t129 = 0.3364 - t127 * t127;
+        let t130 = t124 - t129;
+        let t131 = t130 + 0.0676;
+        let t133 = t125 - t131 * t131;
+        ::overact::guard::reach(t133, "leg2")?;
+        let t134 = ::overact::math::sqrt(t133);
+        let t135 = 2.972651605231867 * t129;
+        ::overact::guard::reach(t135, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t135);
+        let t137 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t134 / t137;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t135 = 3.8461538461538463 / s_cross_leg2;
-        let minus_grod_vx_leg2 = 0.52 / t133;
-        let t137 = t123 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t135 * t137;
-        let t139 = 0.52 * t118;
-        let c_arm_leg2 = (t139 * t127 - t34 * t130) / t121;
-        let c_cross_leg2 = (-0.0676 + t126) / t133;
-        let minus_s_arm_leg2 = (t34 * t127 + t139 * t130) / t121;
+        let t139 = 3.8461538461538463 / s_cross_leg2;
+        let minus_grod_vx_leg2 = 0.52 / t137;
+        let t141 = t127 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t139 * t141;
+        let t143 = 0.52 * t122;
+        let c_arm_leg2 = (t143 * t131 - t34 * t134) / t125;
+        let c_cross_leg2 = (-0.0676 + t130) / t137;
+        let minus_s_arm_leg2 = (t34 * t131 + t143 * t134) / t125;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let t153 = t122 * acceleration[3];
-        let t155 = t116 * twist[3];
-        let t156 = twist[3] * t155;
-        let t157 = acceleration[1] + t153 - t156;
+        let t157 = t126 * acceleration[3];
+        let t159 = t120 * twist[3];
+        let t160 = twist[3] * t159;
+        let t161 = acceleration[1] + t157 - t160;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let t164 = t122 * twist[3];
-        let t165 = twist[1] + t164;
-        let t169 = twist[0] - t155;
-        let t170 = t137 * t169;
-        let t171 = c_armcross_leg2 * t165 - s_armcross_leg2 * twist[2] + t170;
-        let rate_arm_leg2 = t135 * t171;
-        let t173 = t171 * rate_arm_leg2;
-        let t174 = t173 / s_cross_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t169;
-        let t178 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t182 = 0.26 * c_cross_leg2;
-        let t184 = s_armcross_leg2 * t165 + c_armcross_leg2 * twist[2]
-            + t182 * rate_arm_leg2;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t184;
-        let t186 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t191 = t116 * acceleration[3];
-        let t193 = twist[3] * t164;
-        let t194 = acceleration[0] - t191 - t193;
-        let t196 = t194 + t170 * minus_rate_rod_leg2;
-        let t198 = c_armcross_leg2 * t157 - s_armcross_leg2 * acceleration[2]
-            + c_cross_leg2 * t174 + minus_grod_vx_leg2 * t125 * (t178 + t186)
-            + t137 * t196;
-        let rate_dot_arm_leg2 = t135 * t198;
-        let garm_vy_leg2 = c_armcross_leg2 * t135;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t135;
-        let garm_wz_leg2 = t122 * garm_vy_leg2 - t116 * garm_vx_leg2;
-        let t210 = pose[0] - t18 + 0.24;
-        let t211 = 0.52 * t210;
-        let t213 = t210 * t210 + t23;
-        let t214 = pose[1] - t27;
-        let t216 = 0.3364 - t214 * t214;
-        let t217 = t213 - t216;
-        let t218 = t217 + 0.0676;
-        let t220 = 0.2704 * t213;
-        let t222 = t220 - t218 * t218;
-        ::overact::guard::reach(t222, "leg3")?;
-        let t223 = ::overact::math::sqrt(t222);
-        let minus_c_arm_leg3 = (t211 * t218 + t34 * t223) / t220;
-        let t228 = 2.972651605231867 * t216;
-        ::overact::guard::reach(t228, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t228);
-        let t230 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t217) / t230;
-        let s_arm_leg3 = (t211 * t223 - t34 * t218) / t220;
-        let s_cross_leg3 = t223 / t230;
+        let t168 = t126 * twist[3];
+        let t169 = twist[1] + t168;
+        let t173 = twist[0] - t159;
+        let t174 = t141 * t173;
+        let t175 = c_armcross_leg2 * t169 - s_armcross_leg2 * twist[2] + t174;
+        let rate_arm_leg2 = t139 * t175;
+        let t177 = 0.26 * c_cross_leg2;
+        let t178 = t177 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t173;
+        let t182 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t186 = s_armcross_leg2 * t169 + c_armcross_leg2 * twist[2] + t178;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t186;
+        let t188 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t193 = t120 * acceleration[3];
+        let t195 = twist[3] * t168;
+        let t196 = acceleration[0] - t193 - t195;
+        let t198 = t196 + t174 * minus_rate_rod_leg2;
+        let t200 = c_armcross_leg2 * t161 - s_armcross_leg2 * acceleration[2]
+            + rate_arm_leg2 * t178 + 0.58 * c_rod_leg2 * (t182 + t188) + t141 * t198;
+        let rate_dot_arm_leg2 = t139 * t200;
+        let garm_vy_leg2 = c_armcross_leg2 * t139;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t139;
+        let garm_wz_leg2 = t126 * garm_vy_leg2 - t120 * garm_vx_leg2;
+        let t212 = pose[0] - t18 + 0.24;
+        let t213 = 0.52 * t212;
+        let t215 = t212 * t212 + t29;
+        let t216 = pose[1] - t25;
+        let t218 = 0.3364 - t216 * t216;
+        let t219 = t215 - t218;
+        let t220 = t219 + 0.0676;
+        let t222 = 0.2704 * t215;
+        let t224 = t222 - t220 * t220;
+        ::overact::guard::reach(t224, "leg3")?;
+        let t225 = ::overact::math::sqrt(t224);
+        let minus_c_arm_leg3 = (t213 * t220 + t34 * t225) / t222;
+        let t230 = 2.972651605231867 * t218;
+        ::overact::guard::reach(t230, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t230);
+        let t232 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t219) / t232;
+        let s_arm_leg3 = (t213 * t225 - t34 * t220) / t222;
+        let s_cross_leg3 = t225 / t232;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t240 = 3.8461538461538463 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t240;
-        let t243 = acceleration[0] + t58 + t61;
+        let t242 = 1.0 / s_cross_leg3;
+        let t243 = 3.8461538461538463 * t242;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t243;
+        let t246 = acceleration[0] + t61 + t64;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let t250 = twist[0] + t69;
-        let minus_grod_vy_leg3 = 0.52 / t230;
-        let t255 = t214 * minus_grod_vy_leg3;
-        let t256 = twist[1] - t60;
-        let t257 = t255 * t256;
-        let t258 = minus_c_armcross_leg3 * t250 - s_armcross_leg3 * twist[2] + t257;
-        let rate_arm_leg3 = t240 * t258;
-        let t260 = t258 * rate_arm_leg3;
-        let t261 = t260 / s_cross_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t256;
-        let t265 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t269 = 0.26 * c_cross_leg3;
-        let t271 = s_armcross_leg3 * t250 + minus_c_armcross_leg3 * twist[2]
-            - t269 * rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t271;
-        let t273 = rate_cross_leg3 * rate_cross_leg3;
-        let t279 = acceleration[1] - t98 + t100;
-        let t281 = t279 + t257 * minus_rate_rod_leg3;
-        let t283 = minus_c_armcross_leg3 * t243 - s_armcross_leg3 * acceleration[2]
-            + c_cross_leg3 * t261 + minus_grod_vy_leg3 * t216 * (t265 + t273)
-            + t255 * t281;
-        let rate_dot_arm_leg3 = t240 * t283;
-        let garm_vy_leg3 = t240 * t255;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t240;
-        let garm_wz_leg3 = t27 * garm_vx_leg3 - t18 * garm_vy_leg3;
-        let t295 = pose[1] - t116 + 0.24;
-        let t297 = t295 * t295 + t23;
-        let t298 = 0.2704 * t297;
-        let t299 = pose[0] - t122;
-        let t301 = 0.3364 - t299 * t299;
-        let t302 = t297 - t301;
-        let t303 = t302 + 0.0676;
-        let t305 = t298 - t303 * t303;
-        ::overact::guard::reach(t305, "leg4")?;
-        let t306 = ::overact::math::sqrt(t305);
-        let t307 = 0.8620689655172413 * t306;
-        let t308 = 2.972651605231867 * t301;
-        ::overact::guard::reach(t308, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t308);
-        ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t310 = t307 / c_rod_leg4;
-        let s_cross_leg4 = 3.8461538461538463 * t310;
+        let t253 = 0.26 * c_cross_leg3;
+        let t254 = twist[0] + t72;
+        let minus_grod_vy_leg3 = 0.52 / t232;
+        let t259 = t216 * minus_grod_vy_leg3;
+        let t260 = twist[1] - t63;
+        let t261 = t259 * t260;
+        let rate_arm_leg3 = t243
+            * (minus_c_armcross_leg3 * t254 - s_armcross_leg3 * twist[2] + t261);
+        let t264 = rate_arm_leg3 * rate_arm_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t260;
+        let t268 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t273 = s_armcross_leg3 * t254 + minus_c_armcross_leg3 * twist[2]
+            - t253 * rate_arm_leg3;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t273;
+        let t275 = rate_cross_leg3 * rate_cross_leg3;
+        let t281 = acceleration[1] - t103 + t105;
+        let t283 = t281 + t261 * minus_rate_rod_leg3;
+        let t285 = minus_c_armcross_leg3 * t246 - s_armcross_leg3 * acceleration[2]
+            + t253 * t264 + 0.58 * c_rod_leg3 * (t268 + t275) + t259 * t283;
+        let rate_dot_arm_leg3 = t243 * t285;
+        let garm_vy_leg3 = t243 * t259;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t243;
+        let garm_wz_leg3 = t25 * garm_vx_leg3 - t18 * garm_vy_leg3;
+        let t297 = pose[1] - t120 + 0.24;
+        let t299 = t297 * t297 + t29;
+        let t300 = 0.2704 * t299;
+        let t301 = pose[0] - t126;
+        let t304 = t299 + t301 * t301 - 0.3364;
+        let t305 = t304 + 0.0676;
+        let t307 = t300 - t305 * t305;
+        ::overact::guard::reach(t307, "leg4")?;
+        let t308 = ::overact::math::sqrt(t307);
+        let t311 = 2.972651605231867 * (t299 - t304);
+        ::overact::guard::reach(t311, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t311);
+        let t313 = 0.58 * c_rod_leg4;
+        let s_cross_leg4 = 1.9230769230769231 * t308 / t313;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t312 = 3.8461538461538463 / s_cross_leg4;
-        let t313 = 0.3016 * c_rod_leg4;
-        let grod_vx_leg4 = 0.52 / t313;
-        let t315 = t299 * grod_vx_leg4;
-        let garm_vx_leg4 = t312 * t315;
-        let t317 = 0.52 * t295;
-        let minus_c_arm_leg4 = (t317 * t303 + t34 * t306) / t298;
-        let c_cross_leg4 = (-0.0676 + t302) / t313;
-        let s_arm_leg4 = (t317 * t306 - t34 * t303) / t298;
+        let t315 = 1.0 / s_cross_leg4;
+        let t316 = 3.8461538461538463 * t315;
+        let t317 = 0.3016 * c_rod_leg4;
+        let grod_vx_leg4 = 0.52 / t317;
+        let t319 = t301 * grod_vx_leg4;
+        let garm_vx_leg4 = t316 * t319;
+        let t321 = 0.52 * t297;
+        let minus_c_arm_leg4 = (t321 * t305 + t34 * t308) / t300;
+        let c_cross_leg4 = (-0.0676 + t304) / t317;
+        let s_arm_leg4 = (t321 * t308 - t34 * t305) / t300;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let t332 = acceleration[1] - t153 + t156;
+        let t336 = acceleration[1] - t157 + t160;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let t339 = twist[1] - t164;
-        let t343 = twist[0] + t155;
-        let t344 = t315 * t343;
-        let t345 = minus_c_armcross_leg4 * t339 - s_armcross_leg4 * twist[2] + t344;
-        let rate_arm_leg4 = t312 * t345;
-        let t347 = 0.26 * c_cross_leg4;
-        let t348 = t347 * rate_arm_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t343;
-        let t352 = rate_rod_leg4 * rate_rod_leg4;
-        let t356 = s_armcross_leg4 * t339 + minus_c_armcross_leg4 * twist[2] - t348;
-        let rate_cross_leg4 = grod_vx_leg4 * t356;
-        let t358 = rate_cross_leg4 * rate_cross_leg4;
-        let t364 = acceleration[0] + t191 + t193;
-        let t366 = t364 + t344 * rate_rod_leg4;
-        let t368 = minus_c_armcross_leg4 * t332 - s_armcross_leg4 * acceleration[2]
-            + rate_arm_leg4 * t348 + grod_vx_leg4 * t301 * (t352 + t358) + t315 * t366;
-        let rate_dot_arm_leg4 = t312 * t368;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t312;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t312;
-        let garm_wz_leg4 = t116 * garm_vx_leg4 - t122 * garm_vy_leg4;
-        let t379 = 9.81 * c_arm_leg1;
-        let t384 = 9.81 * c_arm_leg2;
-        let t389 = 9.81 * minus_c_arm_leg3;
-        let t394 = 9.81 * minus_c_arm_leg4;
-        let t399 = 9.81 * minus_s_arm_leg1;
-        let t404 = 9.81 * minus_s_arm_leg2;
-        let t409 = 9.81 * s_arm_leg3;
-        let t414 = 9.81 * s_arm_leg4;
-        let t451 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t451;
-        let s_rod_leg1 = 1.7241379310344827 * t28;
-        let t454 = 1.7241379310344827 * t89;
-        let t455 = rate_rod_leg1 * t454;
-        let t456 = 0.26 * rate_dot_arm_leg1;
-        let t461 = t77 * minus_rate_cross_leg1;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t456 + s_armcross_leg1 * t62
-                + c_armcross_leg1 * acceleration[2] + t80 + t461 + t461);
-        let t467 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t469 = t455 + t467 + t455;
-        let t470 = s_rod_leg1 * t469;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t84 * garm_vy_leg1);
-        let t475 = t454 * t454;
-        let t476 = t75 * t475;
-        let t477 = t476 / c_rod_leg1;
-        let t478 = 1.7241379310344827 * t477;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t451;
-        let gcross_wz_leg1 = t27 * minus_gcross_vx_leg1 - t18 * minus_gcross_vy_leg1;
+        let t343 = twist[1] - t168;
+        let t347 = twist[0] + t159;
+        let t348 = t319 * t347;
+        let t349 = minus_c_armcross_leg4 * t343 - s_armcross_leg4 * twist[2] + t348;
+        let rate_arm_leg4 = t316 * t349;
+        let t351 = t349 * rate_arm_leg4;
+        let t352 = t315 * t351;
+        let rate_rod_leg4 = grod_vx_leg4 * t347;
+        let t355 = rate_rod_leg4 * rate_rod_leg4;
+        let t359 = 0.26 * c_cross_leg4;
+        let t361 = s_armcross_leg4 * t343 + minus_c_armcross_leg4 * twist[2]
+            - t359 * rate_arm_leg4;
+        let rate_cross_leg4 = grod_vx_leg4 * t361;
+        let t363 = rate_cross_leg4 * rate_cross_leg4;
+        let t367 = minus_c_armcross_leg4 * t336 - s_armcross_leg4 * acceleration[2]
+            + c_cross_leg4 * t352 + t313 * (t355 + t363);
+        let t369 = acceleration[0] + t193 + t195;
+        let t371 = t369 + t348 * rate_rod_leg4;
+        let rate_dot_arm_leg4 = t316 * (t367 + t319 * t371);
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t316;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t316;
+        let garm_wz_leg4 = t120 * garm_vx_leg4 - t126 * garm_vy_leg4;
+        let t384 = 9.81 * c_arm_leg1;
+        let t389 = 9.81 * c_arm_leg2;
+        let t394 = 9.81 * minus_c_arm_leg3;
+        let t399 = 9.81 * minus_c_arm_leg4;
+        let t404 = 9.81 * minus_s_arm_leg1;
+        let t409 = 9.81 * minus_s_arm_leg2;
+        let t414 = 9.81 * s_arm_leg3;
+        let t419 = 9.81 * s_arm_leg4;
+        let t456 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t456;
+        let t458 = 1.7241379310344827 * t94;
+        let t459 = rate_rod_leg1 * t458;
+        let s_rod_leg1 = 1.7241379310344827 * t26;
+        let t467 = t81 * rate_arm_leg1;
+        let t468 = t80 * minus_rate_cross_leg1;
+        let t472 = t83 * t102 + t87 * t108 + s_armcross_leg1 * t65
+            + c_armcross_leg1 * acceleration[2] + t467 + t468 + t468;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t472;
+        let t474 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t476 = t459 + t474 + t459;
+        let t477 = c_rod_leg1 * t476;
+        let t478 = t78 * t477;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * t87;
+        let t482 = t96 * s_rod_leg1;
+        let t483 = 1.7241379310344827 * t482;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t456;
+        let gcross_wz_leg1 = t25 * minus_gcross_vx_leg1 - t18 * minus_gcross_vy_leg1;
         let grod_wz_leg1 = t18 * grod_vy_leg1;
-        let t487 = grod_wz_leg1 * t476;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t182 * garm_vx_leg2);
-        let t492 = minus_rate_rod_leg2 * (1.7241379310344827 * t184);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t123;
-        let t497 = t170 * minus_rate_cross_leg2;
+        let t492 = t55 * t483;
+        let t493 = grod_wz_leg1 * t492;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t177 * garm_vx_leg2);
+        let t498 = minus_rate_rod_leg2 * (1.7241379310344827 * t186);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t127;
+        let t503 = t175 * rate_arm_leg2;
+        let t504 = t174 * minus_rate_cross_leg2;
+        let t508 = 0.26 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t157 + c_armcross_leg2 * acceleration[2] + t173 + t497
-                + t497 + t182 * rate_dot_arm_leg2);
-        let t504 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t506 = t492 + t504 + t492;
-        let t507 = c_rod_leg2 * t506;
-        let t508 = t137 * t507;
-        let t510 = t131 * t186;
-        let t511 = t137 * t510;
-        let t512 = minus_grod_vx_leg2 * t511;
-        let t514 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t514;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t514;
-        let t519 = t116 * t512;
-        let gcross_wz_leg2 = t116 * minus_gcross_vx_leg2 - t122 * minus_gcross_vy_leg2;
-        let t525 = minus_grod_vy_leg3 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t525;
-        let t528 = minus_rate_rod_leg3 * (1.7241379310344827 * t271);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t214;
-        let t533 = t257 * rate_cross_leg3;
-        let t537 = 0.26 * rate_dot_arm_leg3;
+            * (s_armcross_leg2 * t161 + c_armcross_leg2 * acceleration[2] + t503 + t504
+                + t504 + c_cross_leg2 * t508);
+        let t512 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t514 = t498 + t512 + t498;
+        let t515 = c_rod_leg2 * t514;
+        let t516 = t141 * t515;
+        let t518 = t135 * t188;
+        let t519 = t141 * t518;
+        let t520 = minus_grod_vx_leg2 * t519;
+        let t522 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t522;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t522;
+        let t527 = t120 * t520;
+        let gcross_wz_leg2 = t120 * minus_gcross_vx_leg2 - t126 * minus_gcross_vy_leg2;
+        let t533 = t242 * minus_grod_vy_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t533;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t216;
+        let t537 = minus_rate_rod_leg3 * (1.7241379310344827 * t273);
+        let t541 = 0.26 * t264;
+        let t543 = t261 * rate_cross_leg3;
+        let t547 = 0.26 * rate_dot_arm_leg3;
         let rate_dot_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * t243 + minus_c_armcross_leg3 * acceleration[2]
-                - (t260 - t533 - t533) - c_cross_leg3 * t537);
-        let t541 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t543 = t528 + t541 + t528;
-        let t544 = c_rod_leg3 * t543;
-        let t545 = t255 * t544;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t269 * garm_vy_leg3);
-        let t550 = t273 * minus_s_rod_leg3;
-        let t551 = 1.7241379310344827 * t550;
-        let gcross_vz_leg3 = s_arm_leg3 * t525;
-        let gcross_wz_leg3 = t18 * minus_gcross_vy_leg3 - t27 * minus_gcross_vx_leg3;
-        let t559 = t18 * t551;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t347 * garm_vx_leg4);
-        let s_rod_leg4 = 1.7241379310344827 * t299;
-        let t564 = 1.7241379310344827 * t356;
-        let t565 = rate_rod_leg4 * t564;
-        let t569 = t345 * rate_arm_leg4;
-        let t570 = t344 * rate_cross_leg4;
-        let t574 = 0.26 * rate_dot_arm_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t332 + minus_c_armcross_leg4 * acceleration[2]
-                - (t569 - t570 - t570) - c_cross_leg4 * t574);
-        let t578 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t580 = t565 + t578 + t565;
-        let t581 = s_rod_leg4 * t580;
-        let t583 = t564 * t564;
-        let t584 = t315 * t583;
-        let t585 = grod_vx_leg4 * t584;
-        let t587 = grod_vx_leg4 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t587;
-        let gcross_vz_leg4 = s_arm_leg4 * t587;
-        let minus_gcross_wz_leg4 = t116 * minus_gcross_vx_leg4
-            - t122 * minus_gcross_vy_leg4;
-        let t596 = t116 * t585;
-        let t598 = t470 - minus_rate_dot_cross_leg1;
-        let t601 = t75 * t598 - c_rod_leg1 * t469;
-        let t603 = t28 * t478;
-        let t604 = t603 - t475;
-        let t612 = t508 - minus_rate_dot_cross_leg2;
-        let t614 = t507 - t137 * t612;
-        let t616 = t137 * t511;
-        let t618 = minus_grod_vx_leg2 * (t616 - t510);
-        let t625 = rate_dot_cross_leg3 - t545;
-        let t627 = t255 * t625 + t544;
-        let t630 = minus_s_rod_leg3 * t550;
-        let t633 = minus_grod_vy_leg3 * (t630 - (t273 - t630));
-        let t639 = t299 * t585;
-        let t641 = grod_vx_leg4 * (t639 - t583);
-        let t643 = rate_dot_cross_leg4 - t581;
-        let t645 = c_rod_leg4 * t580 + t315 * t643;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t103;
-        let t658 = s_rod_leg1 * (t476 + rate_dot_rod_leg1) + c_rod_leg1 * (t93 - t603);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t196;
-        let t672 = minus_s_rod_leg2 * (t511 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t178 - t616);
-        let t674 = minus_grod_vx_leg2 * t504;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t281;
-        let t687 = minus_s_rod_leg3 * (c_rod_leg3 * t550 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t265 - t630);
-        let t694 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t695 = t18 * t694;
-        let t698 = grod_vx_leg4 * t578;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t366;
-        let t704 = s_rod_leg4 * (t584 + rate_dot_rod_leg4) + c_rod_leg4 * (t352 - t639);
-        let t736 = 1.7241379310344827 * t101;
-        let t739 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t745 = 1.7241379310344827 * t194;
-        let t747 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t754 = 1.7241379310344827 * t279;
-        let t761 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t762 = 1.7241379310344827 * t364;
-        let t772 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t774 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
-        let t776 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t778 = s_cross_leg1 * 0.26;
-        let t782 = t84 * t469 - t778 * (t736 - t477);
-        let t784 = t456 - t379;
-        let t786 = t399 - t81;
-        let t789 = s_rod_leg1 * (c_cross_leg1 * t784 - s_cross_leg1 * t786);
-        let t797 = c_cross_leg1 * t786 + s_cross_leg1 * t784;
-        let t798 = 1.7241379310344827 * t797;
-        let t808 = 0.8620689655172413 * t130;
-        let t816 = t808 * (minus_rate_dot_rod_leg2 - t511) - t137 * t808 * (t616 + t178)
-            - t182 * t506;
-        let t819 = 0.26 * rate_dot_arm_leg2 - t384;
-        let t821 = t404 - t174;
-        let t824 = minus_s_rod_leg2 * (c_cross_leg2 * t819 - s_cross_leg2 * t821);
-        let t829 = c_cross_leg2 * t821 + s_cross_leg2 * t819;
-        let t830 = 1.7241379310344827 * t829;
-        let t843 = 0.26 * s_cross_leg3;
-        let t847 = t843 * (t754 - t550) + t269 * t543;
-        let t849 = t409 + t261;
-        let t851 = t389 + t537;
-        let t854 = minus_s_rod_leg3 * (s_cross_leg3 * t849 + c_cross_leg3 * t851);
-        let t862 = s_cross_leg3 * t851 - c_cross_leg3 * t849;
-        let t863 = 1.7241379310344827 * t862;
-        let t880 = t307 * (t584 - rate_dot_rod_leg4) + s_rod_leg4 * t310 * (t639 + t352)
-            - t347 * t580;
-        let t883 = t414 + t569 / s_cross_leg4;
-        let t885 = t394 + t574;
-        let t888 = s_rod_leg4 * (s_cross_leg4 * t883 + c_cross_leg4 * t885);
-        let t893 = s_cross_leg4 * t885 - c_cross_leg4 * t883;
-        let t894 = 1.7241379310344827 * t893;
-        let t909 = t84 * t91 - minus_rate_dot_cross_leg1 * t778;
-        let t925 = t182 * t186 - minus_rate_dot_cross_leg2 * (0.26 * s_cross_leg2);
-        let t940 = rate_dot_cross_leg3 * t843 + t269 * t273;
-        let t955 = rate_dot_cross_leg4 * t310 + t347 * t358;
+            * (s_armcross_leg3 * t246 + minus_c_armcross_leg3 * acceleration[2]
+                - (s_cross_leg3 * t541 - t543 - t543) - c_cross_leg3 * t547);
+        let t551 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t553 = t537 + t551 + t537;
+        let t554 = minus_s_rod_leg3 * t553;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t253 * garm_vy_leg3);
+        let t559 = t275 * minus_s_rod_leg3;
+        let t560 = c_rod_leg3 * t559;
+        let t561 = minus_grod_vy_leg3 * t560;
+        let gcross_vz_leg3 = s_arm_leg3 * t533;
+        let gcross_wz_leg3 = t18 * minus_gcross_vy_leg3 - t25 * minus_gcross_vx_leg3;
+        let grod_wz_leg3 = t18 * minus_grod_vy_leg3;
+        let t570 = grod_wz_leg3 * t560;
+        let t572 = t359 * garm_vx_leg4;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t572;
+        let t574 = 1.7241379310344827 * t361;
+        let t575 = rate_rod_leg4 * t574;
+        let s_rod_leg4 = 1.7241379310344827 * t301;
+        let t580 = t348 * rate_cross_leg4;
+        let t588 = s_armcross_leg4 * t336 + minus_c_armcross_leg4 * acceleration[2]
+            - (t351 - t580 - t580) - c_cross_leg4 * t315 * t367 - t572 * t371;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t588;
+        let t590 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t592 = t575 + t590 + t575;
+        let t593 = c_rod_leg4 * t592;
+        let t594 = t319 * t593;
+        let t596 = t574 * t574;
+        let t597 = t319 * t596;
+        let t598 = t597 / t313;
+        let t600 = t315 * grod_vx_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t600;
+        let gcross_vz_leg4 = s_arm_leg4 * t600;
+        let minus_gcross_wz_leg4 = t120 * minus_gcross_vx_leg4
+            - t126 * minus_gcross_vy_leg4;
+        let grod_wz_leg4 = t120 * grod_vx_leg4;
+        let t610 = grod_wz_leg4 * t597;
+        let t612 = t478 - minus_rate_dot_cross_leg1;
+        let t614 = t78 * t612 - t477;
+        let t616 = t78 * t492;
+        let t618 = t616 - t458 * t458;
+        let t626 = t516 - minus_rate_dot_cross_leg2;
+        let t628 = t515 - t141 * t626;
+        let t630 = t127 * t520;
+        let t632 = minus_grod_vx_leg2 * (t630 - t518);
+        let t639 = rate_dot_cross_leg3 - t554;
+        let t642 = t259 * t639 + c_rod_leg3 * t553;
+        let t645 = minus_s_rod_leg3 * t559;
+        let t647 = t645 - (t275 - t645);
+        let t654 = t301 * t598;
+        let t655 = t654 - t596;
+        let t657 = rate_dot_cross_leg4 - t594;
+        let t659 = t593 + t319 * t657;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t108;
+        let t672 = s_rod_leg1 * (t492 + rate_dot_rod_leg1) + c_rod_leg1 * (t98 - t616);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t198;
+        let t686 = minus_s_rod_leg2 * (t519 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t182 - t630);
+        let t688 = minus_grod_vx_leg2 * t512;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t283;
+        let t700 = minus_s_rod_leg3 * (t560 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t268 - t645);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t371;
+        let t715 = s_rod_leg4 * (t597 + rate_dot_rod_leg4) + c_rod_leg4 * (t355 - t654);
+        let t747 = 1.7241379310344827 * t106;
+        let t757 = 1.7241379310344827 * t196;
+        let t759 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t766 = 1.7241379310344827 * t281;
+        let t769 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t775 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t776 = 1.7241379310344827 * t369;
+        let t786 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
+        let t792 = s_cross_leg1 * 0.26;
+        let t796 = t85 * t476 - t792 * (t747 - t482);
+        let t799 = t110 - s_cross_leg1 * t384;
+        let t802 = t404 - t467 / s_cross_leg1;
+        let t805 = s_rod_leg1 * (t83 * t799 - s_cross_leg1 * t802);
+        let t812 = c_cross_leg1 * t802 + t799;
+        let t813 = 1.7241379310344827 * t812;
+        let t823 = 0.26 * s_cross_leg2;
+        let t832 = c_rod_leg2 * t823 * (minus_rate_dot_rod_leg2 - t519)
+            - minus_s_rod_leg2 * t823 * (t630 + t182) - t177 * t514;
+        let t834 = t508 - t389;
+        let t837 = t409 - t503 / s_cross_leg2;
+        let t840 = minus_s_rod_leg2 * (c_cross_leg2 * t834 - s_cross_leg2 * t837);
+        let t845 = c_cross_leg2 * t837 + s_cross_leg2 * t834;
+        let t846 = 1.7241379310344827 * t845;
+        let t859 = 0.26 * s_cross_leg3;
+        let t863 = t859 * (t766 - t559) + t253 * t553;
+        let t865 = t414 + t541;
+        let t867 = t394 + t547;
+        let t870 = minus_s_rod_leg3 * (s_cross_leg3 * t865 + c_cross_leg3 * t867);
+        let t878 = s_cross_leg3 * t867 - c_cross_leg3 * t865;
+        let t879 = 1.7241379310344827 * t878;
+        let t889 = 0.26 * s_cross_leg4;
+        let t898 = c_rod_leg4 * t889 * (t597 - rate_dot_rod_leg4)
+            + s_rod_leg4 * t889 * (t654 + t355) - t359 * t592;
+        let t900 = t419 + t352;
+        let t903 = t399 + 0.26 * rate_dot_arm_leg4;
+        let t906 = s_rod_leg4 * (s_cross_leg4 * t900 + c_cross_leg4 * t903);
+        let t911 = s_cross_leg4 * t903 - c_cross_leg4 * t900;
+        let t912 = 1.7241379310344827 * t911;
+        let t927 = t85 * t96 - minus_rate_dot_cross_leg1 * t792;
+        let t942 = t177 * t188 - minus_rate_dot_cross_leg2 * t823;
+        let t957 = rate_dot_cross_leg3 * t859 + t253 * t275;
+        let t972 = rate_dot_cross_leg4 * t889 + t359 * t363;
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 garm_vx_leg2 * rate_dot_arm_leg2, garm_vx_leg3 * rate_dot_arm_leg3,
-                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t379), -(garm_vx_leg2 * t384),
-                garm_vx_leg3 * t389, garm_vx_leg4 * t394, -(garm_vx_leg1 * t399),
-                -(garm_vx_leg2 * t404), garm_vx_leg3 * t409, garm_vx_leg4 * t414,
+                garm_vx_leg4 * rate_dot_arm_leg4, -(garm_vx_leg1 * t384), -(garm_vx_leg2 * t389),
+                garm_vx_leg3 * t394, garm_vx_leg4 * t399, -(garm_vx_leg1 * t404),
+                -(garm_vx_leg2 * t409), garm_vx_leg3 * t414, garm_vx_leg4 * t419,
                 garm_vx_leg1 * rate_arm_leg1, garm_vx_leg2 * rate_arm_leg2,
                 garm_vx_leg3 * rate_arm_leg3, garm_vx_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vx_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1, garm_vx_leg2,
-                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t470,
-                minus_gcross_vx_leg2 * t508 - t512, -(minus_gcross_vx_leg3 * t545),
-                -(minus_gcross_vx_leg4 * t581 + t585), -(minus_gcross_vx_leg1 * t601),
-                -(minus_gcross_vx_leg2 * t614 + t618), minus_gcross_vx_leg3 * t627,
-                t641 - minus_gcross_vx_leg4 * t645, -(minus_gcross_vx_leg1 * t658),
-                -(minus_gcross_vx_leg2 * t672 + t674), -(minus_gcross_vx_leg3 * t687),
-                t698 - minus_gcross_vx_leg4 * t704, -(minus_gcross_vx_leg1 * t598),
-                t512 - minus_gcross_vx_leg2 * t612, -(minus_gcross_vx_leg3 * t625),
-                t585 - minus_gcross_vx_leg4 * t643, -(minus_gcross_vx_leg1 * t736),
-                minus_gcross_vx_leg2 * t745 + t747, minus_gcross_vx_leg3 * t754,
-                t761 - minus_gcross_vx_leg4 * t762, 0.0, t772, 0.0, t776,
-                garm_vx_leg1 * t782 + minus_gcross_vx_leg1 * t789,
-                garm_vx_leg2 * t816 - minus_gcross_vx_leg2 * t824 + t830,
-                garm_vx_leg3 * t847 - minus_gcross_vx_leg3 * t854,
-                garm_vx_leg4 * t880 + minus_gcross_vx_leg4 * t888 - t894,
-                garm_vx_leg1 * t909 - minus_gcross_vx_leg1 * t797,
-                garm_vx_leg2 * t925 - minus_gcross_vx_leg2 * t829,
-                garm_vx_leg3 * t940 - minus_gcross_vx_leg3 * t862,
-                garm_vx_leg4 * t955 - minus_gcross_vx_leg4 * t893,
+                garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t478,
+                minus_gcross_vx_leg2 * t516 - t520, -(minus_gcross_vx_leg3 * t554),
+                -(minus_gcross_vx_leg4 * t594 + t598), -(minus_gcross_vx_leg1 * t614),
+                -(minus_gcross_vx_leg2 * t628 + t632), minus_gcross_vx_leg3 * t642,
+                grod_vx_leg4 * t655 - minus_gcross_vx_leg4 * t659, -(minus_gcross_vx_leg1 * t672),
+                -(minus_gcross_vx_leg2 * t686 + t688), -(minus_gcross_vx_leg3 * t700),
+                grod_vx_leg4 * t590 - minus_gcross_vx_leg4 * t715, -(minus_gcross_vx_leg1 * t612),
+                t520 - minus_gcross_vx_leg2 * t626, -(minus_gcross_vx_leg3 * t639),
+                t598 - minus_gcross_vx_leg4 * t657, -(minus_gcross_vx_leg1 * t747),
+                minus_gcross_vx_leg2 * t757 + t759, minus_gcross_vx_leg3 * t766,
+                t775 - minus_gcross_vx_leg4 * t776, 0.0, t786, 0.0,
+                grod_vx_leg4 * rate_dot_rod_leg4, garm_vx_leg1 * t796 + minus_gcross_vx_leg1 * t805,
+                garm_vx_leg2 * t832 - minus_gcross_vx_leg2 * t840 + t846,
+                garm_vx_leg3 * t863 - minus_gcross_vx_leg3 * t870,
+                garm_vx_leg4 * t898 + minus_gcross_vx_leg4 * t906 - t912,
+                garm_vx_leg1 * t927 - minus_gcross_vx_leg1 * t812,
+                garm_vx_leg2 * t942 - minus_gcross_vx_leg2 * t845,
+                garm_vx_leg3 * t957 - minus_gcross_vx_leg3 * t878,
+                garm_vx_leg4 * t972 - minus_gcross_vx_leg4 * t911,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
                 garm_vy_leg2 * rate_dot_arm_leg2, garm_vy_leg3 * rate_dot_arm_leg3,
-                garm_vy_leg4 * rate_dot_arm_leg4, -(garm_vy_leg1 * t379), -(garm_vy_leg2 * t384),
-                garm_vy_leg3 * t389, garm_vy_leg4 * t394, -(garm_vy_leg1 * t399),
-                -(garm_vy_leg2 * t404), garm_vy_leg3 * t409, garm_vy_leg4 * t414,
+                garm_vy_leg4 * rate_dot_arm_leg4, -(garm_vy_leg1 * t384), -(garm_vy_leg2 * t389),
+                garm_vy_leg3 * t394, garm_vy_leg4 * t399, -(garm_vy_leg1 * t404),
+                -(garm_vy_leg2 * t409), garm_vy_leg3 * t414, garm_vy_leg4 * t419,
                 garm_vy_leg1 * rate_arm_leg1, garm_vy_leg2 * rate_arm_leg2,
                 garm_vy_leg3 * rate_arm_leg3, garm_vy_leg4 * rate_arm_leg4,
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_vy_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_vy_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_vy_leg4, rate_arm_leg4), garm_vy_leg1, garm_vy_leg2,
-                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t470 - t478,
-                minus_gcross_vy_leg2 * t508, -(minus_gcross_vy_leg3 * t545 + t551),
-                -(minus_gcross_vy_leg4 * t581), grod_vy_leg1 * t604 - minus_gcross_vy_leg1 * t601,
-                -(minus_gcross_vy_leg2 * t614), -(t633 - minus_gcross_vy_leg3 * t627),
-                -(minus_gcross_vy_leg4 * t645),
-                -(minus_gcross_vy_leg1 * t658 + grod_vy_leg1 * t467),
-                -(minus_gcross_vy_leg2 * t672),
-                minus_grod_vy_leg3 * t541 - minus_gcross_vy_leg3 * t687,
-                -(minus_gcross_vy_leg4 * t704), t478 - minus_gcross_vy_leg1 * t598,
-                -(minus_gcross_vy_leg2 * t612), t551 - minus_gcross_vy_leg3 * t625,
-                -(minus_gcross_vy_leg4 * t643), -(minus_gcross_vy_leg1 * t736 + t739),
-                minus_gcross_vy_leg2 * t745, minus_gcross_vy_leg3 * t754 - t694,
-                -(minus_gcross_vy_leg4 * t762), grod_vy_leg1 * rate_dot_rod_leg1, 0.0, t774, 0.0,
-                garm_vy_leg1 * t782 + minus_gcross_vy_leg1 * t789 - t798,
-                garm_vy_leg2 * t816 - minus_gcross_vy_leg2 * t824,
-                garm_vy_leg3 * t847 - minus_gcross_vy_leg3 * t854 + t863,
-                garm_vy_leg4 * t880 + minus_gcross_vy_leg4 * t888,
-                garm_vy_leg1 * t909 - minus_gcross_vy_leg1 * t797,
-                garm_vy_leg2 * t925 - minus_gcross_vy_leg2 * t829,
-                garm_vy_leg3 * t940 - minus_gcross_vy_leg3 * t862,
-                garm_vy_leg4 * t955 - minus_gcross_vy_leg4 * t893,
+                garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t478 - t483,
+                minus_gcross_vy_leg2 * t516, -(minus_gcross_vy_leg3 * t554 + t561),
+                -(minus_gcross_vy_leg4 * t594), t618 / t55 - minus_gcross_vy_leg1 * t614,
+                -(minus_gcross_vy_leg2 * t628),
+                -(minus_grod_vy_leg3 * t647 - minus_gcross_vy_leg3 * t642),
+                -(minus_gcross_vy_leg4 * t659),
+                -(minus_gcross_vy_leg1 * t672 + grod_vy_leg1 * t474),
+                -(minus_gcross_vy_leg2 * t686),
+                minus_grod_vy_leg3 * t551 - minus_gcross_vy_leg3 * t700,
+                -(minus_gcross_vy_leg4 * t715), t483 - minus_gcross_vy_leg1 * t612,
+                -(minus_gcross_vy_leg2 * t626), t561 - minus_gcross_vy_leg3 * t639,
+                -(minus_gcross_vy_leg4 * t657),
+                -(minus_gcross_vy_leg1 * t747
+                    + 1.7241379310344827 * minus_rate_dot_cross_leg1),
+                minus_gcross_vy_leg2 * t757,
+                minus_gcross_vy_leg3 * t766 - t769,
+                -(minus_gcross_vy_leg4 * t776),
+                grod_vy_leg1 * rate_dot_rod_leg1,
+                0.0,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                0.0,
+                garm_vy_leg1 * t796 + minus_gcross_vy_leg1 * t805 - t813,
+                garm_vy_leg2 * t832 - minus_gcross_vy_leg2 * t840,
+                garm_vy_leg3 * t863 - minus_gcross_vy_leg3 * t870 + t879,
+                garm_vy_leg4 * t898 + minus_gcross_vy_leg4 * t906,
+                garm_vy_leg1 * t927 - minus_gcross_vy_leg1 * t812,
+                garm_vy_leg2 * t942 - minus_gcross_vy_leg2 * t845,
+                garm_vy_leg3 * t957 - minus_gcross_vy_leg3 * t878,
+                garm_vy_leg4 * t972 - minus_gcross_vy_leg4 * t911,
             ],
             [
                 0.0, 0.0, 0.0, acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t379,
-                minus_garm_vz_leg2 * t384, -(minus_garm_vz_leg3 * t389),
-                -(minus_garm_vz_leg4 * t394), minus_garm_vz_leg1 * t399, minus_garm_vz_leg2 * t404,
-                -(minus_garm_vz_leg3 * t409), -(minus_garm_vz_leg4 * t414),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t384,
+                minus_garm_vz_leg2 * t389, -(minus_garm_vz_leg3 * t394),
+                -(minus_garm_vz_leg4 * t399), minus_garm_vz_leg1 * t404, minus_garm_vz_leg2 * t409,
+                -(minus_garm_vz_leg3 * t414), -(minus_garm_vz_leg4 * t419),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_arm_leg3), -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6434,56 +6457,59 @@ impl Schoenflies4 {
                 -::overact::math::signed(minus_garm_vz_leg3, rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t470, minus_gcross_vz_leg2 * t508, gcross_vz_leg3 * t545,
-                gcross_vz_leg4 * t581, -(minus_gcross_vz_leg1 * t601),
-                -(minus_gcross_vz_leg2 * t614), -(gcross_vz_leg3 * t627), gcross_vz_leg4 * t645,
-                -(minus_gcross_vz_leg1 * t658), -(minus_gcross_vz_leg2 * t672),
-                gcross_vz_leg3 * t687, gcross_vz_leg4 * t704, -(minus_gcross_vz_leg1 * t598),
-                -(minus_gcross_vz_leg2 * t612), gcross_vz_leg3 * t625, gcross_vz_leg4 * t643,
-                -(minus_gcross_vz_leg1 * t736), minus_gcross_vz_leg2 * t745,
-                -(gcross_vz_leg3 * t754), gcross_vz_leg4 * t762, 0.0, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t789 - minus_garm_vz_leg1 * t782,
-                -(minus_gcross_vz_leg2 * t824 + minus_garm_vz_leg2 * t816),
-                gcross_vz_leg3 * t854 - minus_garm_vz_leg3 * t847,
-                -(minus_garm_vz_leg4 * t880 + gcross_vz_leg4 * t888),
-                -(minus_garm_vz_leg1 * t909 + minus_gcross_vz_leg1 * t797),
-                -(minus_gcross_vz_leg2 * t829 + minus_garm_vz_leg2 * t925),
-                gcross_vz_leg3 * t862 - minus_garm_vz_leg3 * t940,
-                gcross_vz_leg4 * t893 - minus_garm_vz_leg4 * t955,
+                minus_gcross_vz_leg1 * t478, minus_gcross_vz_leg2 * t516, gcross_vz_leg3 * t554,
+                gcross_vz_leg4 * t594, -(minus_gcross_vz_leg1 * t614),
+                -(minus_gcross_vz_leg2 * t628), -(gcross_vz_leg3 * t642), gcross_vz_leg4 * t659,
+                -(minus_gcross_vz_leg1 * t672), -(minus_gcross_vz_leg2 * t686),
+                gcross_vz_leg3 * t700, gcross_vz_leg4 * t715, -(minus_gcross_vz_leg1 * t612),
+                -(minus_gcross_vz_leg2 * t626), gcross_vz_leg3 * t639, gcross_vz_leg4 * t657,
+                -(minus_gcross_vz_leg1 * t747), minus_gcross_vz_leg2 * t757,
+                -(gcross_vz_leg3 * t766), gcross_vz_leg4 * t776, 0.0, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t805 - minus_garm_vz_leg1 * t796,
+                -(minus_gcross_vz_leg2 * t840 + minus_garm_vz_leg2 * t832),
+                gcross_vz_leg3 * t870 - minus_garm_vz_leg3 * t863,
+                -(minus_garm_vz_leg4 * t898 + gcross_vz_leg4 * t906),
+                -(minus_garm_vz_leg1 * t927 + minus_gcross_vz_leg1 * t812),
+                -(minus_gcross_vz_leg2 * t845 + minus_garm_vz_leg2 * t942),
+                gcross_vz_leg3 * t878 - minus_garm_vz_leg3 * t957,
+                gcross_vz_leg4 * t911 - minus_garm_vz_leg4 * t972,
             ],
             [
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 garm_wz_leg1 * rate_dot_arm_leg1, garm_wz_leg2 * rate_dot_arm_leg2,
                 garm_wz_leg3 * rate_dot_arm_leg3, garm_wz_leg4 * rate_dot_arm_leg4,
-                -(garm_wz_leg1 * t379), -(garm_wz_leg2 * t384), garm_wz_leg3 * t389,
-                garm_wz_leg4 * t394, -(garm_wz_leg1 * t399), -(garm_wz_leg2 * t404),
-                garm_wz_leg3 * t409, garm_wz_leg4 * t414, garm_wz_leg1 * rate_arm_leg1,
+                -(garm_wz_leg1 * t384), -(garm_wz_leg2 * t389), garm_wz_leg3 * t394,
+                garm_wz_leg4 * t399, -(garm_wz_leg1 * t404), -(garm_wz_leg2 * t409),
+                garm_wz_leg3 * t414, garm_wz_leg4 * t419, garm_wz_leg1 * rate_arm_leg1,
                 garm_wz_leg2 * rate_arm_leg2, garm_wz_leg3 * rate_arm_leg3,
                 garm_wz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
                 ::overact::math::signed(garm_wz_leg3, rate_arm_leg3),
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
-                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t470 + t487),
-                t519 - gcross_wz_leg2 * t508, gcross_wz_leg3 * t545 + t559,
-                -(minus_gcross_wz_leg4 * t581 + t596), gcross_wz_leg1 * t601 + grod_wz_leg1 * t604,
-                gcross_wz_leg2 * t614 + t116 * t618, t18 * t633 - gcross_wz_leg3 * t627,
-                t116 * t641 - minus_gcross_wz_leg4 * t645,
-                gcross_wz_leg1 * t658 - grod_wz_leg1 * t467, gcross_wz_leg2 * t672 + t116 * t674,
-                gcross_wz_leg3 * t687 - t255 * t695, t116 * t698 - minus_gcross_wz_leg4 * t704,
-                gcross_wz_leg1 * t598 + t487, gcross_wz_leg2 * t612 - t519,
-                gcross_wz_leg3 * t625 - t559, t596 - minus_gcross_wz_leg4 * t643,
-                gcross_wz_leg1 * t736 - t18 * t739, -(gcross_wz_leg2 * t745 + t116 * t747),
-                t695 - gcross_wz_leg3 * t754, t116 * t761 - minus_gcross_wz_leg4 * t762,
-                grod_wz_leg1 * rate_dot_rod_leg1, -(t116 * t772), -(t18 * t774), t116 * t776,
-                garm_wz_leg1 * t782 - gcross_wz_leg1 * t789 - t18 * t798,
-                garm_wz_leg2 * t816 + gcross_wz_leg2 * t824 - t116 * t830,
-                garm_wz_leg3 * t847 + gcross_wz_leg3 * t854 - t18 * t863,
-                garm_wz_leg4 * t880 + minus_gcross_wz_leg4 * t888 - t116 * t894,
-                garm_wz_leg1 * t909 + gcross_wz_leg1 * t797,
-                garm_wz_leg2 * t925 + gcross_wz_leg2 * t829,
-                garm_wz_leg3 * t940 + gcross_wz_leg3 * t862,
-                garm_wz_leg4 * t955 - minus_gcross_wz_leg4 * t893,
+                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t478 + t493),
+                t527 - gcross_wz_leg2 * t516, gcross_wz_leg3 * t554 + t570,
+                -(minus_gcross_wz_leg4 * t594 + t610), gcross_wz_leg1 * t614 + grod_wz_leg1 * t618,
+                gcross_wz_leg2 * t628 + t120 * t632, grod_wz_leg3 * t647 - gcross_wz_leg3 * t642,
+                grod_wz_leg4 * t655 - minus_gcross_wz_leg4 * t659,
+                gcross_wz_leg1 * t672 - grod_wz_leg1 * t474, gcross_wz_leg2 * t686 + t120 * t688,
+                gcross_wz_leg3 * t700 - grod_wz_leg3 * t551,
+                grod_wz_leg4 * t590 - minus_gcross_wz_leg4 * t715, gcross_wz_leg1 * t612 + t493,
+                gcross_wz_leg2 * t626 - t527, gcross_wz_leg3 * t639 - t570,
+                t610 - minus_gcross_wz_leg4 * t657,
+                gcross_wz_leg1 * t747 - grod_wz_leg1 * (1.7241379310344827 * t472),
+                -(gcross_wz_leg2 * t757 + t120 * t759), t18 * t769 - gcross_wz_leg3 * t766,
+                t120 * t775 - minus_gcross_wz_leg4 * t776, grod_wz_leg1 * rate_dot_rod_leg1,
+                -(t120 * t786), -(grod_wz_leg3 * minus_rate_dot_rod_leg3),
+                grod_wz_leg4 * rate_dot_rod_leg4,
+                garm_wz_leg1 * t796 - gcross_wz_leg1 * t805 - t18 * t813,
+                garm_wz_leg2 * t832 + gcross_wz_leg2 * t840 - t120 * t846,
+                garm_wz_leg3 * t863 + gcross_wz_leg3 * t870 - t18 * t879,
+                garm_wz_leg4 * t898 + minus_gcross_wz_leg4 * t906 - t120 * t912,
+                garm_wz_leg1 * t927 + gcross_wz_leg1 * t812,
+                garm_wz_leg2 * t942 + gcross_wz_leg2 * t845,
+                garm_wz_leg3 * t957 + gcross_wz_leg3 * t878,
+                garm_wz_leg4 * t972 - minus_gcross_wz_leg4 * t911,
             ],
         ])
     }
@@ -6498,7 +6524,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 847 operations (262 additions, 565 multiplications, 20 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 668 intermediates.
+    /// 850 operations (259 additions, 573 multiplications, 18 divisions), 0 square roots, 13 trigonometric pairs, 16 signs, 671 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6609,262 +6635,265 @@ impl Schoenflies4 {
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
         let t172 = 3.8461538461538463 / s_cross_leg3;
         let minus_garm_vx_leg3 = c_armcross_leg3 * t172;
-        let t174 = twist[0] + t42;
-        let t180 = s_rod_leg3 / c_rod_leg3;
-        let t181 = twist[1] - t36;
-        let t182 = t180 * t181;
-        let t183 = c_armcross_leg3 * t174 + s_armcross_leg3 * twist[2] + t182;
-        let minus_rate_arm_leg3 = t172 * t183;
-        let t185 = t183 * minus_rate_arm_leg3;
-        let t186 = t185 / s_cross_leg3;
-        let t188 = 0.58 * c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t181;
-        let t191 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t195 = 0.26 * c_cross_leg3;
-        let t197 = s_armcross_leg3 * t174 - c_armcross_leg3 * twist[2]
-            + t195 * minus_rate_arm_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t197;
-        let t199 = rate_cross_leg3 * rate_cross_leg3;
-        let t204 = acceleration[0] + t31 + t37;
-        let t210 = acceleration[1] - t73 + t75;
-        let t212 = t210 - t182 * minus_rate_rod_leg3;
-        let t214 = c_cross_leg3 * t186 + t188 * (t191 + t199)
-            - (c_armcross_leg3 * t204 + s_armcross_leg3 * acceleration[2]) - t180 * t212;
-        let rate_dot_arm_leg3 = t172 * t214;
-        let minus_garm_vy_leg3 = t172 * t180;
+        let t174 = 0.26 * c_cross_leg3;
+        let t175 = twist[0] + t42;
+        let t178 = c_armcross_leg3 * t175 + s_armcross_leg3 * twist[2];
+        let t181 = 1.0 / c_rod_leg3;
+        let t182 = s_rod_leg3 * t181;
+        let t183 = twist[1] - t36;
+        let t184 = t182 * t183;
+        let minus_rate_arm_leg3 = t172 * (t178 + t184);
+        let t187 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
+        let t189 = 0.58 * c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t181;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t183;
+        let t192 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t193 = c_cross_leg3 / s_cross_leg3;
+        let minus_garm_vy_leg3 = t172 * t182;
+        let t200 = t174 * minus_garm_vy_leg3;
+        let t202 = t193 * t178 + s_armcross_leg3 * t175 - c_armcross_leg3 * twist[2]
+            + t200 * t183;
+        let t203 = t182 * t202;
+        let t205 = 2.972651605231867 * (t203 * t203);
+        let t206 = 1.7241379310344827 * t202;
+        let t207 = t206 * t206;
+        let t208 = t205 + t207;
+        let t213 = acceleration[0] + t31 + t37;
+        let t219 = acceleration[1] - t73 + t75;
+        let t221 = t219 - t184 * minus_rate_rod_leg3;
+        let t223 = t174 * t187 + t189 * (t192 + t208)
+            - (c_armcross_leg3 * t213 + s_armcross_leg3 * acceleration[2]) - t182 * t221;
+        let rate_dot_arm_leg3 = t172 * t223;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t172;
         let garm_wz_leg3 = t35 * minus_garm_vy_leg3 - t30 * minus_garm_vx_leg3;
-        let t227 = 3.8461538461538463 / s_cross_leg4;
-        let t230 = s_rod_leg4 / c_rod_leg4;
-        let garm_vx_leg4 = t227 * t230;
-        let t232 = twist[0] + t110;
-        let t233 = t230 * t232;
+        let t235 = 3.8461538461538463 / s_cross_leg4;
+        let t238 = 1.0 / c_rod_leg4;
+        let t239 = s_rod_leg4 * t238;
+        let garm_vx_leg4 = t235 * t239;
+        let t241 = c_cross_leg4 / s_cross_leg4;
+        let t242 = twist[0] + t110;
+        let t243 = t239 * t242;
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t242 = twist[1] - t116;
-        let t246 = t233 - (c_armcross_leg4 * t242 + s_armcross_leg4 * twist[2]);
-        let rate_arm_leg4 = t227 * t246;
-        let t248 = 0.26 * c_cross_leg4;
-        let t249 = t248 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t232;
-        let t254 = rate_rod_leg4 * rate_rod_leg4;
-        let t258 = s_armcross_leg4 * t242 - c_armcross_leg4 * twist[2] - t249;
-        let rate_cross_leg4 = grod_vx_leg4 * t258;
-        let t260 = rate_cross_leg4 * rate_cross_leg4;
-        let t265 = acceleration[1] - t107 + t111;
-        let t271 = acceleration[0] + t144 + t146;
-        let t273 = t271 + t233 * rate_rod_leg4;
-        let t275 = rate_arm_leg4 * t249 + 0.58 * c_rod_leg4 * (t254 + t260)
-            - (c_armcross_leg4 * t265 + s_armcross_leg4 * acceleration[2]) + t230 * t273;
-        let rate_dot_arm_leg4 = t227 * t275;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t227;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t227;
+        let t252 = twist[1] - t116;
+        let t255 = c_armcross_leg4 * t252 + s_armcross_leg4 * twist[2];
+        let t256 = t243 - t255;
+        let rate_arm_leg4 = t235 * t256;
+        let t258 = t256 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t238;
+        let rate_rod_leg4 = grod_vx_leg4 * t242;
+        let t263 = rate_rod_leg4 * rate_rod_leg4;
+        let t269 = 0.26 * c_cross_leg4;
+        let t270 = t269 * garm_vx_leg4;
+        let t272 = t241 * t255 + s_armcross_leg4 * t252 - c_armcross_leg4 * twist[2]
+            - t270 * t242;
+        let rate_cross_leg4 = grod_vx_leg4 * t272;
+        let t274 = rate_cross_leg4 * rate_cross_leg4;
+        let t279 = acceleration[1] - t107 + t111;
+        let t285 = acceleration[0] + t144 + t146;
+        let t287 = t285 + t243 * rate_rod_leg4;
+        let t289 = t241 * t258 + 0.58 * c_rod_leg4 * (t263 + t274)
+            - (c_armcross_leg4 * t279 + s_armcross_leg4 * acceleration[2]) + t239 * t287;
+        let rate_dot_arm_leg4 = t235 * t289;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t235;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t235;
         let garm_wz_leg4 = t106 * minus_garm_vy_leg4 + t109 * garm_vx_leg4;
-        let t286 = 9.81 * c_arm_leg1;
-        let t291 = 9.81 * c_arm_leg2;
-        let t296 = 9.81 * c_arm_leg3;
-        let t301 = 9.81 * c_arm_leg4;
-        let t306 = 9.81 * s_arm_leg1;
-        let t311 = 9.81 * s_arm_leg2;
-        let t316 = 9.81 * s_arm_leg3;
-        let t321 = 9.81 * s_arm_leg4;
-        let t358 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t358;
-        let t360 = 1.7241379310344827 * t64;
-        let t361 = rate_rod_leg1 * t360;
-        let t362 = 0.26 * rate_dot_arm_leg1;
-        let t367 = t51 * minus_rate_cross_leg1;
+        let t300 = 9.81 * c_arm_leg1;
+        let t305 = 9.81 * c_arm_leg2;
+        let t310 = 9.81 * c_arm_leg3;
+        let t315 = 9.81 * c_arm_leg4;
+        let t320 = 9.81 * s_arm_leg1;
+        let t325 = 9.81 * s_arm_leg2;
+        let t330 = 9.81 * s_arm_leg3;
+        let t335 = 9.81 * s_arm_leg4;
+        let t372 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t372;
+        let t375 = rate_rod_leg1 * (1.7241379310344827 * t64);
+        let t376 = 0.26 * rate_dot_arm_leg1;
+        let t381 = t51 * minus_rate_cross_leg1;
         let minus_rate_dot_cross_leg1 = grod_vy_leg1
-            * (c_cross_leg1 * t362 + s_armcross_leg1 * t38
-                + c_armcross_leg1 * acceleration[2] + t54 + t367 + t367);
-        let t373 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t375 = t361 + t373 + t361;
-        let t376 = s_rod_leg1 * t375;
+            * (c_cross_leg1 * t376 + s_armcross_leg1 * t38
+                + c_armcross_leg1 * acceleration[2] + t54 + t381 + t381);
+        let t387 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t389 = t375 + t387 + t375;
+        let t390 = s_rod_leg1 * t389;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t59 * garm_vy_leg1);
-        let t381 = s_rod_leg1 * t66;
-        let t382 = c_rod_leg1 * t381;
-        let t383 = grod_vy_leg1 * t382;
-        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t358;
+        let t395 = s_rod_leg1 * t66;
+        let t396 = c_rod_leg1 * t395;
+        let t397 = grod_vy_leg1 * t396;
+        let minus_minus_gcross_vz_leg1 = s_arm_leg1 * t372;
         let gcross_wz_leg1 = t30 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t35;
-        let t391 = t35 * t383;
+        let grod_wz_leg1 = grod_vy_leg1 * t35;
+        let t406 = grod_wz_leg1 * t396;
         let gcross_vx_leg2 = minus_grod_vx_leg2 * (t135 * minus_garm_vx_leg2);
-        let t398 = t122 * minus_rate_cross_leg2;
-        let t402 = 0.26 * rate_dot_arm_leg2;
+        let t413 = t122 * minus_rate_cross_leg2;
+        let t417 = 0.26 * rate_dot_arm_leg2;
         let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2
-            * (s_armcross_leg2 * t112 + c_armcross_leg2 * acceleration[2] + t125 - t398
-                - t398 + c_cross_leg2 * t402);
-        let t406 = s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t407 = 1.7241379310344827 * t137;
-        let t408 = minus_rate_rod_leg2 * t407;
-        let t410 = t408 - t406 + t408;
-        let t411 = s_rod_leg2 * t410;
-        let t414 = t407 * (t96 * t407);
-        let t415 = minus_grod_vx_leg2 * t414;
-        let t417 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t417;
-        let gcross_vz_leg2 = s_arm_leg2 * t417;
+            * (s_armcross_leg2 * t112 + c_armcross_leg2 * acceleration[2] + t125 - t413
+                - t413 + c_cross_leg2 * t417);
+        let t421 = s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t422 = 1.7241379310344827 * t137;
+        let t423 = minus_rate_rod_leg2 * t422;
+        let t425 = t423 - t421 + t423;
+        let t426 = c_rod_leg2 * t425;
+        let t427 = t96 * t426;
+        let t430 = t422 * (t96 * t422);
+        let t431 = minus_grod_vx_leg2 * t430;
+        let t433 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t433;
+        let gcross_vz_leg2 = s_arm_leg2 * t433;
         let minus_gcross_wz_leg2 = t106 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t109;
         let grod_wz_leg2 = minus_grod_vx_leg2 * t109;
-        let t427 = grod_wz_leg2 * t414;
-        let t429 = minus_grod_vy_leg3 / s_cross_leg3;
-        let gcross_vx_leg3 = c_arm_leg3 * t429;
-        let t434 = t182 * rate_cross_leg3;
-        let t438 = 0.26 * rate_dot_arm_leg3;
-        let t440 = s_armcross_leg3 * t204 - c_armcross_leg3 * acceleration[2]
-            - (t185 + t434 + t434) - c_cross_leg3 * t438;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t440;
-        let t442 = 1.7241379310344827 * t197;
-        let t443 = minus_rate_rod_leg3 * t442;
-        let t448 = s_rod_leg3 * t443 + c_rod_leg3 * (1.7241379310344827 * (t440 + t434));
-        let t449 = rate_dot_cross_leg3 - t448;
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * (t195 * minus_garm_vy_leg3);
-        let t454 = s_rod_leg3 * t199;
-        let t455 = 1.7241379310344827 * t454;
-        let gcross_vz_leg3 = s_arm_leg3 * t429;
+        let t443 = grod_wz_leg2 * t430;
+        let t445 = minus_grod_vy_leg3 / s_cross_leg3;
+        let gcross_vx_leg3 = c_arm_leg3 * t445;
+        let t450 = 0.26 * s_cross_leg3;
+        let t452 = minus_rate_rod_leg3 * t203;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3
+            * (s_armcross_leg3 * t213 - c_armcross_leg3 * acceleration[2]
+                - (t450 * t187 + t452 + t452) - t174 * rate_dot_arm_leg3);
+        let t459 = s_rod_leg3 * rate_dot_cross_leg3;
+        let t460 = minus_rate_rod_leg3 * t206;
+        let t462 = t459 - t460 - t460;
+        let t463 = c_rod_leg3 * t462;
+        let t464 = t182 * t463;
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * t200;
+        let t468 = s_rod_leg3 * t208;
+        let t469 = 1.7241379310344827 * t468;
+        let gcross_vz_leg3 = s_arm_leg3 * t445;
         let gcross_wz_leg3 = t30 * gcross_vx_leg3 - t35 * gcross_vy_leg3;
         let grod_wz_leg3 = t35 * minus_grod_vy_leg3;
-        let t464 = t188 * t455;
-        let t465 = grod_wz_leg3 * t464;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t248 * garm_vx_leg4);
-        let t469 = 1.7241379310344827 * t258;
-        let t470 = rate_rod_leg4 * t469;
-        let t474 = t246 * rate_arm_leg4;
-        let t475 = t233 * rate_cross_leg4;
-        let rate_dot_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * t265 - c_armcross_leg4 * acceleration[2]
-                - (t474 - t475 - t475) - t248 * rate_dot_arm_leg4);
-        let t482 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t484 = t470 + t482 + t470;
-        let t485 = c_rod_leg4 * t484;
-        let t486 = t230 * t485;
-        let t488 = s_rod_leg4 * rate_cross_leg4;
-        let t489 = t469 * t488;
-        let t490 = grod_vx_leg4 * t489;
-        let t492 = grod_vx_leg4 / s_cross_leg4;
-        let gcross_vy_leg4 = c_arm_leg4 * t492;
-        let gcross_vz_leg4 = s_arm_leg4 * t492;
+        let t478 = t189 * t469;
+        let t479 = grod_wz_leg3 * t478;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t270;
+        let t485 = t243 * rate_cross_leg4;
+        let t489 = 0.26 * rate_dot_arm_leg4;
+        let t491 = s_armcross_leg4 * t279 - c_armcross_leg4 * acceleration[2]
+            - (t258 - t485 - t485) - c_cross_leg4 * t489;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t491;
+        let t493 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t494 = 1.7241379310344827 * t272;
+        let t495 = rate_rod_leg4 * t494;
+        let t496 = t493 + t495;
+        let t499 = c_rod_leg4 * (1.7241379310344827 * t485);
+        let t500 = s_rod_leg4 * t496 + t499;
+        let t502 = t239 * t494;
+        let t503 = t494 * t502;
+        let t504 = grod_vx_leg4 * t503;
+        let t506 = grod_vx_leg4 / s_cross_leg4;
+        let gcross_vy_leg4 = c_arm_leg4 * t506;
+        let gcross_vz_leg4 = s_arm_leg4 * t506;
         let minus_gcross_wz_leg4 = t106 * gcross_vy_leg4 + t109 * minus_gcross_vx_leg4;
-        let t501 = t109 * t490;
-        let t503 = s_rod_leg1 * t361;
-        let t506 = t503 + t376 - (minus_rate_dot_cross_leg1 + t503);
-        let t509 = t49 * t506 - c_rod_leg1 * t375;
-        let t511 = t360 * t360;
-        let t512 = t66 - t511;
-        let t514 = grod_vy_leg1 * (t512 - t511);
-        let t521 = s_rod_leg2 * t408;
-        let t524 = t521 - minus_rate_dot_cross_leg2 - t411 - t521;
-        let t527 = t96 * t524 + c_rod_leg2 * t410;
-        let t529 = t96 * t414;
-        let t531 = t529 - t407 * t407;
-        let t540 = s_rod_leg3 * rate_dot_cross_leg3;
-        let t542 = t540 - t443 - t443;
-        let t544 = t180 * t448 + c_rod_leg3 * t542;
-        let t547 = s_rod_leg3 * t454;
-        let t549 = t547 - t442 * t442;
-        let t556 = t488 * t488;
-        let t559 = grod_vx_leg4 * (t556 - t469 * t469);
-        let t560 = s_rod_leg4 * t470;
-        let t563 = rate_dot_cross_leg4 + t560 - t486 - t560;
-        let t565 = t485 + t230 * t563;
+        let grod_wz_leg4 = t109 * grod_vx_leg4;
+        let t516 = grod_wz_leg4 * t503;
+        let t518 = t390 - minus_rate_dot_cross_leg1;
+        let t521 = t49 * t518 - c_rod_leg1 * t389;
+        let t523 = s_rod_leg1 * t395;
+        let t525 = t523 - (t66 - t523);
+        let t533 = minus_rate_dot_cross_leg2 + t427;
+        let t535 = t426 - t96 * t533;
+        let t537 = t96 * t430;
+        let t539 = t537 - t422 * t422;
+        let t547 = rate_dot_cross_leg3 - t464;
+        let t549 = t182 * t547 + t463;
+        let t552 = t205 - t207;
+        let t559 = t502 * t502;
+        let t561 = t559 - t494 * t494;
+        let t563 = t495 + t496;
+        let t568 = c_rod_leg4 * (1.7241379310344827 * (t491 - t485)) - t499;
+        let t570 = c_rod_leg4 * t563 + t239 * t568;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t78;
-        let t578 = s_rod_leg1 * (t382 + rate_dot_rod_leg1) + c_rod_leg1 * (t68 - t512);
-        let t581 = grod_vy_leg1 * t373;
+        let t583 = s_rod_leg1 * (t396 + rate_dot_rod_leg1) + c_rod_leg1 * (t68 - t523);
         let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t149;
-        let t592 = s_rod_leg2 * (t414 - minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t131 - t529);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t212;
-        let t606 = s_rod_leg3 * (t464 - minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t191 - t547);
-        let t615 = grod_vx_leg4 * t482;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t273;
-        let t621 = s_rod_leg4 * (t489 + rate_dot_rod_leg4) + c_rod_leg4 * (t254 - t556);
-        let t653 = 1.7241379310344827 * t76;
-        let t656 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t662 = 1.7241379310344827 * t147;
-        let t664 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t671 = 1.7241379310344827 * t210;
-        let t674 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t680 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t681 = 1.7241379310344827 * t271;
-        let t689 = grod_vy_leg1 * rate_dot_rod_leg1;
-        let t695 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t697 = 0.26 * s_cross_leg1;
-        let t701 = t59 * t375 - t697 * (t653 - t381);
-        let t703 = t306 + t55;
-        let t705 = t362 - t286;
-        let t708 = s_rod_leg1 * (s_cross_leg1 * t703 + c_cross_leg1 * t705);
-        let t716 = s_cross_leg1 * t705 - c_cross_leg1 * t703;
-        let t717 = 1.7241379310344827 * t716;
-        let t727 = t402 - t291;
-        let t729 = t311 + t126;
-        let t731 = s_cross_leg2 * t727 - c_cross_leg2 * t729;
-        let t732 = 1.7241379310344827 * t731;
-        let t733 = 0.26 * s_cross_leg2;
-        let t742 = t733 * (c_rod_leg2 * (t414 + minus_rate_dot_rod_leg2))
-            + t733 * s_rod_leg2 * (t529 + t131) - t135 * t410;
-        let t747 = s_rod_leg2 * (s_cross_leg2 * t729 + c_cross_leg2 * t727);
-        let t762 = 0.26 * s_cross_leg3;
-        let t766 = t762 * (t671 + t454) - t195 * t542;
-        let t768 = t316 + t186;
-        let t770 = t438 - t296;
-        let t773 = s_rod_leg3 * (s_cross_leg3 * t768 + c_cross_leg3 * t770);
-        let t778 = s_cross_leg3 * t770 - c_cross_leg3 * t768;
-        let t779 = 1.7241379310344827 * t778;
-        let t792 = 0.26 * s_cross_leg4;
-        let t801 = t792 * (c_rod_leg4 * (t489 - rate_dot_rod_leg4))
-            + t792 * s_rod_leg4 * (t556 + t254) - t248 * t484;
-        let t804 = t321 + t474 / s_cross_leg4;
-        let t807 = 0.26 * rate_dot_arm_leg4 - t301;
-        let t810 = s_rod_leg4 * (s_cross_leg4 * t804 + c_cross_leg4 * t807);
-        let t815 = s_cross_leg4 * t807 - c_cross_leg4 * t804;
-        let t816 = 1.7241379310344827 * t815;
-        let t831 = t59 * t66 - t697 * minus_rate_dot_cross_leg1;
-        let t847 = t135 * t139 - t733 * minus_rate_dot_cross_leg2;
-        let t862 = t762 * rate_dot_cross_leg3 + t195 * t199;
-        let t876 = t792 * rate_dot_cross_leg4 + t248 * t260;
+        let t597 = s_rod_leg2 * (t430 - minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t131 - t537);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t221;
+        let t611 = s_rod_leg3 * (t478 - minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t192 - t205);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t287;
+        let t626 = s_rod_leg4 * (t503 + rate_dot_rod_leg4) + c_rod_leg4 * (t263 - t559);
+        let t658 = 1.7241379310344827 * t76;
+        let t661 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t667 = 1.7241379310344827 * t147;
+        let t669 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t676 = 1.7241379310344827 * t219;
+        let t679 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t685 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t686 = 1.7241379310344827 * t285;
+        let t702 = 0.26 * s_cross_leg1;
+        let t706 = t59 * t389 - t702 * (t658 - t395);
+        let t708 = t320 + t55;
+        let t710 = t376 - t300;
+        let t713 = s_rod_leg1 * (s_cross_leg1 * t708 + c_cross_leg1 * t710);
+        let t721 = s_cross_leg1 * t710 - c_cross_leg1 * t708;
+        let t722 = 1.7241379310344827 * t721;
+        let t732 = t417 - t305;
+        let t734 = t325 + t126;
+        let t736 = s_cross_leg2 * t732 - c_cross_leg2 * t734;
+        let t737 = 1.7241379310344827 * t736;
+        let t738 = 0.26 * s_cross_leg2;
+        let t747 = t738 * (c_rod_leg2 * (t430 + minus_rate_dot_rod_leg2))
+            + t738 * s_rod_leg2 * (t537 + t131) - t135 * t425;
+        let t752 = s_rod_leg2 * (s_cross_leg2 * t734 + c_cross_leg2 * t732);
+        let t770 = t450 * (t676 + t468) - t174 * t462;
+        let t773 = t330 + 0.26 * t187;
+        let t776 = t223 - s_cross_leg3 * t310;
+        let t779 = s_rod_leg3 * (s_cross_leg3 * t773 + t193 * t776);
+        let t783 = t776 - c_cross_leg3 * t773;
+        let t784 = 1.7241379310344827 * t783;
+        let t797 = 0.26 * s_cross_leg4;
+        let t806 = t797 * (c_rod_leg4 * (t503 - rate_dot_rod_leg4))
+            + t797 * s_rod_leg4 * (t559 + t263) - t269 * t563;
+        let t809 = t258 + s_cross_leg4 * t335;
+        let t810 = t489 - t315;
+        let t813 = s_rod_leg4 * (t809 + c_cross_leg4 * t810);
+        let t818 = s_cross_leg4 * t810 - t241 * t809;
+        let t819 = 1.7241379310344827 * t818;
+        let t834 = t59 * t66 - t702 * minus_rate_dot_cross_leg1;
+        let t850 = t135 * t139 - t738 * minus_rate_dot_cross_leg2;
+        let t865 = t450 * rate_dot_cross_leg3 + t174 * t208;
+        let t879 = t797 * rate_dot_cross_leg4 + t269 * t274;
         Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vx_leg3 * rate_dot_arm_leg3), garm_vx_leg4 * rate_dot_arm_leg4,
-                -(garm_vx_leg1 * t286), minus_garm_vx_leg2 * t291, minus_garm_vx_leg3 * t296,
-                -(garm_vx_leg4 * t301), garm_vx_leg1 * t306, -(minus_garm_vx_leg2 * t311),
-                -(minus_garm_vx_leg3 * t316), garm_vx_leg4 * t321, garm_vx_leg1 * rate_arm_leg1,
+                -(garm_vx_leg1 * t300), minus_garm_vx_leg2 * t305, minus_garm_vx_leg3 * t310,
+                -(garm_vx_leg4 * t315), garm_vx_leg1 * t320, -(minus_garm_vx_leg2 * t325),
+                -(minus_garm_vx_leg3 * t330), garm_vx_leg4 * t335, garm_vx_leg1 * rate_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_arm_leg2), minus_garm_vx_leg3 * minus_rate_arm_leg3,
                 garm_vx_leg4 * rate_arm_leg4, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
                 -::overact::math::signed(minus_garm_vx_leg2, rate_arm_leg2),
                 ::overact::math::signed(minus_garm_vx_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_vx_leg4, rate_arm_leg4), garm_vx_leg1,
-                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t376,
-                gcross_vx_leg2 * t411 + t415, gcross_vx_leg3 * t449,
-                -(minus_gcross_vx_leg4 * t486 + t490), -(minus_gcross_vx_leg1 * t509),
-                gcross_vx_leg2 * t527 - minus_grod_vx_leg2 * t531, gcross_vx_leg3 * t544,
-                t559 - minus_gcross_vx_leg4 * t565, -(minus_gcross_vx_leg1 * t578),
-                gcross_vx_leg2 * t592 + minus_grod_vx_leg2 * t406, gcross_vx_leg3 * t606,
-                t615 - minus_gcross_vx_leg4 * t621, -(minus_gcross_vx_leg1 * t506),
-                gcross_vx_leg2 * t524 - t415, gcross_vx_leg3 * t448,
-                t490 - minus_gcross_vx_leg4 * t563, -(minus_gcross_vx_leg1 * t653),
-                -(gcross_vx_leg2 * t662 - t664), -(gcross_vx_leg3 * t671),
-                t680 - minus_gcross_vx_leg4 * t681, 0.0,
-                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, t695,
-                garm_vx_leg1 * t701 + minus_gcross_vx_leg1 * t708,
-                t732 - (minus_garm_vx_leg2 * t742 + gcross_vx_leg2 * t747),
-                -(minus_garm_vx_leg3 * t766 + gcross_vx_leg3 * t773),
-                garm_vx_leg4 * t801 + minus_gcross_vx_leg4 * t810 - t816,
-                garm_vx_leg1 * t831 - minus_gcross_vx_leg1 * t716,
-                gcross_vx_leg2 * t731 - minus_garm_vx_leg2 * t847,
-                gcross_vx_leg3 * t778 - minus_garm_vx_leg3 * t862,
-                garm_vx_leg4 * t876 - minus_gcross_vx_leg4 * t815,
+                -minus_garm_vx_leg2, -minus_garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t390,
+                gcross_vx_leg2 * t427 + t431, gcross_vx_leg3 * t464,
+                -(minus_gcross_vx_leg4 * t500 + t504), -(minus_gcross_vx_leg1 * t521),
+                gcross_vx_leg2 * t535 - minus_grod_vx_leg2 * t539, gcross_vx_leg3 * t549,
+                grod_vx_leg4 * t561 - minus_gcross_vx_leg4 * t570, -(minus_gcross_vx_leg1 * t583),
+                gcross_vx_leg2 * t597 + minus_grod_vx_leg2 * t421, gcross_vx_leg3 * t611,
+                grod_vx_leg4 * t493 - minus_gcross_vx_leg4 * t626, -(minus_gcross_vx_leg1 * t518),
+                -(gcross_vx_leg2 * t533 + t431), gcross_vx_leg3 * t547,
+                t504 - minus_gcross_vx_leg4 * t568, -(minus_gcross_vx_leg1 * t658),
+                -(gcross_vx_leg2 * t667 - t669), -(gcross_vx_leg3 * t676),
+                t685 - minus_gcross_vx_leg4 * t686, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
+                garm_vx_leg1 * t706 + minus_gcross_vx_leg1 * t713,
+                t737 - (minus_garm_vx_leg2 * t747 + gcross_vx_leg2 * t752),
+                -(minus_garm_vx_leg3 * t770 + gcross_vx_leg3 * t779),
+                garm_vx_leg4 * t806 + minus_gcross_vx_leg4 * t813 - t819,
+                garm_vx_leg1 * t834 - minus_gcross_vx_leg1 * t721,
+                gcross_vx_leg2 * t736 - minus_garm_vx_leg2 * t850,
+                gcross_vx_leg3 * t783 - minus_garm_vx_leg3 * t865,
+                garm_vx_leg4 * t879 - minus_gcross_vx_leg4 * t818,
             ],
             [
                 0.0, -t8, -t5, acceleration[1], garm_vy_leg1 * rate_dot_arm_leg1,
                 garm_vy_leg2 * rate_dot_arm_leg2, -(minus_garm_vy_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t286),
-                -(garm_vy_leg2 * t291), minus_garm_vy_leg3 * t296, minus_garm_vy_leg4 * t301,
-                garm_vy_leg1 * t306, garm_vy_leg2 * t311, -(minus_garm_vy_leg3 * t316),
-                -(minus_garm_vy_leg4 * t321), garm_vy_leg1 * rate_arm_leg1,
+                -(minus_garm_vy_leg4 * rate_dot_arm_leg4), -(garm_vy_leg1 * t300),
+                -(garm_vy_leg2 * t305), minus_garm_vy_leg3 * t310, minus_garm_vy_leg4 * t315,
+                garm_vy_leg1 * t320, garm_vy_leg2 * t325, -(minus_garm_vy_leg3 * t330),
+                -(minus_garm_vy_leg4 * t335), garm_vy_leg1 * rate_arm_leg1,
                 garm_vy_leg2 * rate_arm_leg2, minus_garm_vy_leg3 * minus_rate_arm_leg3,
                 -(minus_garm_vy_leg4 * rate_arm_leg4),
                 ::overact::math::signed(garm_vy_leg1, rate_arm_leg1),
@@ -6872,34 +6901,34 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vy_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vy_leg4, rate_arm_leg4), garm_vy_leg1,
                 garm_vy_leg2, -minus_garm_vy_leg3, -minus_garm_vy_leg4,
-                minus_gcross_vy_leg1 * t376 - t383, -(minus_gcross_vy_leg2 * t411),
-                gcross_vy_leg3 * t449 + t455, gcross_vy_leg4 * t486,
-                t514 - minus_gcross_vy_leg1 * t509, -(minus_gcross_vy_leg2 * t527),
-                gcross_vy_leg3 * t544 - minus_grod_vy_leg3 * t549, gcross_vy_leg4 * t565,
-                -(minus_gcross_vy_leg1 * t578 + t581), -(minus_gcross_vy_leg2 * t592),
-                gcross_vy_leg3 * t606 - minus_grod_vy_leg3 * t540, gcross_vy_leg4 * t621,
-                t383 - minus_gcross_vy_leg1 * t506, -(minus_gcross_vy_leg2 * t524),
-                gcross_vy_leg3 * t448 - t455, gcross_vy_leg4 * t563,
-                -(minus_gcross_vy_leg1 * t653 + t656), minus_gcross_vy_leg2 * t662,
-                -(gcross_vy_leg3 * t671 + t674), gcross_vy_leg4 * t681, t689, 0.0,
-                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
-                garm_vy_leg1 * t701 + minus_gcross_vy_leg1 * t708 - t717,
-                garm_vy_leg2 * t742 + minus_gcross_vy_leg2 * t747,
-                t779 - (minus_garm_vy_leg3 * t766 + gcross_vy_leg3 * t773),
-                -(minus_garm_vy_leg4 * t801 + gcross_vy_leg4 * t810),
-                garm_vy_leg1 * t831 - minus_gcross_vy_leg1 * t716,
-                garm_vy_leg2 * t847 - minus_gcross_vy_leg2 * t731,
-                gcross_vy_leg3 * t778 - minus_garm_vy_leg3 * t862,
-                gcross_vy_leg4 * t815 - minus_garm_vy_leg4 * t876,
+                minus_gcross_vy_leg1 * t390 - t397, -(minus_gcross_vy_leg2 * t427),
+                gcross_vy_leg3 * t464 + t469, gcross_vy_leg4 * t500,
+                grod_vy_leg1 * t525 - minus_gcross_vy_leg1 * t521, -(minus_gcross_vy_leg2 * t535),
+                gcross_vy_leg3 * t549 - minus_grod_vy_leg3 * t552, gcross_vy_leg4 * t570,
+                -(minus_gcross_vy_leg1 * t583 + grod_vy_leg1 * t387),
+                -(minus_gcross_vy_leg2 * t597), gcross_vy_leg3 * t611 - minus_grod_vy_leg3 * t459,
+                gcross_vy_leg4 * t626, t397 - minus_gcross_vy_leg1 * t518,
+                minus_gcross_vy_leg2 * t533, gcross_vy_leg3 * t547 - t469, gcross_vy_leg4 * t568,
+                -(minus_gcross_vy_leg1 * t658 + t661), minus_gcross_vy_leg2 * t667,
+                -(gcross_vy_leg3 * t676 + t679), gcross_vy_leg4 * t686,
+                grod_vy_leg1 * rate_dot_rod_leg1, 0.0, minus_grod_vy_leg3 * minus_rate_dot_rod_leg3,
+                0.0, garm_vy_leg1 * t706 + minus_gcross_vy_leg1 * t713 - t722,
+                garm_vy_leg2 * t747 + minus_gcross_vy_leg2 * t752,
+                t784 - (minus_garm_vy_leg3 * t770 + gcross_vy_leg3 * t779),
+                -(minus_garm_vy_leg4 * t806 + gcross_vy_leg4 * t813),
+                garm_vy_leg1 * t834 - minus_gcross_vy_leg1 * t721,
+                garm_vy_leg2 * t850 - minus_gcross_vy_leg2 * t736,
+                gcross_vy_leg3 * t783 - minus_garm_vy_leg3 * t865,
+                gcross_vy_leg4 * t818 - minus_garm_vy_leg4 * t879,
             ],
             [
                 0.0, 0.0, 0.0, acceleration[2] + 9.81, -(minus_garm_vz_leg1 * rate_dot_arm_leg1),
                 -(minus_garm_vz_leg2 * rate_dot_arm_leg2),
                 -(minus_garm_vz_leg3 * rate_dot_arm_leg3),
-                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t286,
-                minus_garm_vz_leg2 * t291, minus_garm_vz_leg3 * t296, minus_garm_vz_leg4 * t301,
-                -(minus_garm_vz_leg1 * t306), -(minus_garm_vz_leg2 * t311),
-                -(minus_garm_vz_leg3 * t316), -(minus_garm_vz_leg4 * t321),
+                -(minus_garm_vz_leg4 * rate_dot_arm_leg4), minus_garm_vz_leg1 * t300,
+                minus_garm_vz_leg2 * t305, minus_garm_vz_leg3 * t310, minus_garm_vz_leg4 * t315,
+                -(minus_garm_vz_leg1 * t320), -(minus_garm_vz_leg2 * t325),
+                -(minus_garm_vz_leg3 * t330), -(minus_garm_vz_leg4 * t335),
                 -(minus_garm_vz_leg1 * rate_arm_leg1), -(minus_garm_vz_leg2 * rate_arm_leg2),
                 minus_garm_vz_leg3 * minus_rate_arm_leg3, -(minus_garm_vz_leg4 * rate_arm_leg4),
                 -::overact::math::signed(minus_garm_vz_leg1, rate_arm_leg1),
@@ -6907,58 +6936,59 @@ impl Schoenflies4 {
                 ::overact::math::signed(minus_garm_vz_leg3, minus_rate_arm_leg3),
                 -::overact::math::signed(minus_garm_vz_leg4, rate_arm_leg4), -minus_garm_vz_leg1,
                 -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                -(minus_minus_gcross_vz_leg1 * t376), gcross_vz_leg2 * t411, gcross_vz_leg3 * t449,
-                gcross_vz_leg4 * t486, minus_minus_gcross_vz_leg1 * t509, gcross_vz_leg2 * t527,
-                gcross_vz_leg3 * t544, gcross_vz_leg4 * t565, minus_minus_gcross_vz_leg1 * t578,
-                gcross_vz_leg2 * t592, gcross_vz_leg3 * t606, gcross_vz_leg4 * t621,
-                minus_minus_gcross_vz_leg1 * t506, gcross_vz_leg2 * t524, gcross_vz_leg3 * t448,
-                gcross_vz_leg4 * t563, minus_minus_gcross_vz_leg1 * t653, -(gcross_vz_leg2 * t662),
-                -(gcross_vz_leg3 * t671), gcross_vz_leg4 * t681, 0.0, 0.0, 0.0, 0.0,
-                -(minus_minus_gcross_vz_leg1 * t708 + minus_garm_vz_leg1 * t701),
-                -(minus_garm_vz_leg2 * t742 + gcross_vz_leg2 * t747),
-                -(minus_garm_vz_leg3 * t766 + gcross_vz_leg3 * t773),
-                -(minus_garm_vz_leg4 * t801 + gcross_vz_leg4 * t810),
-                -(minus_garm_vz_leg1 * t831 - minus_minus_gcross_vz_leg1 * t716),
-                gcross_vz_leg2 * t731 - minus_garm_vz_leg2 * t847,
-                gcross_vz_leg3 * t778 - minus_garm_vz_leg3 * t862,
-                gcross_vz_leg4 * t815 - minus_garm_vz_leg4 * t876,
+                -(minus_minus_gcross_vz_leg1 * t390), gcross_vz_leg2 * t427, gcross_vz_leg3 * t464,
+                gcross_vz_leg4 * t500, minus_minus_gcross_vz_leg1 * t521, gcross_vz_leg2 * t535,
+                gcross_vz_leg3 * t549, gcross_vz_leg4 * t570, minus_minus_gcross_vz_leg1 * t583,
+                gcross_vz_leg2 * t597, gcross_vz_leg3 * t611, gcross_vz_leg4 * t626,
+                minus_minus_gcross_vz_leg1 * t518, -(gcross_vz_leg2 * t533), gcross_vz_leg3 * t547,
+                gcross_vz_leg4 * t568, minus_minus_gcross_vz_leg1 * t658, -(gcross_vz_leg2 * t667),
+                -(gcross_vz_leg3 * t676), gcross_vz_leg4 * t686, 0.0, 0.0, 0.0, 0.0,
+                -(minus_minus_gcross_vz_leg1 * t713 + minus_garm_vz_leg1 * t706),
+                -(minus_garm_vz_leg2 * t747 + gcross_vz_leg2 * t752),
+                -(minus_garm_vz_leg3 * t770 + gcross_vz_leg3 * t779),
+                -(minus_garm_vz_leg4 * t806 + gcross_vz_leg4 * t813),
+                -(minus_garm_vz_leg1 * t834 - minus_minus_gcross_vz_leg1 * t721),
+                gcross_vz_leg2 * t736 - minus_garm_vz_leg2 * t850,
+                gcross_vz_leg3 * t783 - minus_garm_vz_leg3 * t865,
+                gcross_vz_leg4 * t818 - minus_garm_vz_leg4 * t879,
             ],
             [
                 acceleration[3], c_phi * acceleration[1] - s_phi * acceleration[0],
                 -(s_phi * acceleration[1] + c_phi * acceleration[0]), 0.0,
                 garm_wz_leg1 * rate_dot_arm_leg1, garm_wz_leg2 * rate_dot_arm_leg2,
                 garm_wz_leg3 * rate_dot_arm_leg3, garm_wz_leg4 * rate_dot_arm_leg4,
-                -(garm_wz_leg1 * t286), -(garm_wz_leg2 * t291), -(garm_wz_leg3 * t296),
-                -(garm_wz_leg4 * t301), garm_wz_leg1 * t306, garm_wz_leg2 * t311,
-                garm_wz_leg3 * t316, garm_wz_leg4 * t321, garm_wz_leg1 * rate_arm_leg1,
+                -(garm_wz_leg1 * t300), -(garm_wz_leg2 * t305), -(garm_wz_leg3 * t310),
+                -(garm_wz_leg4 * t315), garm_wz_leg1 * t320, garm_wz_leg2 * t325,
+                garm_wz_leg3 * t330, garm_wz_leg4 * t335, garm_wz_leg1 * rate_arm_leg1,
                 garm_wz_leg2 * rate_arm_leg2, -(garm_wz_leg3 * minus_rate_arm_leg3),
                 garm_wz_leg4 * rate_arm_leg4, ::overact::math::signed(garm_wz_leg1, rate_arm_leg1),
                 ::overact::math::signed(garm_wz_leg2, rate_arm_leg2),
                 -::overact::math::signed(garm_wz_leg3, minus_rate_arm_leg3),
                 ::overact::math::signed(garm_wz_leg4, rate_arm_leg4), garm_wz_leg1, garm_wz_leg2,
-                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t376 + t391),
-                -(minus_gcross_wz_leg2 * t411 + t427), gcross_wz_leg3 * t449 - t465,
-                -(minus_gcross_wz_leg4 * t486 + t501), gcross_wz_leg1 * t509 + t35 * t514,
-                grod_wz_leg2 * t531 - minus_gcross_wz_leg2 * t527,
-                gcross_wz_leg3 * t544 + grod_wz_leg3 * t549,
-                t109 * t559 - minus_gcross_wz_leg4 * t565, gcross_wz_leg1 * t578 - t35 * t581,
-                -(grod_wz_leg2 * t406 + minus_gcross_wz_leg2 * t592),
-                gcross_wz_leg3 * t606 + grod_wz_leg3 * t540,
-                t109 * t615 - minus_gcross_wz_leg4 * t621, gcross_wz_leg1 * t506 + t391,
-                t427 - minus_gcross_wz_leg2 * t524, gcross_wz_leg3 * t448 + t465,
-                t501 - minus_gcross_wz_leg4 * t563, gcross_wz_leg1 * t653 - t35 * t656,
-                minus_gcross_wz_leg2 * t662 - t109 * t664, t35 * t674 - gcross_wz_leg3 * t671,
-                t109 * t680 - minus_gcross_wz_leg4 * t681, t35 * t689,
+                garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t390 + t406),
+                -(minus_gcross_wz_leg2 * t427 + t443), gcross_wz_leg3 * t464 - t479,
+                -(minus_gcross_wz_leg4 * t500 + t516), gcross_wz_leg1 * t521 + grod_wz_leg1 * t525,
+                grod_wz_leg2 * t539 - minus_gcross_wz_leg2 * t535,
+                gcross_wz_leg3 * t549 + grod_wz_leg3 * t552,
+                grod_wz_leg4 * t561 - minus_gcross_wz_leg4 * t570,
+                gcross_wz_leg1 * t583 - grod_wz_leg1 * t387,
+                -(grod_wz_leg2 * t421 + minus_gcross_wz_leg2 * t597),
+                gcross_wz_leg3 * t611 + grod_wz_leg3 * t459,
+                grod_wz_leg4 * t493 - minus_gcross_wz_leg4 * t626, gcross_wz_leg1 * t518 + t406,
+                t443 + minus_gcross_wz_leg2 * t533, gcross_wz_leg3 * t547 + t479,
+                t516 - minus_gcross_wz_leg4 * t568, gcross_wz_leg1 * t658 - t35 * t661,
+                minus_gcross_wz_leg2 * t667 - t109 * t669, t35 * t679 - gcross_wz_leg3 * t676,
+                t109 * t685 - minus_gcross_wz_leg4 * t686, grod_wz_leg1 * rate_dot_rod_leg1,
                 -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
-                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), t109 * t695,
-                garm_wz_leg1 * t701 - gcross_wz_leg1 * t708 - t35 * t717,
-                garm_wz_leg2 * t742 + minus_gcross_wz_leg2 * t747 - t109 * t732,
-                garm_wz_leg3 * t766 - gcross_wz_leg3 * t773 - t35 * t779,
-                garm_wz_leg4 * t801 + minus_gcross_wz_leg4 * t810 - t109 * t816,
-                garm_wz_leg1 * t831 + gcross_wz_leg1 * t716,
-                garm_wz_leg2 * t847 - minus_gcross_wz_leg2 * t731,
-                garm_wz_leg3 * t862 + gcross_wz_leg3 * t778,
-                garm_wz_leg4 * t876 - minus_gcross_wz_leg4 * t815,
+                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
+                garm_wz_leg1 * t706 - gcross_wz_leg1 * t713 - t35 * t722,
+                garm_wz_leg2 * t747 + minus_gcross_wz_leg2 * t752 - t109 * t737,
+                garm_wz_leg3 * t770 - gcross_wz_leg3 * t779 - t35 * t784,
+                garm_wz_leg4 * t806 + minus_gcross_wz_leg4 * t813 - t109 * t819,
+                garm_wz_leg1 * t834 + gcross_wz_leg1 * t721,
+                garm_wz_leg2 * t850 - minus_gcross_wz_leg2 * t736,
+                garm_wz_leg3 * t865 + gcross_wz_leg3 * t783,
+                garm_wz_leg4 * t879 - minus_gcross_wz_leg4 * t818,
             ],
         ])
     }
@@ -6973,7 +7003,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1121 operations (387 additions, 692 multiplications, 42 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 924 intermediates.
+    /// 1130 operations (388 additions, 704 multiplications, 38 divisions), 8 square roots, 1 trigonometric pairs, 16 signs, 933 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7020,551 +7050,555 @@ impl Schoenflies4 {
             + minus_s_arm_leg1 * s_cross_leg1;
         let garm_vx_leg1 = c_armcross_leg1 * t27;
         let garm_wz_leg1 = t4 * garm_vy_leg1 - t13 * garm_vx_leg1;
-        let t50 = 0.26 * c_cross_leg1;
-        let t51 = actuator_velocities[0] * actuator_velocities[0];
-        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
-            - minus_s_arm_leg1 * c_cross_leg1;
-        let t58 = garm_vx_leg1 * actuator_velocities[0];
-        let t59 = t3 + t2;
-        let t61 = pose[1] + t59 - 0.24;
-        let t63 = t61 * t61 + t8;
-        let t64 = 0.2704 * t63;
-        let t65 = t12 - t11;
-        let t66 = pose[0] + t65;
-        let t68 = 0.3364 - t66 * t66;
-        let t69 = t63 - t68;
-        let t70 = t69 + 0.0676;
-        let t72 = t64 - t70 * t70;
-        ::overact::guard::reach(t72, "leg2")?;
-        let t73 = ::overact::math::sqrt(t72);
-        let t74 = 2.972651605231867 * t68;
+        let t51 = t12 - t11;
+        let t52 = t3 + t2;
+        let t54 = pose[1] + t52 - 0.24;
+        let t55 = 0.52 * t54;
+        let t56 = pose[0] + t51;
+        let t57 = t56 * t56;
+        let t58 = t54 * t54;
+        let t61 = t57 + t58 + t8 - 0.3364;
+        let t62 = t61 + 0.0676;
+        let t65 = 0.2704 * (t58 + t8);
+        let t67 = t65 - t62 * t62;
+        ::overact::guard::reach(t67, "leg2")?;
+        let t68 = ::overact::math::sqrt(t67);
+        let c_arm_leg2 = (t55 * t62 - t34 * t68) / t65;
+        let t74 = 2.972651605231867 * (0.3364 - t57);
         ::overact::guard::reach(t74, "leg2")?;
         let c_rod_leg2 = ::overact::math::sqrt(t74);
         let t76 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t73 / t76;
+        let c_cross_leg2 = (-0.0676 + t61) / t76;
+        let minus_s_arm_leg2 = (t34 * t62 + t55 * t68) / t65;
+        let t84 = 1.9230769230769231 * t76;
+        let s_cross_leg2 = 1.9230769230769231 * t68 / t84;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t78 = 3.8461538461538463 / s_cross_leg2;
+        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
+            + minus_s_arm_leg2 * s_cross_leg2;
+        let t88 = 3.8461538461538463 / s_cross_leg2;
+        let garm_vy_leg2 = c_armcross_leg2 * t88;
         let minus_grod_vx_leg2 = 0.52 / t76;
-        let t80 = t66 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t78 * t80;
-        let t82 = garm_vx_leg2 * actuator_velocities[1];
-        let t85 = pose[0] - t4 + 0.24;
-        let t86 = 0.52 * t85;
-        let t88 = t85 * t85 + t8;
-        let t89 = pose[1] - t13;
-        let t91 = 0.3364 - t89 * t89;
-        let t92 = t88 - t91;
-        let t93 = t92 + 0.0676;
-        let t95 = 0.2704 * t88;
-        let t97 = t95 - t93 * t93;
-        ::overact::guard::reach(t97, "leg3")?;
-        let t98 = ::overact::math::sqrt(t97);
-        let minus_c_arm_leg3 = (t86 * t93 + t34 * t98) / t95;
-        let t103 = 2.972651605231867 * t91;
-        ::overact::guard::reach(t103, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t103);
-        let t105 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t92) / t105;
-        let s_arm_leg3 = (t86 * t98 - t34 * t93) / t95;
-        let s_cross_leg3 = t98 / t105;
+        let t92 = t56 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t88 * t92;
+        let garm_wz_leg2 = t51 * garm_vy_leg2 - t52 * garm_vx_leg2;
+        let t99 = pose[0] - t4 + 0.24;
+        let t100 = 0.52 * t99;
+        let t102 = t99 * t99 + t8;
+        let t103 = pose[1] - t13;
+        let t105 = 0.3364 - t103 * t103;
+        let t106 = t102 - t105;
+        let t107 = t106 + 0.0676;
+        let t109 = 0.2704 * t102;
+        let t111 = t109 - t107 * t107;
+        ::overact::guard::reach(t111, "leg3")?;
+        let t112 = ::overact::math::sqrt(t111);
+        let minus_c_arm_leg3 = (t100 * t107 + t34 * t112) / t109;
+        let t117 = 2.972651605231867 * t105;
+        ::overact::guard::reach(t117, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t117);
+        let t119 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t106) / t119;
+        let s_arm_leg3 = (t100 * t112 - t34 * t107) / t109;
+        let s_cross_leg3 = t112 / t119;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t115 = 3.8461538461538463 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t115;
-        let t117 = garm_vx_leg3 * actuator_velocities[2];
-        let t120 = pose[1] - t59 + 0.24;
-        let t122 = t120 * t120 + t8;
-        let t123 = 0.2704 * t122;
-        let t124 = pose[0] - t65;
-        let t126 = 0.3364 - t124 * t124;
-        let t127 = t122 - t126;
-        let t128 = t127 + 0.0676;
-        let t130 = t123 - t128 * t128;
-        ::overact::guard::reach(t130, "leg4")?;
-        let t131 = ::overact::math::sqrt(t130);
-        let t132 = 2.972651605231867 * t126;
-        ::overact::guard::reach(t132, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t132);
-        let t134 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t131 / t134;
+        let t129 = 1.0 / s_cross_leg3;
+        let t130 = 3.8461538461538463 * t129;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t130;
+        let minus_grod_vy_leg3 = 0.52 / t119;
+        let t134 = t103 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t130 * t134;
+        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
+        let t141 = pose[1] - t52 + 0.24;
+        let t143 = t141 * t141 + t8;
+        let t144 = 0.2704 * t143;
+        let t145 = pose[0] - t51;
+        let t147 = 0.3364 - t145 * t145;
+        let t148 = t143 - t147;
+        let t149 = t148 + 0.0676;
+        let t151 = t144 - t149 * t149;
+        ::overact::guard::reach(t151, "leg4")?;
+        let t152 = ::overact::math::sqrt(t151);
+        let t153 = 2.972651605231867 * t147;
+        ::overact::guard::reach(t153, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t153);
+        let t155 = 0.3016 * c_rod_leg4;
+        let s_cross_leg4 = t152 / t155;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t136 = 3.8461538461538463 / s_cross_leg4;
-        let grod_vx_leg4 = 0.52 / t134;
-        let t138 = t124 * grod_vx_leg4;
-        let garm_vx_leg4 = t136 * t138;
-        let t140 = garm_vx_leg4 * actuator_velocities[3];
-        let t141 = t58 + t82 + t117 + t140;
-        let t148 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
-            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t148, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t148, 19.507470815645043, "actuators")?;
-        let t151 = 0.52 * t61;
-        let c_arm_leg2 = (t151 * t70 - t34 * t73) / t64;
-        let c_cross_leg2 = (-0.0676 + t69) / t76;
-        let minus_s_arm_leg2 = (t34 * t70 + t151 * t73) / t64;
-        let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
-            + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t78;
-        let minus_grod_vy_leg3 = 0.52 / t105;
-        let t169 = t89 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t115 * t169;
-        let t173 = 0.52 * t120;
-        let minus_c_arm_leg4 = (t173 * t128 + t34 * t131) / t123;
-        let c_cross_leg4 = (-0.0676 + t127) / t134;
-        let s_arm_leg4 = (t173 * t131 - t34 * t128) / t123;
+        let t157 = 3.8461538461538463 / s_cross_leg4;
+        let grod_vx_leg4 = 0.52 / t155;
+        let t159 = t145 * grod_vx_leg4;
+        let garm_vx_leg4 = t157 * t159;
+        let t162 = 0.52 * t141;
+        let minus_c_arm_leg4 = (t162 * t149 + t34 * t152) / t144;
+        let c_cross_leg4 = (-0.0676 + t148) / t155;
+        let s_arm_leg4 = (t162 * t152 - t34 * t149) / t144;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t136;
-        let t189 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t157;
+        let garm_wz_leg4 = t52 * garm_vx_leg4 - t51 * garm_vy_leg4;
+        let t187 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
+        let t194 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+            + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
+        ::overact::guard::platform(t194, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t194, 19.507470815645043, "actuators")?;
+        let t195 = 1.0 / t194;
+        let t196 = t187 * t195;
+        let t212 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t190 = t189 / t148;
-        let t191 = garm_vy_leg1 * actuator_velocities[0];
-        let t192 = garm_vy_leg2 * actuator_velocities[1];
-        let t194 = garm_vy_leg3 * actuator_velocities[2];
-        let t196 = garm_vy_leg4 * actuator_velocities[3];
-        let t199 = t191 + t192 + t194 + t196 - t141 * t190;
-        let t208 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t189 * t190;
-        ::overact::guard::platform(t208, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t208, 16.505615550045768, "actuators")?;
+        let t214 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t212 * t196;
+        let t222 = t212 * t195;
+        let t224 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t212 * t222;
+        ::overact::guard::platform(t224, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t224, 16.505615550045768, "actuators")?;
+        let t225 = t214 / t224;
+        let t227 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t187 * t196
+            - t214 * t225;
+        let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
+            - minus_s_arm_leg1 * c_cross_leg1;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t27;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t78;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t88;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t115;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t130;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t136;
-        let t229 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t157;
+        let t250 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t230 = t229 / t148;
-        let t239 = t189 * t230
+        let t260 = t250 * t195;
+        let t269 = t212 * t260
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t240 = t239 / t208;
-        let t242 = minus_garm_vz_leg1 * actuator_velocities[0];
-        let t243 = minus_garm_vz_leg2 * actuator_velocities[1];
-        let t245 = minus_garm_vz_leg3 * actuator_velocities[2];
-        let t247 = minus_garm_vz_leg4 * actuator_velocities[3];
-        let t251 = t141 * t230 - (t242 + t243 + t245 + t247) - t240 * t199;
-        let t262 = minus_garm_vz_leg1 * minus_garm_vz_leg1
-            + minus_garm_vz_leg2 * minus_garm_vz_leg2
-            + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t229 * t230 - t239 * t240;
-        ::overact::guard::platform(t262, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t262, 31.11733818900117, "actuators")?;
-        let garm_wz_leg2 = t65 * garm_vy_leg2 - t59 * garm_vx_leg2;
-        let garm_wz_leg3 = t13 * garm_vx_leg3 - t4 * garm_vy_leg3;
-        let garm_wz_leg4 = t59 * garm_vx_leg4 - t65 * garm_vy_leg4;
-        let t279 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
-            + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t280 = t279 / t148;
-        let t298 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t189 * t280;
-        let t299 = t298 / t208;
-        let t301 = t229 * t280
+        let t271 = t250 * t196
             - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
                 + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t239 * t299;
-        let t302 = t301 / t262;
-        let t303 = garm_wz_leg1 * actuator_velocities[0];
-        let t304 = garm_wz_leg2 * actuator_velocities[1];
-        let t306 = garm_wz_leg3 * actuator_velocities[2];
-        let t308 = garm_wz_leg4 * actuator_velocities[3];
-        let t326 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t279 * t280
-            - t298 * t299;
-        let t328 = t326 - t301 * t302;
-        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t328, 0.35106548211906174, "actuators")?;
-        let t329 = (t303 + t304 + t306 + t308 - t141 * t280 - t299 * t199 - t302 * t251)
-            / t328;
-        let t331 = t251 / t262 - t302 * t329;
-        let t335 = t199 / t208 - t240 * t331 - t299 * t329;
-        let t341 = t141 / t148 - t190 * t335 + t230 * t331 - t280 * t329;
-        let t342 = t13 * t329;
-        let t347 = actuator_velocities[0] * t50 + s_armcross_leg1 * (t341 - t342)
-            + c_armcross_leg1 * t331;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t347;
-        let t349 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t350 = t4 * t329;
-        let rate_rod_leg1 = grod_vy_leg1 * (t335 + t350);
-        let t353 = rate_rod_leg1 * rate_rod_leg1;
-        let t357 = t329 * t350;
-        let t360 = t329 * t342;
-        let t361 = t14 * t353;
-        let t364 = t50 * t51 - grod_vy_leg1 * t16 * (t349 + t353)
-            - c_armcross_leg1 * t357 - t29 * (t360 - t361);
-        let rate_dot_arm_leg1 = t27 * t364;
-        let t366 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t368 = 0.26 * c_cross_leg2;
-        let t369 = actuator_velocities[1] * actuator_velocities[1];
-        let t372 = t59 * t329;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * (t341 - t372);
-        let t375 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t376 = t65 * t329;
-        let t382 = s_armcross_leg2 * (t335 + t376) + c_armcross_leg2 * t331
-            + actuator_velocities[1] * t368;
-        let t383 = 1.7241379310344827 * t382;
-        let t384 = t383 * t383;
-        let t385 = t80 * t384;
-        let t386 = t80 * t385;
-        let t387 = t386 + t384;
-        let t391 = t329 * t372;
-        let t394 = t329 * t376;
-        let t395 = t66 * t375;
-        let t398 = t368 * t369 + minus_grod_vx_leg2 * t68 * (t375 + t387)
-            - c_armcross_leg2 * t391 - t80 * (t394 - t395);
-        let rate_dot_arm_leg2 = t78 * t398;
-        let t400 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t404 = 0.26 * c_cross_leg3;
-        let t405 = actuator_velocities[2] * actuator_velocities[2];
-        let t408 = t335 - t350;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t408;
-        let t410 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let rate_cross_leg3 = minus_grod_vy_leg3
-            * (s_armcross_leg3 * (t341 + t342) + minus_c_armcross_leg3 * t331
-                - actuator_velocities[2] * t404);
-        let t418 = rate_cross_leg3 * rate_cross_leg3;
-        let t423 = t89 * t410;
-        let t426 = minus_c_armcross_leg3 * t357 + t404 * t405
-            + minus_grod_vy_leg3 * t91 * (t410 + t418) + t169 * (t360 + t423);
-        let rate_dot_arm_leg3 = t115 * t426;
-        let t428 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t432 = 0.26 * c_cross_leg4;
-        let t433 = actuator_velocities[3] * actuator_velocities[3];
-        let t436 = t341 + t372;
-        let rate_rod_leg4 = grod_vx_leg4 * t436;
-        let t438 = rate_rod_leg4 * rate_rod_leg4;
-        let rate_cross_leg4 = grod_vx_leg4
-            * (s_armcross_leg4 * (t335 - t376) + minus_c_armcross_leg4 * t331
-                - actuator_velocities[3] * t432);
-        let t446 = rate_cross_leg4 * rate_cross_leg4;
-        let t451 = t124 * t438;
-        let t454 = minus_c_armcross_leg4 * t391 + t432 * t433
-            + grod_vx_leg4 * t126 * (t438 + t446) + t138 * (t394 + t451);
-        let rate_dot_arm_leg4 = t136 * t454;
-        let t456 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t465 = garm_vx_leg1 * t366 + garm_vx_leg2 * t400 + garm_vx_leg3 * t428
-            + garm_vx_leg4 * t456;
-        let t476 = garm_vy_leg1 * t366 + garm_vy_leg2 * t400 + garm_vy_leg3 * t428
-            + garm_vy_leg4 * t456 - t190 * t465;
-        let t478 = garm_wz_leg1 * t366 + garm_wz_leg2 * t400 + garm_wz_leg3 * t428
-            + garm_wz_leg4 * t456 - t280 * t465 - t299 * t476;
-        let t489 = t230 * t465
-            - (minus_garm_vz_leg1 * t366 + minus_garm_vz_leg2 * t400
-                + minus_garm_vz_leg3 * t428 + minus_garm_vz_leg4 * t456) - t240 * t476;
-        let t492 = (t478 - t302 * t489) / t328;
-        let t493 = t329 * t329;
-        let t496 = c_phi * t493 + s_phi * t492;
-        let t499 = s_phi * t493 - c_phi * t492;
-        let t503 = t489 / t262 - t302 * t492;
-        let t507 = t476 / t208 - t240 * t503 - t299 * t492;
-        let t515 = t465 / t148 - t190 * t507 + t230 * t503 - t280 * t492;
-        let t538 = 9.81 * c_arm_leg1;
-        let t543 = 9.81 * c_arm_leg2;
-        let t548 = 9.81 * minus_c_arm_leg3;
-        let t553 = 9.81 * minus_c_arm_leg4;
-        let t558 = 9.81 * minus_s_arm_leg1;
-        let t563 = 9.81 * minus_s_arm_leg2;
-        let t568 = 9.81 * s_arm_leg3;
-        let t573 = 9.81 * s_arm_leg4;
-        let t594 = grod_vy_leg1 / s_cross_leg1;
-        let minus_gcross_vx_leg1 = c_arm_leg1 * t594;
+            - t269 * t225;
+        let t281 = t269 / t224;
+        let t283 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vz_leg2 * minus_garm_vz_leg2
+            + minus_garm_vz_leg3 * minus_garm_vz_leg3
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t250 * t260 - t269 * t281;
+        ::overact::guard::platform(t283, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t283, 31.11733818900117, "actuators")?;
+        let t284 = t271 / t283;
+        let t286 = t227 - t271 * t284;
+        ::overact::guard::platform(t286, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t286, 0.35106548211906174, "actuators")?;
+        let t287 = 1.0 / t286;
+        let t288 = 0.26 * c_cross_leg1;
+        let t289 = actuator_velocities[0] * actuator_velocities[0];
+        let t293 = garm_vx_leg1 * actuator_velocities[0];
+        let t294 = garm_vx_leg2 * actuator_velocities[1];
+        let t296 = garm_vx_leg3 * actuator_velocities[2];
+        let t298 = garm_vx_leg4 * actuator_velocities[3];
+        let t299 = t293 + t294 + t296 + t298;
+        let t301 = garm_vy_leg1 * actuator_velocities[0];
+        let t302 = garm_vy_leg2 * actuator_velocities[1];
+        let t304 = garm_vy_leg3 * actuator_velocities[2];
+        let t306 = garm_vy_leg4 * actuator_velocities[3];
+        let t309 = t301 + t302 + t304 + t306 - t299 * t222;
+        let t312 = minus_garm_vz_leg1 * actuator_velocities[0];
+        let t313 = minus_garm_vz_leg2 * actuator_velocities[1];
+        let t315 = minus_garm_vz_leg3 * actuator_velocities[2];
+        let t317 = minus_garm_vz_leg4 * actuator_velocities[3];
+        let t321 = t299 * t260 - (t312 + t313 + t315 + t317) - t281 * t309;
+        let t323 = garm_wz_leg1 * actuator_velocities[0];
+        let t324 = garm_wz_leg2 * actuator_velocities[1];
+        let t326 = garm_wz_leg3 * actuator_velocities[2];
+        let t328 = garm_wz_leg4 * actuator_velocities[3];
+        let t336 = t287
+            * (t323 + t324 + t326 + t328 - t299 * t196 - t225 * t309 - t284 * t321);
+        let t338 = t321 / t283 - t284 * t336;
+        let t342 = t309 / t224 - t281 * t338 - t225 * t336;
+        let t348 = t299 * t195 - t222 * t342 + t260 * t338 - t196 * t336;
+        let t349 = t13 * t336;
+        let t354 = actuator_velocities[0] * t288 + s_armcross_leg1 * (t348 - t349)
+            + c_armcross_leg1 * t338;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t354;
+        let t356 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t357 = t4 * t336;
+        let rate_rod_leg1 = grod_vy_leg1 * (t342 + t357);
+        let t360 = rate_rod_leg1 * rate_rod_leg1;
+        let t364 = t336 * t357;
+        let t367 = t336 * t349;
+        let t368 = t14 * t360;
+        let t371 = t288 * t289 - grod_vy_leg1 * t16 * (t356 + t360)
+            - c_armcross_leg1 * t364 - t29 * (t367 - t368);
+        let rate_dot_arm_leg1 = t27 * t371;
+        let t373 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t375 = 0.26 * c_cross_leg2;
+        let t376 = actuator_velocities[1] * actuator_velocities[1];
+        let t378 = t51 * t336;
+        let t384 = s_armcross_leg2 * (t342 + t378) + c_armcross_leg2 * t338
+            + actuator_velocities[1] * t375;
+        let t385 = 1.7241379310344827 * t384;
+        let t386 = t385 * t385;
+        let t387 = t92 * t386;
+        let t388 = t387 / t84;
+        let t389 = t56 * t388;
+        let t390 = t52 * t336;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * (t348 - t390);
+        let t393 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t394 = t389 + t393;
+        let t395 = t394 + t386;
+        let t398 = t336 * t390;
+        let t401 = t336 * t378;
+        let t402 = t56 * t393;
+        let rate_dot_arm_leg2 = t88
+            * (t375 * t376 + t84 * t395 - c_armcross_leg2 * t398 - t92 * (t401 - t402));
+        let t407 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t411 = 0.26 * c_cross_leg3;
+        let t412 = actuator_velocities[2] * actuator_velocities[2];
+        let t414 = minus_grod_vy_leg3 * t105;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * (t342 - t357);
+        let t417 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t423 = s_armcross_leg3 * (t348 + t349) + minus_c_armcross_leg3 * t338
+            - actuator_velocities[2] * t411;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t423;
+        let t425 = rate_cross_leg3 * rate_cross_leg3;
+        let t430 = t103 * t417;
+        let rate_dot_arm_leg3 = t130
+            * (minus_c_armcross_leg3 * t364 + t411 * t412 + t414 * (t417 + t425)
+                + t134 * (t367 + t430));
+        let t435 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t439 = 0.26 * c_cross_leg4;
+        let t440 = actuator_velocities[3] * actuator_velocities[3];
+        let rate_rod_leg4 = grod_vx_leg4 * (t348 + t390);
+        let t445 = rate_rod_leg4 * rate_rod_leg4;
+        let t451 = s_armcross_leg4 * (t342 - t378) + minus_c_armcross_leg4 * t338
+            - actuator_velocities[3] * t439;
+        let rate_cross_leg4 = grod_vx_leg4 * t451;
+        let t453 = rate_cross_leg4 * rate_cross_leg4;
+        let t458 = t145 * t445;
+        let t461 = minus_c_armcross_leg4 * t398 + t439 * t440
+            + 1.9230769230769231 * t155 * (t445 + t453) + t159 * (t401 + t458);
+        let rate_dot_arm_leg4 = t157 * t461;
+        let t463 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t472 = garm_vx_leg1 * t373 + garm_vx_leg2 * t407 + garm_vx_leg3 * t435
+            + garm_vx_leg4 * t463;
+        let t483 = garm_vy_leg1 * t373 + garm_vy_leg2 * t407 + garm_vy_leg3 * t435
+            + garm_vy_leg4 * t463 - t222 * t472;
+        let t485 = garm_wz_leg1 * t373 + garm_wz_leg2 * t407 + garm_wz_leg3 * t435
+            + garm_wz_leg4 * t463 - t196 * t472 - t225 * t483;
+        let t496 = t260 * t472
+            - (minus_garm_vz_leg1 * t373 + minus_garm_vz_leg2 * t407
+                + minus_garm_vz_leg3 * t435 + minus_garm_vz_leg4 * t463) - t281 * t483;
+        let t499 = t287 * (t485 - t284 * t496);
+        let t500 = t336 * t336;
+        let t503 = c_phi * t500 + s_phi * t499;
+        let t506 = s_phi * t500 - c_phi * t499;
+        let t510 = t496 / t283 - t284 * t499;
+        let t514 = t483 / t224 - t281 * t510 - t225 * t499;
+        let t522 = t195 * t472 - t222 * t514 + t260 * t510 - t196 * t499;
+        let t545 = 9.81 * c_arm_leg1;
+        let t550 = 9.81 * c_arm_leg2;
+        let t555 = 9.81 * minus_c_arm_leg3;
+        let t560 = 9.81 * minus_c_arm_leg4;
+        let t565 = 9.81 * minus_s_arm_leg1;
+        let t570 = 9.81 * minus_s_arm_leg2;
+        let t575 = 9.81 * s_arm_leg3;
+        let t580 = 9.81 * s_arm_leg4;
+        let t601 = grod_vy_leg1 / s_cross_leg1;
+        let minus_gcross_vx_leg1 = c_arm_leg1 * t601;
         let s_rod_leg1 = 1.7241379310344827 * t14;
-        let t597 = t347 * rate_rod_leg1;
-        let t598 = 1.7241379310344827 * t597;
-        let t599 = 0.26 * actuator_accelerations[0];
-        let t601 = t13 * t492;
-        let t607 = s_cross_leg1 * 0.26;
-        let t609 = t29 * t597;
-        let t613 = c_cross_leg1 * t599 + s_armcross_leg1 * (t515 - t601 - t357)
-            + c_armcross_leg1 * t503 + t51 * t607 + t609 + t609;
-        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t613;
-        let t615 = s_rod_leg1 * minus_rate_dot_cross_leg1;
-        let t617 = t598 + t615 + t598;
-        let t618 = s_rod_leg1 * t617;
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t50 * garm_vy_leg1);
-        let t623 = t22 * t349;
-        let t624 = t29 * t623;
-        let t625 = grod_vy_leg1 * t624;
-        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t594;
+        let t604 = t354 * rate_rod_leg1;
+        let t605 = 1.7241379310344827 * t604;
+        let t607 = t13 * t499;
+        let t613 = 0.26 * t289;
+        let t615 = t29 * t604;
+        let t619 = actuator_accelerations[0] * t288
+            + s_armcross_leg1 * (t522 - t607 - t364) + c_armcross_leg1 * t510
+            + s_cross_leg1 * t613 + t615 + t615;
+        let minus_rate_dot_cross_leg1 = grod_vy_leg1 * t619;
+        let t621 = s_rod_leg1 * minus_rate_dot_cross_leg1;
+        let t623 = t605 + t621 + t605;
+        let t624 = s_rod_leg1 * t623;
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t288 * garm_vy_leg1);
+        let t629 = t22 * t356;
+        let t630 = t29 * t629;
+        let t631 = grod_vy_leg1 * t630;
+        let minus_gcross_vz_leg1 = minus_s_arm_leg1 * t601;
         let gcross_wz_leg1 = t13 * minus_gcross_vx_leg1 - t4 * minus_gcross_vy_leg1;
-        let grod_wz_leg1 = t4 * grod_vy_leg1;
-        let t634 = grod_wz_leg1 * t624;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t368 * garm_vx_leg2);
-        let t638 = minus_rate_rod_leg2 * t383;
-        let minus_s_rod_leg2 = 1.7241379310344827 * t66;
-        let t640 = t65 * t492;
-        let t646 = 0.26 * t369;
-        let t649 = minus_rate_rod_leg2 * (t80 * t382);
-        let t653 = 0.26 * actuator_accelerations[1];
-        let t655 = s_armcross_leg2 * (t507 + t640 - t391) + c_armcross_leg2 * t503
-            + s_cross_leg2 * t646 + t649 + t649 + c_cross_leg2 * t653;
-        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t655;
-        let t657 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
-        let t659 = t638 + t657 + t638;
-        let t660 = c_rod_leg2 * t659;
-        let t661 = t80 * t660;
-        let t663 = minus_grod_vx_leg2 * t385;
-        let t665 = minus_grod_vx_leg2 / s_cross_leg2;
-        let minus_gcross_vy_leg2 = c_arm_leg2 * t665;
-        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t665;
-        let t670 = t59 * t663;
-        let gcross_wz_leg2 = t59 * minus_gcross_vx_leg2 - t65 * minus_gcross_vy_leg2;
-        let t676 = minus_grod_vy_leg3 / s_cross_leg3;
-        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t676;
-        let t678 = t408 * rate_cross_leg3;
-        let t679 = 1.7241379310344827 * t678;
-        let minus_s_rod_leg3 = 1.7241379310344827 * t89;
-        let t686 = s_cross_leg3 * 0.26;
-        let t688 = t169 * t678;
-        let t693 = s_armcross_leg3 * (t515 + t601 + t357) + minus_c_armcross_leg3 * t503
-            - (t405 * t686 - t688 - t688) - actuator_accelerations[2] * t404;
-        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t693;
-        let t695 = minus_s_rod_leg3 * rate_dot_cross_leg3;
-        let t697 = t679 + t695 + t679;
-        let t698 = c_rod_leg3 * t697;
-        let t699 = t169 * t698;
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t404 * garm_vy_leg3);
-        let t704 = t103 * t418;
-        let t705 = t169 * t704;
-        let t706 = minus_grod_vy_leg3 * t705;
-        let gcross_vz_leg3 = s_arm_leg3 * t676;
+        let t639 = t4 * t631;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * (t375 * garm_vx_leg2);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t56;
+        let t644 = minus_rate_rod_leg2 * t385;
+        let t645 = t51 * t499;
+        let t651 = s_cross_leg2 * 0.26;
+        let t654 = minus_rate_rod_leg2 * (t92 * t384);
+        let t659 = s_armcross_leg2 * (t514 + t645 - t398) + c_armcross_leg2 * t510
+            + t376 * t651 + t654 + t654 + actuator_accelerations[1] * t375;
+        let minus_rate_dot_cross_leg2 = minus_grod_vx_leg2 * t659;
+        let t661 = minus_s_rod_leg2 * minus_rate_dot_cross_leg2;
+        let t663 = t644 + t661 + t644;
+        let t664 = minus_s_rod_leg2 * t663;
+        let t667 = minus_grod_vx_leg2 / s_cross_leg2;
+        let minus_gcross_vy_leg2 = c_arm_leg2 * t667;
+        let minus_gcross_vz_leg2 = minus_s_arm_leg2 * t667;
+        let grod_wz_leg2 = t52 * minus_grod_vx_leg2;
+        let t673 = grod_wz_leg2 * t387;
+        let gcross_wz_leg2 = t52 * minus_gcross_vx_leg2 - t51 * minus_gcross_vy_leg2;
+        let t679 = t129 * minus_grod_vy_leg3;
+        let minus_gcross_vx_leg3 = minus_c_arm_leg3 * t679;
+        let t681 = minus_rate_rod_leg3 * t423;
+        let t682 = 1.7241379310344827 * t681;
+        let minus_s_rod_leg3 = 1.7241379310344827 * t103;
+        let t689 = s_cross_leg3 * 0.26;
+        let t691 = t134 * t681;
+        let t695 = 0.26 * actuator_accelerations[2];
+        let t697 = s_armcross_leg3 * (t522 + t607 + t364) + minus_c_armcross_leg3 * t510
+            - (t412 * t689 - t691 - t691) - c_cross_leg3 * t695;
+        let rate_dot_cross_leg3 = minus_grod_vy_leg3 * t697;
+        let t699 = minus_s_rod_leg3 * rate_dot_cross_leg3;
+        let t701 = t682 + t699 + t682;
+        let t702 = c_rod_leg3 * t701;
+        let t703 = t134 * t702;
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * (t411 * garm_vy_leg3);
+        let t709 = 2.972651605231867 * (t103 * t425);
+        let gcross_vz_leg3 = s_arm_leg3 * t679;
         let gcross_wz_leg3 = t4 * minus_gcross_vy_leg3 - t13 * minus_gcross_vx_leg3;
-        let t714 = t4 * t706;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t432 * garm_vx_leg4);
-        let s_rod_leg4 = 1.7241379310344827 * t124;
-        let t719 = t436 * rate_cross_leg4;
-        let t720 = 1.7241379310344827 * t719;
-        let t726 = s_cross_leg4 * 0.26;
-        let t728 = t138 * t719;
-        let t732 = 0.26 * actuator_accelerations[3];
-        let t734 = s_armcross_leg4 * (t507 - t640 + t391) + minus_c_armcross_leg4 * t503
-            - (t433 * t726 - t728 - t728) - c_cross_leg4 * t732;
-        let rate_dot_cross_leg4 = grod_vx_leg4 * t734;
-        let t736 = s_rod_leg4 * rate_dot_cross_leg4;
-        let t738 = t720 + t736 + t720;
-        let t739 = s_rod_leg4 * t738;
-        let t741 = t132 * t446;
-        let t742 = t138 * t741;
-        let t743 = grod_vx_leg4 * t742;
-        let t745 = grod_vx_leg4 / s_cross_leg4;
-        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t745;
-        let gcross_vz_leg4 = s_arm_leg4 * t745;
-        let minus_gcross_wz_leg4 = t59 * minus_gcross_vx_leg4
-            - t65 * minus_gcross_vy_leg4;
-        let t754 = t59 * t743;
-        let t756 = t618 - minus_rate_dot_cross_leg1;
-        let t759 = t29 * t756 - c_rod_leg1 * t617;
-        let t761 = t14 * t625;
-        let t762 = t623 - t761;
-        let t770 = t661 - minus_rate_dot_cross_leg2;
-        let t772 = t660 - t80 * t770;
-        let t775 = minus_grod_vx_leg2 * (t386 - t384);
-        let t782 = rate_dot_cross_leg3 - t699;
-        let t784 = t169 * t782 + t698;
-        let t787 = t418 - t704;
-        let t789 = minus_grod_vy_leg3 * (t787 - t704);
-        let t795 = t138 * t742;
-        let t797 = grod_vx_leg4 * (t795 - t741);
-        let t799 = rate_dot_cross_leg4 - t739;
-        let t801 = c_rod_leg4 * t738 + t138 * t799;
-        let t809 = t4 * t492;
-        let t811 = t507 + t809 - t360;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t811 + t361);
-        let t818 = s_rod_leg1 * (rate_dot_rod_leg1 - t624) + c_rod_leg1 * (t353 + t761);
-        let t827 = t59 * t492;
-        let t829 = t515 - t827 - t394;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t829 + t395);
-        let t836 = minus_s_rod_leg2 * (t385 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t375 - t386);
-        let t843 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
-        let t844 = t59 * t843;
-        let t848 = t507 - t809 + t360;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t848 + t423);
-        let t855 = minus_s_rod_leg3 * (t705 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t410 - t787);
-        let t862 = 1.7241379310344827 * rate_dot_cross_leg3;
-        let t863 = t4 * t862;
-        let t866 = grod_vx_leg4 * t736;
-        let t868 = t515 + t827 + t394;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * (t868 + t451);
-        let t875 = s_rod_leg4 * (t742 + rate_dot_rod_leg4) + c_rod_leg4 * (t438 - t795);
-        let t907 = 1.7241379310344827 * t811;
-        let t910 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
-        let t916 = 1.7241379310344827 * t829;
-        let t923 = 1.7241379310344827 * t848;
-        let t930 = 1.7241379310344827 * rate_dot_cross_leg4;
-        let t931 = 1.7241379310344827 * t868;
-        let t941 = minus_grod_vx_leg2 * minus_rate_dot_rod_leg2;
-        let t943 = minus_grod_vy_leg3 * minus_rate_dot_rod_leg3;
-        let t945 = grod_vx_leg4 * rate_dot_rod_leg4;
-        let t955 = s_rod_leg1 * t607 * (t353 - t761)
-            - c_rod_leg1 * t607 * (t624 + rate_dot_rod_leg1) + t50 * t617;
-        let t957 = t599 - t538;
-        let t960 = t558 - 0.26 * t51;
-        let t963 = s_rod_leg1 * (c_cross_leg1 * t957 - s_cross_leg1 * t960);
-        let t971 = c_cross_leg1 * t960 + s_cross_leg1 * t957;
-        let t972 = 1.7241379310344827 * t971;
-        let t982 = s_cross_leg2 * 0.26;
-        let t983 = c_rod_leg2 * t982;
-        let t991 = t983 * (minus_rate_dot_rod_leg2 - t385) - t80 * t983 * (t386 + t375)
-            - t368 * t659;
-        let t993 = t653 - t543;
-        let t995 = t563 - t646;
-        let t998 = minus_s_rod_leg2 * (c_cross_leg2 * t993 - s_cross_leg2 * t995);
-        let t1003 = c_cross_leg2 * t995 + s_cross_leg2 * t993;
-        let t1004 = 1.7241379310344827 * t1003;
-        let t1017 = c_rod_leg3 * t686;
-        let t1025 = t1017 * (minus_rate_dot_rod_leg3 - t705)
-            - t169 * t1017 * (t787 + t410) + t404 * t697;
-        let t1028 = t568 + 0.26 * t405;
-        let t1031 = t548 + 0.26 * actuator_accelerations[2];
-        let t1034 = minus_s_rod_leg3 * (s_cross_leg3 * t1028 + c_cross_leg3 * t1031);
-        let t1042 = s_cross_leg3 * t1031 - c_cross_leg3 * t1028;
-        let t1043 = 1.7241379310344827 * t1042;
-        let t1053 = c_rod_leg4 * t726;
-        let t1061 = t1053 * (t742 - rate_dot_rod_leg4) + t138 * t1053 * (t795 + t438)
-            - t432 * t738;
-        let t1064 = t573 + 0.26 * t433;
-        let t1066 = t553 + t732;
-        let t1069 = s_rod_leg4 * (s_cross_leg4 * t1064 + c_cross_leg4 * t1066);
-        let t1074 = s_cross_leg4 * t1066 - c_cross_leg4 * t1064;
-        let t1075 = 1.7241379310344827 * t1074;
-        let t1090 = t50 * t349 - minus_rate_dot_cross_leg1 * t607;
-        let t1105 = t368 * t387 - minus_rate_dot_cross_leg2 * t982;
-        let t1120 = rate_dot_cross_leg3 * t686 + t404 * t418;
-        let t1135 = rate_dot_cross_leg4 * t726 + t432 * t446;
+        let grod_wz_leg3 = t4 * minus_grod_vy_leg3;
+        let t718 = t414 * t709;
+        let t719 = grod_wz_leg3 * t718;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * (t439 * garm_vx_leg4);
+        let t723 = rate_rod_leg4 * t451;
+        let t724 = 1.7241379310344827 * t723;
+        let s_rod_leg4 = 1.7241379310344827 * t145;
+        let t731 = s_cross_leg4 * 0.26;
+        let t733 = t159 * t723;
+        let t737 = 0.26 * actuator_accelerations[3];
+        let t739 = s_armcross_leg4 * (t514 - t645 + t398) + minus_c_armcross_leg4 * t510
+            - (t440 * t731 - t733 - t733) - c_cross_leg4 * t737;
+        let rate_dot_cross_leg4 = grod_vx_leg4 * t739;
+        let t741 = s_rod_leg4 * rate_dot_cross_leg4;
+        let t743 = t724 + t741 + t724;
+        let t744 = c_rod_leg4 * t743;
+        let t745 = t159 * t744;
+        let t747 = t153 * t453;
+        let t748 = t159 * t747;
+        let t749 = grod_vx_leg4 * t748;
+        let t751 = grod_vx_leg4 / s_cross_leg4;
+        let minus_gcross_vy_leg4 = minus_c_arm_leg4 * t751;
+        let gcross_vz_leg4 = s_arm_leg4 * t751;
+        let minus_gcross_wz_leg4 = t52 * minus_gcross_vx_leg4
+            - t51 * minus_gcross_vy_leg4;
+        let grod_wz_leg4 = t52 * grod_vx_leg4;
+        let t761 = grod_wz_leg4 * t748;
+        let t763 = t624 - minus_rate_dot_cross_leg1;
+        let t766 = t29 * t763 - c_rod_leg1 * t623;
+        let t768 = t14 * t631;
+        let t770 = grod_vy_leg1 * (t629 - t768);
+        let t778 = t664 - minus_rate_dot_cross_leg2;
+        let t780 = c_rod_leg2 * t663 - t92 * t778;
+        let t782 = t389 - t386;
+        let t790 = rate_dot_cross_leg3 - t703;
+        let t792 = t134 * t790 + t702;
+        let t795 = t103 * t709;
+        let t797 = t795 - t117 * t425;
+        let t804 = t159 * t748;
+        let t805 = t804 - t747;
+        let t807 = rate_dot_cross_leg4 - t745;
+        let t809 = t744 + t159 * t807;
+        let t817 = t4 * t499;
+        let t819 = t514 + t817 - t367;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t819 + t368);
+        let t826 = s_rod_leg1 * (rate_dot_rod_leg1 - t630) + c_rod_leg1 * (t360 + t768);
+        let t833 = 1.7241379310344827 * minus_rate_dot_cross_leg1;
+        let t834 = t4 * t833;
+        let t837 = t52 * t499;
+        let t839 = t522 - t837 - t401;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * (t839 + t402);
+        let t846 = minus_s_rod_leg2 * (t387 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t393 - t389);
+        let t856 = t514 - t817 + t367;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * (t856 + t430);
+        let t863 = minus_s_rod_leg3 * (t718 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t417 - t795);
+        let t874 = t522 + t837 + t401;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * (t874 + t458);
+        let t881 = s_rod_leg4 * (t748 + rate_dot_rod_leg4) + c_rod_leg4 * (t445 - t804);
+        let t913 = 1.7241379310344827 * t819;
+        let t920 = 1.7241379310344827 * t839;
+        let t922 = 1.7241379310344827 * minus_rate_dot_cross_leg2;
+        let t929 = 1.7241379310344827 * t856;
+        let t932 = 1.7241379310344827 * rate_dot_cross_leg3;
+        let t938 = 1.7241379310344827 * rate_dot_cross_leg4;
+        let t939 = 1.7241379310344827 * t874;
+        let t947 = grod_vy_leg1 * rate_dot_rod_leg1;
+        let t958 = s_cross_leg1 * 0.26;
+        let t964 = s_rod_leg1 * t958 * (t360 - t768)
+            - 0.8620689655172413 * t21 * (t630 + rate_dot_rod_leg1) + t288 * t623;
+        let t967 = 0.26 * actuator_accelerations[0] - t545;
+        let t969 = t565 - t613;
+        let t972 = s_rod_leg1 * (c_cross_leg1 * t967 - s_cross_leg1 * t969);
+        let t980 = c_cross_leg1 * t969 + s_cross_leg1 * t967;
+        let t981 = 1.7241379310344827 * t980;
+        let t998 = 0.8620689655172413 * t68 * (minus_rate_dot_rod_leg2 - t387)
+            - minus_s_rod_leg2 * t651 * t394 - t375 * t663;
+        let t1001 = 0.26 * actuator_accelerations[1] - t550;
+        let t1004 = t570 - 0.26 * t376;
+        let t1007 = minus_s_rod_leg2 * (c_cross_leg2 * t1001 - s_cross_leg2 * t1004);
+        let t1012 = c_cross_leg2 * t1004 + s_cross_leg2 * t1001;
+        let t1013 = 1.7241379310344827 * t1012;
+        let t1026 = 0.8620689655172413 * t112;
+        let t1034 = t1026 * (minus_rate_dot_rod_leg3 - t718)
+            - t134 * t1026 * (t795 + t417) + t411 * t701;
+        let t1037 = t575 + 0.26 * t412;
+        let t1039 = t555 + t695;
+        let t1042 = minus_s_rod_leg3 * (s_cross_leg3 * t1037 + c_cross_leg3 * t1039);
+        let t1050 = s_cross_leg3 * t1039 - c_cross_leg3 * t1037;
+        let t1051 = 1.7241379310344827 * t1050;
+        let t1069 = 0.8620689655172413 * t152 * (t748 - rate_dot_rod_leg4)
+            + s_rod_leg4 * t731 * (t804 + t445) - t439 * t743;
+        let t1072 = t580 + 0.26 * t440;
+        let t1074 = t560 + t737;
+        let t1077 = s_rod_leg4 * (s_cross_leg4 * t1072 + c_cross_leg4 * t1074);
+        let t1082 = s_cross_leg4 * t1074 - c_cross_leg4 * t1072;
+        let t1083 = 1.7241379310344827 * t1082;
+        let t1098 = t288 * t356 - minus_rate_dot_cross_leg1 * t958;
+        let t1114 = t375 * (t395 - t393) - minus_rate_dot_cross_leg2 * t651;
+        let t1129 = rate_dot_cross_leg3 * t689 + t411 * t425;
+        let t1144 = rate_dot_cross_leg4 * t731 + t439 * t453;
         Ok([
             [
-                0.0, -t496, t499, t515, garm_vx_leg1 * actuator_accelerations[0],
+                0.0, -t503, t506, t522, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
-                garm_vx_leg4 * actuator_accelerations[3], -(garm_vx_leg1 * t538),
-                -(garm_vx_leg2 * t543), garm_vx_leg3 * t548, garm_vx_leg4 * t553,
-                -(garm_vx_leg1 * t558), -(garm_vx_leg2 * t563), garm_vx_leg3 * t568,
-                garm_vx_leg4 * t573, t58, t82, t117, t140,
+                garm_vx_leg4 * actuator_accelerations[3], -(garm_vx_leg1 * t545),
+                -(garm_vx_leg2 * t550), garm_vx_leg3 * t555, garm_vx_leg4 * t560,
+                -(garm_vx_leg1 * t565), -(garm_vx_leg2 * t570), garm_vx_leg3 * t575,
+                garm_vx_leg4 * t580, t293, t294, t296, t298,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vx_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vx_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_vx_leg4, actuator_velocities[3]), garm_vx_leg1,
-                garm_vx_leg2, garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t618,
-                minus_gcross_vx_leg2 * t661 - t663, -(minus_gcross_vx_leg3 * t699),
-                -(minus_gcross_vx_leg4 * t739 + t743), -(minus_gcross_vx_leg1 * t759),
-                -(minus_gcross_vx_leg2 * t772 + t775), minus_gcross_vx_leg3 * t784,
-                t797 - minus_gcross_vx_leg4 * t801, -(minus_gcross_vx_leg1 * t818),
-                -(minus_gcross_vx_leg2 * t836 + minus_grod_vx_leg2 * t657),
-                -(minus_gcross_vx_leg3 * t855), t866 - minus_gcross_vx_leg4 * t875,
-                -(minus_gcross_vx_leg1 * t756), t663 - minus_gcross_vx_leg2 * t770,
-                -(minus_gcross_vx_leg3 * t782), t743 - minus_gcross_vx_leg4 * t799,
-                -(minus_gcross_vx_leg1 * t907), minus_gcross_vx_leg2 * t916 + t843,
-                minus_gcross_vx_leg3 * t923, t930 - minus_gcross_vx_leg4 * t931, 0.0, t941, 0.0,
-                t945, garm_vx_leg1 * t955 + minus_gcross_vx_leg1 * t963,
-                garm_vx_leg2 * t991 - minus_gcross_vx_leg2 * t998 + t1004,
-                garm_vx_leg3 * t1025 - minus_gcross_vx_leg3 * t1034,
-                garm_vx_leg4 * t1061 + minus_gcross_vx_leg4 * t1069 - t1075,
-                garm_vx_leg1 * t1090 - minus_gcross_vx_leg1 * t971,
-                garm_vx_leg2 * t1105 - minus_gcross_vx_leg2 * t1003,
-                garm_vx_leg3 * t1120 - minus_gcross_vx_leg3 * t1042,
-                garm_vx_leg4 * t1135 - minus_gcross_vx_leg4 * t1074,
+                garm_vx_leg2, garm_vx_leg3, garm_vx_leg4, minus_gcross_vx_leg1 * t624,
+                minus_gcross_vx_leg2 * t664 - t388, -(minus_gcross_vx_leg3 * t703),
+                -(minus_gcross_vx_leg4 * t745 + t749), -(minus_gcross_vx_leg1 * t766),
+                -(minus_gcross_vx_leg2 * t780 + t782 / t84), minus_gcross_vx_leg3 * t792,
+                grod_vx_leg4 * t805 - minus_gcross_vx_leg4 * t809, -(minus_gcross_vx_leg1 * t826),
+                -(minus_gcross_vx_leg2 * t846 + minus_grod_vx_leg2 * t661),
+                -(minus_gcross_vx_leg3 * t863), grod_vx_leg4 * t741 - minus_gcross_vx_leg4 * t881,
+                -(minus_gcross_vx_leg1 * t763), t388 - minus_gcross_vx_leg2 * t778,
+                -(minus_gcross_vx_leg3 * t790), t749 - minus_gcross_vx_leg4 * t807,
+                -(minus_gcross_vx_leg1 * t913), minus_gcross_vx_leg2 * t920 + t922,
+                minus_gcross_vx_leg3 * t929, t938 - minus_gcross_vx_leg4 * t939, 0.0,
+                minus_grod_vx_leg2 * minus_rate_dot_rod_leg2, 0.0, grod_vx_leg4 * rate_dot_rod_leg4,
+                garm_vx_leg1 * t964 + minus_gcross_vx_leg1 * t972,
+                garm_vx_leg2 * t998 - minus_gcross_vx_leg2 * t1007 + t1013,
+                garm_vx_leg3 * t1034 - minus_gcross_vx_leg3 * t1042,
+                garm_vx_leg4 * t1069 + minus_gcross_vx_leg4 * t1077 - t1083,
+                garm_vx_leg1 * t1098 - minus_gcross_vx_leg1 * t980,
+                garm_vx_leg2 * t1114 - minus_gcross_vx_leg2 * t1012,
+                garm_vx_leg3 * t1129 - minus_gcross_vx_leg3 * t1050,
+                garm_vx_leg4 * t1144 - minus_gcross_vx_leg4 * t1082,
             ],
             [
-                0.0, -t499, -t496, t507, garm_vy_leg1 * actuator_accelerations[0],
+                0.0, -t506, -t503, t514, garm_vy_leg1 * actuator_accelerations[0],
                 garm_vy_leg2 * actuator_accelerations[1], garm_vy_leg3 * actuator_accelerations[2],
-                garm_vy_leg4 * actuator_accelerations[3], -(garm_vy_leg1 * t538),
-                -(garm_vy_leg2 * t543), garm_vy_leg3 * t548, garm_vy_leg4 * t553,
-                -(garm_vy_leg1 * t558), -(garm_vy_leg2 * t563), garm_vy_leg3 * t568,
-                garm_vy_leg4 * t573, t191, t192, t194, t196,
+                garm_vy_leg4 * actuator_accelerations[3], -(garm_vy_leg1 * t545),
+                -(garm_vy_leg2 * t550), garm_vy_leg3 * t555, garm_vy_leg4 * t560,
+                -(garm_vy_leg1 * t565), -(garm_vy_leg2 * t570), garm_vy_leg3 * t575,
+                garm_vy_leg4 * t580, t301, t302, t304, t306,
                 ::overact::math::signed(garm_vy_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_vy_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_vy_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_vy_leg4, actuator_velocities[3]), garm_vy_leg1,
-                garm_vy_leg2, garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t618 + t625,
-                minus_gcross_vy_leg2 * t661, -(minus_gcross_vy_leg3 * t699 + t706),
-                -(minus_gcross_vy_leg4 * t739), grod_vy_leg1 * t762 - minus_gcross_vy_leg1 * t759,
-                -(minus_gcross_vy_leg2 * t772), -(t789 - minus_gcross_vy_leg3 * t784),
-                -(minus_gcross_vy_leg4 * t801),
-                -(minus_gcross_vy_leg1 * t818 + grod_vy_leg1 * t615),
-                -(minus_gcross_vy_leg2 * t836),
-                minus_grod_vy_leg3 * t695 - minus_gcross_vy_leg3 * t855,
-                -(minus_gcross_vy_leg4 * t875), -(t625 + minus_gcross_vy_leg1 * t756),
-                -(minus_gcross_vy_leg2 * t770), t706 - minus_gcross_vy_leg3 * t782,
-                -(minus_gcross_vy_leg4 * t799), -(minus_gcross_vy_leg1 * t907 + t910),
-                minus_gcross_vy_leg2 * t916, minus_gcross_vy_leg3 * t923 - t862,
-                -(minus_gcross_vy_leg4 * t931), grod_vy_leg1 * rate_dot_rod_leg1, 0.0, t943, 0.0,
-                garm_vy_leg1 * t955 + minus_gcross_vy_leg1 * t963 - t972,
-                garm_vy_leg2 * t991 - minus_gcross_vy_leg2 * t998,
-                garm_vy_leg3 * t1025 - minus_gcross_vy_leg3 * t1034 + t1043,
-                garm_vy_leg4 * t1061 + minus_gcross_vy_leg4 * t1069,
-                garm_vy_leg1 * t1090 - minus_gcross_vy_leg1 * t971,
-                garm_vy_leg2 * t1105 - minus_gcross_vy_leg2 * t1003,
-                garm_vy_leg3 * t1120 - minus_gcross_vy_leg3 * t1042,
-                garm_vy_leg4 * t1135 - minus_gcross_vy_leg4 * t1074,
+                garm_vy_leg2, garm_vy_leg3, garm_vy_leg4, minus_gcross_vy_leg1 * t624 + t631,
+                minus_gcross_vy_leg2 * t664, -(minus_gcross_vy_leg3 * t703 + t709),
+                -(minus_gcross_vy_leg4 * t745), t770 - minus_gcross_vy_leg1 * t766,
+                -(minus_gcross_vy_leg2 * t780),
+                -(minus_grod_vy_leg3 * t797 - minus_gcross_vy_leg3 * t792),
+                -(minus_gcross_vy_leg4 * t809),
+                -(minus_gcross_vy_leg1 * t826 + grod_vy_leg1 * t621),
+                -(minus_gcross_vy_leg2 * t846),
+                minus_grod_vy_leg3 * t699 - minus_gcross_vy_leg3 * t863,
+                -(minus_gcross_vy_leg4 * t881), -(t631 + minus_gcross_vy_leg1 * t763),
+                -(minus_gcross_vy_leg2 * t778), t709 - minus_gcross_vy_leg3 * t790,
+                -(minus_gcross_vy_leg4 * t807), -(minus_gcross_vy_leg1 * t913 + t833),
+                minus_gcross_vy_leg2 * t920, minus_gcross_vy_leg3 * t929 - t932,
+                -(minus_gcross_vy_leg4 * t939), t947, 0.0,
+                minus_grod_vy_leg3 * minus_rate_dot_rod_leg3, 0.0,
+                garm_vy_leg1 * t964 + minus_gcross_vy_leg1 * t972 - t981,
+                garm_vy_leg2 * t998 - minus_gcross_vy_leg2 * t1007,
+                garm_vy_leg3 * t1034 - minus_gcross_vy_leg3 * t1042 + t1051,
+                garm_vy_leg4 * t1069 + minus_gcross_vy_leg4 * t1077,
+                garm_vy_leg1 * t1098 - minus_gcross_vy_leg1 * t980,
+                garm_vy_leg2 * t1114 - minus_gcross_vy_leg2 * t1012,
+                garm_vy_leg3 * t1129 - minus_gcross_vy_leg3 * t1050,
+                garm_vy_leg4 * t1144 - minus_gcross_vy_leg4 * t1082,
             ],
             [
-                0.0, 0.0, 0.0, t503 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
+                0.0, 0.0, 0.0, t510 + 9.81, -(minus_garm_vz_leg1 * actuator_accelerations[0]),
                 -(minus_garm_vz_leg2 * actuator_accelerations[1]),
                 -(minus_garm_vz_leg3 * actuator_accelerations[2]),
-                -(minus_garm_vz_leg4 * actuator_accelerations[3]), minus_garm_vz_leg1 * t538,
-                minus_garm_vz_leg2 * t543, -(minus_garm_vz_leg3 * t548),
-                -(minus_garm_vz_leg4 * t553), minus_garm_vz_leg1 * t558, minus_garm_vz_leg2 * t563,
-                -(minus_garm_vz_leg3 * t568), -(minus_garm_vz_leg4 * t573), -t242, -t243, -t245,
-                -t247, -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
+                -(minus_garm_vz_leg4 * actuator_accelerations[3]), minus_garm_vz_leg1 * t545,
+                minus_garm_vz_leg2 * t550, -(minus_garm_vz_leg3 * t555),
+                -(minus_garm_vz_leg4 * t560), minus_garm_vz_leg1 * t565, minus_garm_vz_leg2 * t570,
+                -(minus_garm_vz_leg3 * t575), -(minus_garm_vz_leg4 * t580), -t312, -t313, -t315,
+                -t317, -::overact::math::signed(minus_garm_vz_leg1, actuator_velocities[0]),
                 -::overact::math::signed(minus_garm_vz_leg2, actuator_velocities[1]),
                 -::overact::math::signed(minus_garm_vz_leg3, actuator_velocities[2]),
                 -::overact::math::signed(minus_garm_vz_leg4, actuator_velocities[3]),
                 -minus_garm_vz_leg1, -minus_garm_vz_leg2, -minus_garm_vz_leg3, -minus_garm_vz_leg4,
-                minus_gcross_vz_leg1 * t618, minus_gcross_vz_leg2 * t661, gcross_vz_leg3 * t699,
-                gcross_vz_leg4 * t739, -(minus_gcross_vz_leg1 * t759),
-                -(minus_gcross_vz_leg2 * t772), -(gcross_vz_leg3 * t784), gcross_vz_leg4 * t801,
-                -(minus_gcross_vz_leg1 * t818), -(minus_gcross_vz_leg2 * t836),
-                gcross_vz_leg3 * t855, gcross_vz_leg4 * t875, -(minus_gcross_vz_leg1 * t756),
-                -(minus_gcross_vz_leg2 * t770), gcross_vz_leg3 * t782, gcross_vz_leg4 * t799,
-                -(minus_gcross_vz_leg1 * t907), minus_gcross_vz_leg2 * t916,
-                -(gcross_vz_leg3 * t923), gcross_vz_leg4 * t931, 0.0, 0.0, 0.0, 0.0,
-                minus_gcross_vz_leg1 * t963 - minus_garm_vz_leg1 * t955,
-                -(minus_gcross_vz_leg2 * t998 + minus_garm_vz_leg2 * t991),
-                gcross_vz_leg3 * t1034 - minus_garm_vz_leg3 * t1025,
-                -(minus_garm_vz_leg4 * t1061 + gcross_vz_leg4 * t1069),
-                -(minus_garm_vz_leg1 * t1090 + minus_gcross_vz_leg1 * t971),
-                -(minus_gcross_vz_leg2 * t1003 + minus_garm_vz_leg2 * t1105),
-                gcross_vz_leg3 * t1042 - minus_garm_vz_leg3 * t1120,
-                gcross_vz_leg4 * t1074 - minus_garm_vz_leg4 * t1135,
+                minus_gcross_vz_leg1 * t624, minus_gcross_vz_leg2 * t664, gcross_vz_leg3 * t703,
+                gcross_vz_leg4 * t745, -(minus_gcross_vz_leg1 * t766),
+                -(minus_gcross_vz_leg2 * t780), -(gcross_vz_leg3 * t792), gcross_vz_leg4 * t809,
+                -(minus_gcross_vz_leg1 * t826), -(minus_gcross_vz_leg2 * t846),
+                gcross_vz_leg3 * t863, gcross_vz_leg4 * t881, -(minus_gcross_vz_leg1 * t763),
+                -(minus_gcross_vz_leg2 * t778), gcross_vz_leg3 * t790, gcross_vz_leg4 * t807,
+                -(minus_gcross_vz_leg1 * t913), minus_gcross_vz_leg2 * t920,
+                -(gcross_vz_leg3 * t929), gcross_vz_leg4 * t939, 0.0, 0.0, 0.0, 0.0,
+                minus_gcross_vz_leg1 * t972 - minus_garm_vz_leg1 * t964,
+                -(minus_gcross_vz_leg2 * t1007 + minus_garm_vz_leg2 * t998),
+                gcross_vz_leg3 * t1042 - minus_garm_vz_leg3 * t1034,
+                -(minus_garm_vz_leg4 * t1069 + gcross_vz_leg4 * t1077),
+                -(minus_garm_vz_leg1 * t1098 + minus_gcross_vz_leg1 * t980),
+                -(minus_gcross_vz_leg2 * t1012 + minus_garm_vz_leg2 * t1114),
+                gcross_vz_leg3 * t1050 - minus_garm_vz_leg3 * t1129,
+                gcross_vz_leg4 * t1082 - minus_garm_vz_leg4 * t1144,
             ],
             [
-                t492, c_phi * t507 - s_phi * t515, -(s_phi * t507 + c_phi * t515), 0.0,
+                t499, c_phi * t514 - s_phi * t522, -(s_phi * t514 + c_phi * t522), 0.0,
                 garm_wz_leg1 * actuator_accelerations[0], garm_wz_leg2 * actuator_accelerations[1],
                 garm_wz_leg3 * actuator_accelerations[2], garm_wz_leg4 * actuator_accelerations[3],
-                -(garm_wz_leg1 * t538), -(garm_wz_leg2 * t543), garm_wz_leg3 * t548,
-                garm_wz_leg4 * t553, -(garm_wz_leg1 * t558), -(garm_wz_leg2 * t563),
-                garm_wz_leg3 * t568, garm_wz_leg4 * t573, t303, t304, t306, t308,
+                -(garm_wz_leg1 * t545), -(garm_wz_leg2 * t550), garm_wz_leg3 * t555,
+                garm_wz_leg4 * t560, -(garm_wz_leg1 * t565), -(garm_wz_leg2 * t570),
+                garm_wz_leg3 * t575, garm_wz_leg4 * t580, t323, t324, t326, t328,
                 ::overact::math::signed(garm_wz_leg1, actuator_velocities[0]),
                 ::overact::math::signed(garm_wz_leg2, actuator_velocities[1]),
                 ::overact::math::signed(garm_wz_leg3, actuator_velocities[2]),
                 ::overact::math::signed(garm_wz_leg4, actuator_velocities[3]), garm_wz_leg1,
-                garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t618 - t634),
-                t670 - gcross_wz_leg2 * t661, gcross_wz_leg3 * t699 + t714,
-                -(minus_gcross_wz_leg4 * t739 + t754), gcross_wz_leg1 * t759 + grod_wz_leg1 * t762,
-                gcross_wz_leg2 * t772 + t59 * t775, t4 * t789 - gcross_wz_leg3 * t784,
-                t59 * t797 - minus_gcross_wz_leg4 * t801,
-                gcross_wz_leg1 * t818 - grod_wz_leg1 * t615, gcross_wz_leg2 * t836 + t80 * t844,
-                gcross_wz_leg3 * t855 - t169 * t863, t59 * t866 - minus_gcross_wz_leg4 * t875,
-                gcross_wz_leg1 * t756 - t634, gcross_wz_leg2 * t770 - t670,
-                gcross_wz_leg3 * t782 - t714, t754 - minus_gcross_wz_leg4 * t799,
-                gcross_wz_leg1 * t907 - t4 * t910, -(gcross_wz_leg2 * t916 + t844),
-                t863 - gcross_wz_leg3 * t923, t59 * t930 - minus_gcross_wz_leg4 * t931,
-                grod_wz_leg1 * rate_dot_rod_leg1, -(t59 * t941), -(t4 * t943), t59 * t945,
-                garm_wz_leg1 * t955 - gcross_wz_leg1 * t963 - t4 * t972,
-                garm_wz_leg2 * t991 + gcross_wz_leg2 * t998 - t59 * t1004,
-                garm_wz_leg3 * t1025 + gcross_wz_leg3 * t1034 - t4 * t1043,
-                garm_wz_leg4 * t1061 + minus_gcross_wz_leg4 * t1069 - t59 * t1075,
-                garm_wz_leg1 * t1090 + gcross_wz_leg1 * t971,
-                garm_wz_leg2 * t1105 + gcross_wz_leg2 * t1003,
-                garm_wz_leg3 * t1120 + gcross_wz_leg3 * t1042,
-                garm_wz_leg4 * t1135 - minus_gcross_wz_leg4 * t1074,
+                garm_wz_leg2, garm_wz_leg3, garm_wz_leg4, -(gcross_wz_leg1 * t624 - t639),
+                t673 - gcross_wz_leg2 * t664, gcross_wz_leg3 * t703 + t719,
+                -(minus_gcross_wz_leg4 * t745 + t761), gcross_wz_leg1 * t766 + t4 * t770,
+                gcross_wz_leg2 * t780 + grod_wz_leg2 * t782,
+                grod_wz_leg3 * t797 - gcross_wz_leg3 * t792,
+                grod_wz_leg4 * t805 - minus_gcross_wz_leg4 * t809,
+                gcross_wz_leg1 * t826 - t29 * t834, gcross_wz_leg2 * t846 + grod_wz_leg2 * t661,
+                gcross_wz_leg3 * t863 - grod_wz_leg3 * t699,
+                grod_wz_leg4 * t741 - minus_gcross_wz_leg4 * t881, gcross_wz_leg1 * t763 - t639,
+                gcross_wz_leg2 * t778 - t673, gcross_wz_leg3 * t790 - t719,
+                t761 - minus_gcross_wz_leg4 * t807, gcross_wz_leg1 * t913 - t834,
+                -(gcross_wz_leg2 * t920 + t52 * t922), t4 * t932 - gcross_wz_leg3 * t929,
+                t52 * t938 - minus_gcross_wz_leg4 * t939, t4 * t947,
+                -(grod_wz_leg2 * minus_rate_dot_rod_leg2),
+                -(grod_wz_leg3 * minus_rate_dot_rod_leg3), grod_wz_leg4 * rate_dot_rod_leg4,
+                garm_wz_leg1 * t964 - gcross_wz_leg1 * t972 - t4 * t981,
+                garm_wz_leg2 * t998 + gcross_wz_leg2 * t1007 - t52 * t1013,
+                garm_wz_leg3 * t1034 + gcross_wz_leg3 * t1042 - t4 * t1051,
+                garm_wz_leg4 * t1069 + minus_gcross_wz_leg4 * t1077 - t52 * t1083,
+                garm_wz_leg1 * t1098 + gcross_wz_leg1 * t980,
+                garm_wz_leg2 * t1114 + gcross_wz_leg2 * t1012,
+                garm_wz_leg3 * t1129 + gcross_wz_leg3 * t1050,
+                garm_wz_leg4 * t1144 - minus_gcross_wz_leg4 * t1082,
             ],
         ])
     }
@@ -7578,7 +7612,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1327 operations (467 additions, 836 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1177 intermediates.
+    /// 1329 operations (468 additions, 837 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1179 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7592,592 +7626,592 @@ impl Schoenflies4 {
         let t3 = 0.05 * c_phi;
         let t4 = t2 + t3;
         let t6 = pose[1] - t4 + 0.24;
+        let t7 = t6 * t6;
         let t8 = pose[2] * pose[2];
-        let t9 = t6 * t6 + t8;
-        let t10 = 0.2704 * t9;
+        let t10 = 0.2704 * (t7 + t8);
         let t11 = 0.08660254037844387 * c_phi;
         let t12 = 0.05 * s_phi;
         let t13 = t11 - t12;
         let t14 = pose[0] - t13;
         let t15 = t14 * t14;
-        let t17 = t9 + t15 - 0.3364;
-        let t18 = t17 + 0.0676;
-        let t20 = t10 - t18 * t18;
-        ::overact::guard::reach(t20, "leg4")?;
-        let t21 = ::overact::math::sqrt(t20);
-        let t23 = 1.0 - 2.972651605231867 * t15;
-        ::overact::guard::reach(t23, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t23);
+        let t18 = t15 + t7 + t8 - 0.3364;
+        let t19 = t18 + 0.0676;
+        let t21 = t10 - t19 * t19;
+        ::overact::guard::reach(t21, "leg4")?;
+        let t22 = ::overact::math::sqrt(t21);
+        let t25 = 1.0 - 2.972651605231867 * t15;
+        ::overact::guard::reach(t25, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t25 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t21 / t25;
+        let t27 = 0.58 * c_rod_leg4;
+        let s_cross_leg4 = 1.9230769230769231 * t22 / t27;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t27 = 1.0 / s_cross_leg4;
-        let t28 = 3.8461538461538463 * t27;
+        let t29 = 1.0 / s_cross_leg4;
+        let t30 = 3.8461538461538463 * t29;
         let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t30 = t14 * grod_vx_leg4;
-        let garm_vx_leg4 = t28 * t30;
-        let t32 = t3 - t2;
-        let t34 = pose[0] + t32 - 0.24;
-        let t36 = t34 * t34 + t8;
-        let t37 = 0.2704 * t36;
-        let t38 = 1.0 / t37;
-        let t39 = 0.52 * t34;
-        let t40 = t12 + t11;
-        let t41 = pose[1] + t40;
-        let t42 = t41 * t41;
-        let t44 = t36 + t42 - 0.3364;
-        let t45 = t44 + 0.0676;
-        let t47 = 0.52 * pose[2];
-        let t49 = t37 - t45 * t45;
-        ::overact::guard::reach(t49, "leg1")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let c_arm_leg1 = t38 * (t39 * t45 - t47 * t50);
-        let t55 = 1.0 - 2.972651605231867 * t42;
-        ::overact::guard::reach(t55, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t55);
+        let t32 = t14 * grod_vx_leg4;
+        let garm_vx_leg4 = t30 * t32;
+        let t34 = t3 - t2;
+        let t36 = pose[0] + t34 - 0.24;
+        let t38 = t36 * t36 + t8;
+        let t39 = 0.2704 * t38;
+        let t40 = 1.0 / t39;
+        let t41 = 0.52 * t36;
+        let t42 = t12 + t11;
+        let t43 = pose[1] + t42;
+        let t44 = t43 * t43;
+        let t46 = t38 + t44 - 0.3364;
+        let t47 = t46 + 0.0676;
+        let t49 = 0.52 * pose[2];
+        let t51 = t39 - t47 * t47;
+        ::overact::guard::reach(t51, "leg1")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let c_arm_leg1 = t40 * (t41 * t47 - t49 * t52);
+        let t57 = 1.0 - 2.972651605231867 * t44;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t57);
         ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t57 = 0.3016 * c_rod_leg1;
-        let s_cross_leg1 = t50 / t57;
+        let t59 = 0.3016 * c_rod_leg1;
+        let s_cross_leg1 = t52 / t59;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
-        let minus_s_arm_leg1 = t38 * (t47 * t45 + t39 * t50);
-        let c_cross_leg1 = (-0.0676 + t44) / t57;
+        let minus_s_arm_leg1 = t40 * (t49 * t47 + t41 * t52);
+        let c_cross_leg1 = (-0.0676 + t46) / t59;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t68 = 1.0 / s_cross_leg1;
-        let t69 = 3.8461538461538463 * t68;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t69;
+        let t70 = 1.0 / s_cross_leg1;
+        let t71 = 3.8461538461538463 * t70;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t71;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t69;
+        let garm_vx_leg1 = c_armcross_leg1 * t71;
         ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
-        let t75 = 1.0 / garm_vx_leg1;
-        let t76 = minus_garm_vz_leg1 * t75;
-        let t78 = 1.0 / t10;
-        let t79 = 0.52 * t6;
-        let s_arm_leg4 = t78 * (t79 * t21 - t47 * t18);
-        let c_cross_leg4 = (t17 + -0.0676) / t25;
-        let minus_c_arm_leg4 = t78 * (t79 * t18 + t47 * t21);
+        let t77 = 1.0 / garm_vx_leg1;
+        let t78 = minus_garm_vz_leg1 * t77;
+        let t80 = 1.0 / t10;
+        let t81 = 0.52 * t6;
+        let s_arm_leg4 = t80 * (t81 * t22 - t49 * t19);
+        let c_cross_leg4 = (t18 + -0.0676) / (0.3016 * c_rod_leg4);
+        let minus_c_arm_leg4 = t80 * (t81 * t19 + t49 * t22);
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t28;
-        let t94 = garm_vx_leg4 * t76 - minus_garm_vz_leg4;
-        let t96 = pose[0] - t32 + 0.24;
-        let t98 = t96 * t96 + t8;
-        let t99 = 0.2704 * t98;
-        let t100 = 1.0 / t99;
-        let t101 = 0.52 * t96;
-        let t102 = pose[1] - t40;
-        let t103 = t102 * t102;
-        let t105 = t98 + t103 - 0.3364;
-        let t106 = t105 + 0.0676;
-        let t109 = t99 - t106 * t106;
-        ::overact::guard::reach(t109, "leg3")?;
-        let t110 = ::overact::math::sqrt(t109);
-        let minus_c_arm_leg3 = t100 * (t101 * t106 + t47 * t110);
-        let t116 = 1.0 - 2.972651605231867 * t103;
-        ::overact::guard::reach(t116, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t116);
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t30;
+        let t97 = garm_vx_leg4 * t78 - minus_garm_vz_leg4;
+        let t99 = pose[0] - t34 + 0.24;
+        let t101 = t99 * t99 + t8;
+        let t102 = 0.2704 * t101;
+        let t103 = 1.0 / t102;
+        let t104 = 0.52 * t99;
+        let t105 = pose[1] - t42;
+        let t106 = t105 * t105;
+        let t108 = t101 + t106 - 0.3364;
+        let t109 = t108 + 0.0676;
+        let t112 = t102 - t109 * t109;
+        ::overact::guard::reach(t112, "leg3")?;
+        let t113 = ::overact::math::sqrt(t112);
+        let minus_c_arm_leg3 = t103 * (t104 * t109 + t49 * t113);
+        let t119 = 1.0 - 2.972651605231867 * t106;
+        ::overact::guard::reach(t119, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t119);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t118 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t105) / t118;
-        let s_arm_leg3 = t100 * (t101 * t110 - t47 * t106);
-        let s_cross_leg3 = t110 / t118;
+        let t121 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t108) / t121;
+        let s_arm_leg3 = t103 * (t104 * t113 - t49 * t109);
+        let s_cross_leg3 = t113 / t121;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t128 = 1.0 / s_cross_leg3;
-        let t129 = 3.8461538461538463 * t128;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t129;
+        let t131 = 1.0 / s_cross_leg3;
+        let t132 = 3.8461538461538463 * t131;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t132;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t129;
-        let t137 = garm_vx_leg3 * t76 - minus_garm_vz_leg3;
-        ::overact::guard::platform(t137, 5.57829169092126, "kept actuators")?;
-        let t138 = 1.0 / t137;
-        let t139 = garm_vx_leg3 * t75 * t138;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
+        let t140 = garm_vx_leg3 * t78 - minus_garm_vz_leg3;
+        ::overact::guard::platform(t140, 5.57829169092126, "kept actuators")?;
+        let t141 = 1.0 / t140;
+        let t142 = garm_vx_leg3 * t77 * t141;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t28;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t30;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t148 = t41 * grod_vy_leg1;
-        let garm_vy_leg1 = t69 * t148;
-        let t150 = garm_vy_leg1 * t75;
+        let t151 = t43 * grod_vy_leg1;
+        let garm_vy_leg1 = t71 * t151;
+        let t153 = garm_vy_leg1 * t77;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t154 = t102 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t129 * t154;
-        let t158 = (garm_vy_leg3 - garm_vx_leg3 * t150) * t138;
-        let t160 = garm_vy_leg4 - garm_vx_leg4 * t150 - t94 * t158;
-        let t162 = pose[1] + t4 - 0.24;
-        let t164 = t162 * t162 + t8;
-        let t165 = 0.2704 * t164;
-        let t166 = pose[0] + t13;
-        let t167 = t166 * t166;
-        let t169 = t164 + t167 - 0.3364;
-        let t170 = t169 + 0.0676;
-        let t172 = t165 - t170 * t170;
-        ::overact::guard::reach(t172, "leg2")?;
-        let t173 = ::overact::math::sqrt(t172);
-        let t175 = 1.0 - 2.972651605231867 * t167;
+        let t157 = t105 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t132 * t157;
+        let t161 = (garm_vy_leg3 - garm_vx_leg3 * t153) * t141;
+        let t163 = garm_vy_leg4 - garm_vx_leg4 * t153 - t97 * t161;
+        let t165 = pose[1] + t4 - 0.24;
+        let t167 = t165 * t165 + t8;
+        let t168 = 0.2704 * t167;
+        let t169 = pose[0] + t13;
+        let t170 = t169 * t169;
+        let t172 = t167 + t170 - 0.3364;
+        let t173 = t172 + 0.0676;
+        let t175 = t168 - t173 * t173;
         ::overact::guard::reach(t175, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t175);
+        let t176 = ::overact::math::sqrt(t175);
+        let t178 = 1.0 - 2.972651605231867 * t170;
+        ::overact::guard::reach(t178, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t178);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t177 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t173 / t177;
+        let t180 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t176 / t180;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t179 = 1.0 / s_cross_leg2;
-        let t180 = 3.8461538461538463 * t179;
+        let t182 = 1.0 / s_cross_leg2;
+        let t183 = 3.8461538461538463 * t182;
         let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let t182 = t166 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t180 * t182;
-        let t185 = 1.0 / t165;
-        let t186 = 0.52 * t162;
-        let c_arm_leg2 = t185 * (t186 * t170 - t47 * t173);
-        let minus_s_arm_leg2 = t185 * (t47 * t170 + t186 * t173);
-        let c_cross_leg2 = (-0.0676 + t169) / t177;
+        let t185 = t169 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t183 * t185;
+        let t188 = 1.0 / t168;
+        let t189 = 0.52 * t165;
+        let c_arm_leg2 = t188 * (t189 * t173 - t49 * t176);
+        let minus_s_arm_leg2 = t188 * (t49 * t173 + t189 * t176);
+        let c_cross_leg2 = (-0.0676 + t172) / t180;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t180;
-        let t201 = garm_vx_leg2 * t76 - minus_garm_vz_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t183;
+        let t204 = garm_vx_leg2 * t78 - minus_garm_vz_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t180;
-        let t212 = garm_vy_leg2 - garm_vx_leg2 * t150 - t201 * t158;
-        ::overact::guard::platform(t212, 2.9321258366411205, "kept actuators")?;
-        let t213 = 1.0 / t212;
-        let t214 = (t201 * t139 - garm_vx_leg2 * t75) * t213;
+        let garm_vy_leg2 = c_armcross_leg2 * t183;
+        let t215 = garm_vy_leg2 - garm_vx_leg2 * t153 - t204 * t161;
+        ::overact::guard::platform(t215, 2.9321258366411205, "kept actuators")?;
+        let t216 = 1.0 / t215;
+        let t217 = (t204 * t142 - garm_vx_leg2 * t77) * t216;
         let garm_wz_leg4 = t4 * garm_vx_leg4 - t13 * garm_vy_leg4;
-        let garm_wz_leg1 = t32 * garm_vy_leg1 - t40 * garm_vx_leg1;
-        let t223 = garm_wz_leg1 * t75;
-        let garm_wz_leg3 = t40 * garm_vx_leg3 - t32 * garm_vy_leg3;
-        let t231 = (garm_wz_leg3 - garm_vx_leg3 * t223) * t138;
+        let garm_wz_leg1 = t34 * garm_vy_leg1 - t42 * garm_vx_leg1;
+        let t226 = garm_wz_leg1 * t77;
+        let garm_wz_leg3 = t42 * garm_vx_leg3 - t34 * garm_vy_leg3;
+        let t234 = (garm_wz_leg3 - garm_vx_leg3 * t226) * t141;
         let garm_wz_leg2 = t13 * garm_vy_leg2 - t4 * garm_vx_leg2;
-        let t241 = (garm_wz_leg2 - garm_vx_leg2 * t223 - t201 * t231) * t213;
-        let t243 = garm_wz_leg4 - garm_vx_leg4 * t223 - t94 * t231 - t160 * t241;
-        ::overact::guard::platform(t243, 1.1850155815331067, "kept actuators")?;
-        let t244 = 1.0 / t243;
-        let t245 = (t94 * t139 - garm_vx_leg4 * t75 - t160 * t214) * t244;
-        let t248 = t160 * t213 * t244;
-        let t251 = t201 * t138 * t213;
-        let t255 = (t160 * t251 - t94 * t138) * t244;
-        let t260 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t265 = t150 + t76 * t158;
-        let t271 = t223 + t76 * t231 - t265 * t241;
-        let t273 = t75 - t76 * t139 - t265 * t214 - t271 * t245;
-        let t274 = twist[3] * twist[3];
-        let t277 = c_phi * t274 + s_phi * acceleration[3];
-        let t280 = t214 - t241 * t245;
-        let t283 = s_phi * t274 - c_phi * acceleration[3];
-        let t289 = t271 * t248 - t265 * t213;
-        let t292 = t213 + t241 * t248;
-        let t298 = t251 + t241 * t255;
-        let t304 = t76 * t138 + t265 * t251 - t271 * t255;
-        let t309 = t271 * t244;
-        let t311 = t241 * t244;
-        let t321 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t345 = t231 - t158 * t241;
-        let t347 = t139 + t158 * t214 + t345 * t245;
-        let t348 = acceleration[2] + 9.81;
-        let t356 = t345 * t248 - t158 * t213;
-        let t365 = t138 + t158 * t251 - t345 * t255;
-        let t371 = t345 * t244;
-        let t374 = t40 * acceleration[3];
-        let t376 = t32 * twist[3];
-        let t377 = twist[3] * t376;
-        let t378 = acceleration[0] - t374 - t377;
-        let t382 = 0.26 * c_cross_leg1;
-        let t383 = t40 * twist[3];
-        let t384 = twist[0] - t383;
-        let t388 = twist[1] + t376;
-        let t389 = t148 * t388;
-        let rate_arm_leg1 = t69
-            * (c_armcross_leg1 * t384 - s_armcross_leg1 * twist[2] + t389);
-        let t392 = rate_arm_leg1 * rate_arm_leg1;
-        let t399 = t382 * rate_arm_leg1 + s_armcross_leg1 * t384
+        let t244 = (garm_wz_leg2 - garm_vx_leg2 * t226 - t204 * t234) * t216;
+        let t246 = garm_wz_leg4 - garm_vx_leg4 * t226 - t97 * t234 - t163 * t244;
+        ::overact::guard::platform(t246, 1.1850155815331067, "kept actuators")?;
+        let t247 = 1.0 / t246;
+        let t248 = (t97 * t142 - garm_vx_leg4 * t77 - t163 * t217) * t247;
+        let t251 = t163 * t216 * t247;
+        let t254 = t204 * t141 * t216;
+        let t258 = (t163 * t254 - t97 * t141) * t247;
+        let t263 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t268 = t153 + t78 * t161;
+        let t274 = t226 + t78 * t234 - t268 * t244;
+        let t276 = t77 - t78 * t142 - t268 * t217 - t274 * t248;
+        let t277 = twist[3] * twist[3];
+        let t280 = c_phi * t277 + s_phi * acceleration[3];
+        let t283 = t217 - t244 * t248;
+        let t286 = s_phi * t277 - c_phi * acceleration[3];
+        let t292 = t274 * t251 - t268 * t216;
+        let t295 = t216 + t244 * t251;
+        let t301 = t254 + t244 * t258;
+        let t307 = t78 * t141 + t268 * t254 - t274 * t258;
+        let t312 = t274 * t247;
+        let t314 = t244 * t247;
+        let t324 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t348 = t234 - t161 * t244;
+        let t350 = t142 + t161 * t217 + t348 * t248;
+        let t351 = acceleration[2] + 9.81;
+        let t359 = t348 * t251 - t161 * t216;
+        let t368 = t141 + t161 * t254 - t348 * t258;
+        let t374 = t348 * t247;
+        let t377 = t42 * acceleration[3];
+        let t379 = t34 * twist[3];
+        let t380 = twist[3] * t379;
+        let t381 = acceleration[0] - t377 - t380;
+        let t385 = 0.26 * c_cross_leg1;
+        let t386 = t42 * twist[3];
+        let t387 = twist[0] - t386;
+        let t391 = twist[1] + t379;
+        let t392 = t151 * t391;
+        let rate_arm_leg1 = t71
+            * (c_armcross_leg1 * t387 - s_armcross_leg1 * twist[2] + t392);
+        let t395 = rate_arm_leg1 * rate_arm_leg1;
+        let t402 = t385 * rate_arm_leg1 + s_armcross_leg1 * t387
             + c_armcross_leg1 * twist[2];
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t399;
-        let t401 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let rate_rod_leg1 = grod_vy_leg1 * t388;
-        let t403 = rate_rod_leg1 * rate_rod_leg1;
-        let t408 = t32 * acceleration[3];
-        let t410 = twist[3] * t383;
-        let t411 = acceleration[1] + t408 - t410;
-        let t413 = t411 + t41 * t403;
-        let t415 = c_armcross_leg1 * t378 - s_armcross_leg1 * acceleration[2]
-            + t382 * t392 + 0.58 * c_rod_leg1 * (t401 + t403) + t148 * t413;
-        let rate_dot_arm_leg1 = t69 * t415;
-        let t417 = t13 * acceleration[3];
-        let t419 = t4 * twist[3];
-        let t420 = twist[3] * t419;
-        let t421 = acceleration[1] + t417 - t420;
-        let t425 = 0.26 * c_cross_leg2;
-        let t426 = t13 * twist[3];
-        let t427 = twist[1] + t426;
-        let t430 = c_armcross_leg2 * t427 - s_armcross_leg2 * twist[2];
-        let t431 = twist[0] - t419;
-        let t432 = t182 * t431;
-        let rate_arm_leg2 = t180 * (t430 + t432);
-        let t435 = rate_arm_leg2 * rate_arm_leg2;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t431;
-        let t439 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t440 = c_cross_leg2 * t179;
-        let t446 = t425 * garm_vx_leg2;
-        let t448 = t440 * t430 + s_armcross_leg2 * t427 + c_armcross_leg2 * twist[2]
-            + t446 * t431;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t448;
-        let t450 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t454 = c_armcross_leg2 * t421 - s_armcross_leg2 * acceleration[2]
-            + t425 * t435 + 0.58 * c_rod_leg2 * (t439 + t450);
-        let t455 = t4 * acceleration[3];
-        let t457 = twist[3] * t426;
-        let t458 = acceleration[0] - t455 - t457;
-        let t460 = t458 + t166 * t439;
-        let rate_dot_arm_leg2 = t180 * (t454 + t182 * t460);
-        let t465 = acceleration[0] + t374 + t377;
-        let t469 = 0.26 * c_cross_leg3;
-        let t470 = twist[0] + t383;
-        let t473 = minus_c_armcross_leg3 * t470 - s_armcross_leg3 * twist[2];
-        let t474 = twist[1] - t376;
-        let t475 = t154 * t474;
-        let rate_arm_leg3 = t129 * (t473 + t475);
-        let t478 = rate_arm_leg3 * rate_arm_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t474;
-        let t482 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t486 = c_cross_leg3 * t128;
-        let t489 = t469 * garm_vy_leg3;
-        let t491 = s_armcross_leg3 * t470 + minus_c_armcross_leg3 * twist[2]
-            - t486 * t473 - t489 * t474;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t491;
-        let t493 = rate_cross_leg3 * rate_cross_leg3;
-        let t497 = minus_c_armcross_leg3 * t465 - s_armcross_leg3 * acceleration[2]
-            + t469 * t478 + 0.58 * c_rod_leg3 * (t482 + t493);
-        let t499 = acceleration[1] - t408 + t410;
-        let t501 = t499 + t102 * t482;
-        let rate_dot_arm_leg3 = t129 * (t497 + t154 * t501);
-        let t506 = acceleration[1] - t417 + t420;
-        let t510 = 0.26 * c_cross_leg4;
-        let t511 = twist[1] - t426;
-        let t514 = minus_c_armcross_leg4 * t511 - s_armcross_leg4 * twist[2];
-        let t515 = twist[0] + t419;
-        let t516 = t30 * t515;
-        let rate_arm_leg4 = t28 * (t514 + t516);
-        let t519 = rate_arm_leg4 * rate_arm_leg4;
-        let rate_rod_leg4 = grod_vx_leg4 * t515;
-        let t523 = rate_rod_leg4 * rate_rod_leg4;
-        let t527 = c_cross_leg4 * t27;
-        let t530 = t510 * garm_vx_leg4;
-        let t532 = s_armcross_leg4 * t511 + minus_c_armcross_leg4 * twist[2]
-            - t527 * t514 - t530 * t515;
-        let rate_cross_leg4 = grod_vx_leg4 * t532;
-        let t534 = rate_cross_leg4 * rate_cross_leg4;
-        let t538 = minus_c_armcross_leg4 * t506 - s_armcross_leg4 * acceleration[2]
-            + t510 * t519 + 0.58 * c_rod_leg4 * (t523 + t534);
-        let t540 = acceleration[0] + t455 + t457;
-        let t542 = t540 + t14 * t523;
-        let rate_dot_arm_leg4 = t28 * (t538 + t30 * t542);
-        let t546 = 9.81 * c_arm_leg1;
-        let t547 = 9.81 * c_arm_leg2;
-        let t548 = 9.81 * minus_c_arm_leg3;
-        let t549 = 9.81 * minus_c_arm_leg4;
-        let t550 = 9.81 * minus_s_arm_leg1;
-        let t551 = 9.81 * minus_s_arm_leg2;
-        let t552 = 9.81 * s_arm_leg3;
-        let t553 = 9.81 * s_arm_leg4;
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t68);
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t68);
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t382 * garm_vy_leg1);
-        let gcross_wz_leg1 = t40 * minus_gcross_vx_leg1 - t32 * minus_gcross_vy_leg1;
-        let t573 = minus_gcross_vz_leg1 * t347
-            - (minus_gcross_vx_leg1 * t273 + minus_gcross_vy_leg1 * t280)
-            + gcross_wz_leg1 * t245;
-        let t575 = rate_rod_leg1 * (1.7241379310344827 * t399);
-        let t576 = 0.26 * rate_dot_arm_leg1;
-        let t581 = 0.26 * t392;
-        let t583 = t389 * minus_rate_cross_leg1;
-        let t587 = c_cross_leg1 * t576 + s_armcross_leg1 * t378
-            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t581 + t583 + t583;
-        let t588 = 1.7241379310344827 * t587;
-        let t589 = t148 * t588;
-        let t591 = t575 + t589 + t575;
-        let t592 = c_rod_leg1 * t591;
-        let t593 = t148 * t592;
-        let grod_wz_leg1 = t32 * grod_vy_leg1;
-        let t598 = grod_vy_leg1 * t280 + grod_wz_leg1 * t245;
-        let t599 = t41 * minus_rate_cross_leg1;
-        let t601 = 2.972651605231867 * (t399 * t599);
-        let t602 = t598 * t601;
-        let t610 = minus_gcross_vx_leg1 * t289 + minus_gcross_vy_leg1 * t292
-            + minus_gcross_vz_leg1 * t356 + gcross_wz_leg1 * t248;
-        let t614 = grod_vy_leg1 * t292 - grod_wz_leg1 * t248;
-        let t615 = t614 * t601;
-        let t623 = minus_gcross_vy_leg1 * t298 - minus_gcross_vx_leg1 * t304
-            - minus_gcross_vz_leg1 * t365 + gcross_wz_leg1 * t255;
-        let t627 = grod_wz_leg1 * t255 - grod_vy_leg1 * t298;
-        let t628 = t627 * t601;
-        let t636 = minus_gcross_vx_leg1 * t309 + minus_gcross_vy_leg1 * t311
-            + minus_gcross_vz_leg1 * t371 + gcross_wz_leg1 * t244;
-        let t640 = grod_wz_leg1 * t244 - grod_vy_leg1 * t311;
-        let t641 = t640 * t601;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t402;
+        let t404 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let rate_rod_leg1 = grod_vy_leg1 * t391;
+        let t406 = rate_rod_leg1 * rate_rod_leg1;
+        let t411 = t34 * acceleration[3];
+        let t413 = twist[3] * t386;
+        let t414 = acceleration[1] + t411 - t413;
+        let t416 = t414 + t43 * t406;
+        let t418 = c_armcross_leg1 * t381 - s_armcross_leg1 * acceleration[2]
+            + t385 * t395 + 0.58 * c_rod_leg1 * (t404 + t406) + t151 * t416;
+        let rate_dot_arm_leg1 = t71 * t418;
+        let t420 = t13 * acceleration[3];
+        let t422 = t4 * twist[3];
+        let t423 = twist[3] * t422;
+        let t424 = acceleration[1] + t420 - t423;
+        let t428 = 0.26 * c_cross_leg2;
+        let t429 = t13 * twist[3];
+        let t430 = twist[1] + t429;
+        let t433 = c_armcross_leg2 * t430 - s_armcross_leg2 * twist[2];
+        let t434 = twist[0] - t422;
+        let t435 = t185 * t434;
+        let rate_arm_leg2 = t183 * (t433 + t435);
+        let t438 = rate_arm_leg2 * rate_arm_leg2;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t434;
+        let t442 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t443 = c_cross_leg2 * t182;
+        let t449 = t428 * garm_vx_leg2;
+        let t451 = t443 * t433 + s_armcross_leg2 * t430 + c_armcross_leg2 * twist[2]
+            + t449 * t434;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t451;
+        let t453 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t457 = c_armcross_leg2 * t424 - s_armcross_leg2 * acceleration[2]
+            + t428 * t438 + 0.58 * c_rod_leg2 * (t442 + t453);
+        let t458 = t4 * acceleration[3];
+        let t460 = twist[3] * t429;
+        let t461 = acceleration[0] - t458 - t460;
+        let t463 = t461 + t169 * t442;
+        let rate_dot_arm_leg2 = t183 * (t457 + t185 * t463);
+        let t468 = acceleration[0] + t377 + t380;
+        let t472 = 0.26 * c_cross_leg3;
+        let t473 = twist[0] + t386;
+        let t476 = minus_c_armcross_leg3 * t473 - s_armcross_leg3 * twist[2];
+        let t477 = twist[1] - t379;
+        let t478 = t157 * t477;
+        let rate_arm_leg3 = t132 * (t476 + t478);
+        let t481 = rate_arm_leg3 * rate_arm_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t477;
+        let t485 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t489 = c_cross_leg3 * t131;
+        let t492 = t472 * garm_vy_leg3;
+        let t494 = s_armcross_leg3 * t473 + minus_c_armcross_leg3 * twist[2]
+            - t489 * t476 - t492 * t477;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t494;
+        let t496 = rate_cross_leg3 * rate_cross_leg3;
+        let t500 = minus_c_armcross_leg3 * t468 - s_armcross_leg3 * acceleration[2]
+            + t472 * t481 + 0.58 * c_rod_leg3 * (t485 + t496);
+        let t502 = acceleration[1] - t411 + t413;
+        let t504 = t502 + t105 * t485;
+        let rate_dot_arm_leg3 = t132 * (t500 + t157 * t504);
+        let t509 = acceleration[1] - t420 + t423;
+        let t513 = 0.26 * c_cross_leg4;
+        let t514 = twist[1] - t429;
+        let t517 = minus_c_armcross_leg4 * t514 - s_armcross_leg4 * twist[2];
+        let t518 = twist[0] + t422;
+        let t519 = t32 * t518;
+        let rate_arm_leg4 = t30 * (t517 + t519);
+        let t522 = rate_arm_leg4 * rate_arm_leg4;
+        let rate_rod_leg4 = grod_vx_leg4 * t518;
+        let t525 = rate_rod_leg4 * rate_rod_leg4;
+        let t529 = c_cross_leg4 * t29;
+        let t532 = t513 * garm_vx_leg4;
+        let t534 = s_armcross_leg4 * t514 + minus_c_armcross_leg4 * twist[2]
+            - t529 * t517 - t532 * t518;
+        let rate_cross_leg4 = grod_vx_leg4 * t534;
+        let t536 = rate_cross_leg4 * rate_cross_leg4;
+        let t540 = minus_c_armcross_leg4 * t509 - s_armcross_leg4 * acceleration[2]
+            + t513 * t522 + t27 * (t525 + t536);
+        let t542 = acceleration[0] + t458 + t460;
+        let t544 = t542 + t14 * t525;
+        let rate_dot_arm_leg4 = t30 * (t540 + t32 * t544);
+        let t548 = 9.81 * c_arm_leg1;
+        let t549 = 9.81 * c_arm_leg2;
+        let t550 = 9.81 * minus_c_arm_leg3;
+        let t551 = 9.81 * minus_c_arm_leg4;
+        let t552 = 9.81 * minus_s_arm_leg1;
+        let t553 = 9.81 * minus_s_arm_leg2;
+        let t554 = 9.81 * s_arm_leg3;
+        let t555 = 9.81 * s_arm_leg4;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t70);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t70);
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t385 * garm_vy_leg1);
+        let gcross_wz_leg1 = t42 * minus_gcross_vx_leg1 - t34 * minus_gcross_vy_leg1;
+        let t575 = minus_gcross_vz_leg1 * t350
+            - (minus_gcross_vx_leg1 * t276 + minus_gcross_vy_leg1 * t283)
+            + gcross_wz_leg1 * t248;
+        let t577 = rate_rod_leg1 * (1.7241379310344827 * t402);
+        let t578 = 0.26 * rate_dot_arm_leg1;
+        let t583 = 0.26 * t395;
+        let t585 = t392 * minus_rate_cross_leg1;
+        let t589 = c_cross_leg1 * t578 + s_armcross_leg1 * t381
+            + c_armcross_leg1 * acceleration[2] + s_cross_leg1 * t583 + t585 + t585;
+        let t590 = 1.7241379310344827 * t589;
+        let t591 = t151 * t590;
+        let t593 = t577 + t591 + t577;
+        let t594 = c_rod_leg1 * t593;
+        let t595 = t151 * t594;
+        let grod_wz_leg1 = t34 * grod_vy_leg1;
+        let t600 = grod_vy_leg1 * t283 + grod_wz_leg1 * t248;
+        let t601 = t43 * minus_rate_cross_leg1;
+        let t603 = 2.972651605231867 * (t402 * t601);
+        let t604 = t600 * t603;
+        let t612 = minus_gcross_vx_leg1 * t292 + minus_gcross_vy_leg1 * t295
+            + minus_gcross_vz_leg1 * t359 + gcross_wz_leg1 * t251;
+        let t616 = grod_vy_leg1 * t295 - grod_wz_leg1 * t251;
+        let t617 = t616 * t603;
+        let t625 = minus_gcross_vy_leg1 * t301 - minus_gcross_vx_leg1 * t307
+            - minus_gcross_vz_leg1 * t368 + gcross_wz_leg1 * t258;
+        let t629 = grod_wz_leg1 * t258 - grod_vy_leg1 * t301;
+        let t630 = t629 * t603;
+        let t638 = minus_gcross_vx_leg1 * t312 + minus_gcross_vy_leg1 * t314
+            + minus_gcross_vz_leg1 * t374 + gcross_wz_leg1 * t247;
+        let t642 = grod_wz_leg1 * t247 - grod_vy_leg1 * t314;
+        let t643 = t642 * t603;
         let grod_wz_leg2 = t4 * minus_grod_vx_leg2;
-        let t646 = grod_wz_leg2 * t245 - minus_grod_vx_leg2 * t273;
-        let t647 = t166 * minus_rate_cross_leg2;
-        let t649 = 2.972651605231867 * (t448 * t647);
-        let t650 = t646 * t649;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t446;
-        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t179 * c_arm_leg2);
+        let t648 = grod_wz_leg2 * t248 - minus_grod_vx_leg2 * t276;
+        let t649 = t169 * minus_rate_cross_leg2;
+        let t651 = 2.972651605231867 * (t451 * t649);
+        let t652 = t648 * t651;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t449;
+        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t182 * c_arm_leg2);
         let gcross_wz_leg2 = t4 * minus_gcross_vx_leg2 - t13 * minus_gcross_vy_leg2;
-        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t179 * minus_s_arm_leg2);
-        let t665 = gcross_wz_leg2 * t245
-            - (minus_gcross_vx_leg2 * t273 + minus_gcross_vy_leg2 * t280
-                - minus_gcross_vz_leg2 * t347);
-        let t667 = minus_rate_rod_leg2 * (1.7241379310344827 * t448);
-        let t672 = 0.26 * t435;
-        let t674 = minus_rate_cross_leg2 * t432;
-        let t680 = t440 * t454 + s_armcross_leg2 * t421
-            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t672 + t674 + t674
-            + t446 * t460;
-        let t681 = 1.7241379310344827 * t680;
-        let t682 = t182 * t681;
-        let t684 = t667 + t682 + t667;
-        let t685 = c_rod_leg2 * t684;
-        let t686 = t182 * t685;
-        let t695 = minus_gcross_vz_leg2 * t356 + minus_gcross_vx_leg2 * t289
-            + minus_gcross_vy_leg2 * t292 + gcross_wz_leg2 * t248;
-        let t699 = minus_grod_vx_leg2 * t289 + grod_wz_leg2 * t248;
-        let t700 = t699 * t649;
-        let t704 = grod_wz_leg2 * t255 - minus_grod_vx_leg2 * t304;
-        let t705 = t704 * t649;
-        let t712 = minus_gcross_vy_leg2 * t298 - minus_gcross_vx_leg2 * t304
-            - minus_gcross_vz_leg2 * t365 + gcross_wz_leg2 * t255;
-        let t717 = minus_grod_vx_leg2 * t309 + grod_wz_leg2 * t244;
-        let t718 = t717 * t649;
-        let t725 = minus_gcross_vx_leg2 * t309 + minus_gcross_vy_leg2 * t311
-            + minus_gcross_vz_leg2 * t371 + gcross_wz_leg2 * t244;
-        let minus_gcross_vx_leg3 = minus_grod_vy_leg3 * (minus_c_arm_leg3 * t128);
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * t489;
-        let gcross_vz_leg3 = minus_grod_vy_leg3 * (s_arm_leg3 * t128);
-        let gcross_wz_leg3 = t32 * minus_gcross_vy_leg3 - t40 * minus_gcross_vx_leg3;
-        let t742 = gcross_wz_leg3 * t245
-            - (minus_gcross_vx_leg3 * t273 + minus_gcross_vy_leg3 * t280
-                + gcross_vz_leg3 * t347);
-        let t744 = minus_rate_rod_leg3 * (1.7241379310344827 * t491);
-        let t748 = 0.26 * t478;
-        let t750 = t475 * rate_cross_leg3;
-        let t757 = s_armcross_leg3 * t465 + minus_c_armcross_leg3 * acceleration[2]
-            - (s_cross_leg3 * t748 - t750 - t750) - t486 * t497 - t489 * t501;
-        let t758 = 1.7241379310344827 * t757;
-        let t759 = t154 * t758;
-        let t761 = t744 + t759 + t744;
-        let t762 = c_rod_leg3 * t761;
-        let t763 = t154 * t762;
-        let grod_wz_leg3 = t32 * minus_grod_vy_leg3;
-        let t768 = grod_wz_leg3 * t245 - minus_grod_vy_leg3 * t280;
-        let t769 = t102 * rate_cross_leg3;
-        let t771 = 2.972651605231867 * (t491 * t769);
-        let t772 = t768 * t771;
-        let t780 = gcross_vz_leg3 * t356
-            - (minus_gcross_vx_leg3 * t289 + minus_gcross_vy_leg3 * t292)
-            - gcross_wz_leg3 * t248;
-        let t784 = minus_grod_vy_leg3 * t292 + grod_wz_leg3 * t248;
-        let t785 = t784 * t771;
-        let t793 = minus_gcross_vy_leg3 * t298 - minus_gcross_vx_leg3 * t304
-            + gcross_vz_leg3 * t365 + gcross_wz_leg3 * t255;
-        let t797 = minus_grod_vy_leg3 * t298 + grod_wz_leg3 * t255;
-        let t798 = t797 * t771;
-        let t806 = minus_gcross_vy_leg3 * t311 + minus_gcross_vx_leg3 * t309
-            - gcross_vz_leg3 * t371 + gcross_wz_leg3 * t244;
-        let t810 = minus_grod_vy_leg3 * t311 + grod_wz_leg3 * t244;
-        let t811 = t810 * t771;
-        let minus_gcross_vy_leg4 = grod_vx_leg4 * (t27 * minus_c_arm_leg4);
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * t530;
-        let gcross_vz_leg4 = grod_vx_leg4 * (t27 * s_arm_leg4);
+        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t182 * minus_s_arm_leg2);
+        let t667 = gcross_wz_leg2 * t248
+            - (minus_gcross_vx_leg2 * t276 + minus_gcross_vy_leg2 * t283
+                - minus_gcross_vz_leg2 * t350);
+        let t669 = minus_rate_rod_leg2 * (1.7241379310344827 * t451);
+        let t674 = 0.26 * t438;
+        let t676 = minus_rate_cross_leg2 * t435;
+        let t682 = t443 * t457 + s_armcross_leg2 * t424
+            + c_armcross_leg2 * acceleration[2] + s_cross_leg2 * t674 + t676 + t676
+            + t449 * t463;
+        let t683 = 1.7241379310344827 * t682;
+        let t684 = t185 * t683;
+        let t686 = t669 + t684 + t669;
+        let t687 = c_rod_leg2 * t686;
+        let t688 = t185 * t687;
+        let t697 = minus_gcross_vz_leg2 * t359 + minus_gcross_vx_leg2 * t292
+            + minus_gcross_vy_leg2 * t295 + gcross_wz_leg2 * t251;
+        let t701 = minus_grod_vx_leg2 * t292 + grod_wz_leg2 * t251;
+        let t702 = t701 * t651;
+        let t706 = grod_wz_leg2 * t258 - minus_grod_vx_leg2 * t307;
+        let t707 = t706 * t651;
+        let t714 = minus_gcross_vy_leg2 * t301 - minus_gcross_vx_leg2 * t307
+            - minus_gcross_vz_leg2 * t368 + gcross_wz_leg2 * t258;
+        let t719 = minus_grod_vx_leg2 * t312 + grod_wz_leg2 * t247;
+        let t720 = t719 * t651;
+        let t727 = minus_gcross_vx_leg2 * t312 + minus_gcross_vy_leg2 * t314
+            + minus_gcross_vz_leg2 * t374 + gcross_wz_leg2 * t247;
+        let minus_gcross_vx_leg3 = minus_grod_vy_leg3 * (minus_c_arm_leg3 * t131);
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * t492;
+        let gcross_vz_leg3 = minus_grod_vy_leg3 * (s_arm_leg3 * t131);
+        let gcross_wz_leg3 = t34 * minus_gcross_vy_leg3 - t42 * minus_gcross_vx_leg3;
+        let t744 = gcross_wz_leg3 * t248
+            - (minus_gcross_vx_leg3 * t276 + minus_gcross_vy_leg3 * t283
+                + gcross_vz_leg3 * t350);
+        let t746 = minus_rate_rod_leg3 * (1.7241379310344827 * t494);
+        let t750 = 0.26 * t481;
+        let t752 = t478 * rate_cross_leg3;
+        let t759 = s_armcross_leg3 * t468 + minus_c_armcross_leg3 * acceleration[2]
+            - (s_cross_leg3 * t750 - t752 - t752) - t489 * t500 - t492 * t504;
+        let t760 = 1.7241379310344827 * t759;
+        let t761 = t157 * t760;
+        let t763 = t746 + t761 + t746;
+        let t764 = c_rod_leg3 * t763;
+        let t765 = t157 * t764;
+        let grod_wz_leg3 = t34 * minus_grod_vy_leg3;
+        let t770 = grod_wz_leg3 * t248 - minus_grod_vy_leg3 * t283;
+        let t771 = t105 * rate_cross_leg3;
+        let t773 = 2.972651605231867 * (t494 * t771);
+        let t774 = t770 * t773;
+        let t782 = gcross_vz_leg3 * t359
+            - (minus_gcross_vx_leg3 * t292 + minus_gcross_vy_leg3 * t295)
+            - gcross_wz_leg3 * t251;
+        let t786 = minus_grod_vy_leg3 * t295 + grod_wz_leg3 * t251;
+        let t787 = t786 * t773;
+        let t795 = minus_gcross_vy_leg3 * t301 - minus_gcross_vx_leg3 * t307
+            + gcross_vz_leg3 * t368 + gcross_wz_leg3 * t258;
+        let t799 = minus_grod_vy_leg3 * t301 + grod_wz_leg3 * t258;
+        let t800 = t799 * t773;
+        let t808 = minus_gcross_vy_leg3 * t314 + minus_gcross_vx_leg3 * t312
+            - gcross_vz_leg3 * t374 + gcross_wz_leg3 * t247;
+        let t812 = minus_grod_vy_leg3 * t314 + grod_wz_leg3 * t247;
+        let t813 = t812 * t773;
+        let minus_gcross_vy_leg4 = grod_vx_leg4 * (t29 * minus_c_arm_leg4);
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t532;
+        let gcross_vz_leg4 = grod_vx_leg4 * (t29 * s_arm_leg4);
         let minus_gcross_wz_leg4 = t4 * minus_gcross_vx_leg4
             - t13 * minus_gcross_vy_leg4;
-        let t827 = minus_gcross_vy_leg4 * t280 + minus_gcross_vx_leg4 * t273
-            + gcross_vz_leg4 * t347 + minus_gcross_wz_leg4 * t245;
-        let t829 = rate_rod_leg4 * (1.7241379310344827 * t532);
-        let t833 = 0.26 * t519;
-        let t835 = t516 * rate_cross_leg4;
-        let t842 = s_armcross_leg4 * t506 + minus_c_armcross_leg4 * acceleration[2]
-            - (s_cross_leg4 * t833 - t835 - t835) - t527 * t538 - t530 * t542;
-        let t843 = 1.7241379310344827 * t842;
-        let t844 = t30 * t843;
-        let t846 = t829 + t844 + t829;
-        let t847 = c_rod_leg4 * t846;
-        let t848 = t30 * t847;
+        let t829 = minus_gcross_vy_leg4 * t283 + minus_gcross_vx_leg4 * t276
+            + gcross_vz_leg4 * t350 + minus_gcross_wz_leg4 * t248;
+        let t831 = rate_rod_leg4 * (1.7241379310344827 * t534);
+        let t835 = 0.26 * t522;
+        let t837 = t519 * rate_cross_leg4;
+        let t844 = s_armcross_leg4 * t509 + minus_c_armcross_leg4 * acceleration[2]
+            - (s_cross_leg4 * t835 - t837 - t837) - t529 * t540 - t532 * t544;
+        let t845 = 1.7241379310344827 * t844;
+        let t846 = t32 * t845;
+        let t848 = t831 + t846 + t831;
+        let t849 = c_rod_leg4 * t848;
+        let t850 = t32 * t849;
         let grod_wz_leg4 = t4 * grod_vx_leg4;
-        let t853 = grod_vx_leg4 * t273 + grod_wz_leg4 * t245;
-        let t854 = t14 * rate_cross_leg4;
-        let t856 = 2.972651605231867 * (t532 * t854);
-        let t857 = t853 * t856;
-        let t865 = gcross_vz_leg4 * t356
-            - (minus_gcross_vy_leg4 * t292 + minus_gcross_vx_leg4 * t289)
-            + minus_gcross_wz_leg4 * t248;
-        let t869 = grod_vx_leg4 * t289 - grod_wz_leg4 * t248;
-        let t870 = t869 * t856;
-        let t878 = gcross_vz_leg4 * t365
-            - (minus_gcross_vx_leg4 * t304 - minus_gcross_vy_leg4 * t298)
-            - minus_gcross_wz_leg4 * t255;
-        let t882 = grod_vx_leg4 * t304 + grod_wz_leg4 * t255;
-        let t883 = t882 * t856;
-        let t891 = minus_gcross_vx_leg4 * t309 + minus_gcross_vy_leg4 * t311
-            - gcross_vz_leg4 * t371 - minus_gcross_wz_leg4 * t244;
-        let t895 = grod_wz_leg4 * t244 - grod_vx_leg4 * t309;
-        let t896 = t895 * t856;
-        let s_rod_leg1 = 1.7241379310344827 * t41;
-        let t903 = s_rod_leg1 * t575 + c_rod_leg1 * (1.7241379310344827 * (t583 - t587));
-        let t905 = t148 * t903 - t592;
-        let t907 = t599 * t599;
-        let t910 = 2.972651605231867 * (t907 - t399 * t399);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t166;
-        let t927 = minus_s_rod_leg2 * t667
-            + c_rod_leg2 * (1.7241379310344827 * (t674 - t680));
-        let t929 = t685 - t182 * t927;
-        let t931 = t647 * t647;
-        let t934 = 2.972651605231867 * (t931 - t448 * t448);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t102;
-        let t951 = c_rod_leg3 * (1.7241379310344827 * (t757 - t750))
-            - minus_s_rod_leg3 * t744;
-        let t953 = t154 * t951 + t762;
-        let t955 = t769 * t769;
-        let t958 = 2.972651605231867 * (t955 - t491 * t491);
+        let t855 = grod_vx_leg4 * t276 + grod_wz_leg4 * t248;
+        let t856 = t14 * rate_cross_leg4;
+        let t858 = 2.972651605231867 * (t534 * t856);
+        let t859 = t855 * t858;
+        let t867 = gcross_vz_leg4 * t359
+            - (minus_gcross_vy_leg4 * t295 + minus_gcross_vx_leg4 * t292)
+            + minus_gcross_wz_leg4 * t251;
+        let t871 = grod_vx_leg4 * t292 - grod_wz_leg4 * t251;
+        let t872 = t871 * t858;
+        let t880 = gcross_vz_leg4 * t368
+            - (minus_gcross_vx_leg4 * t307 - minus_gcross_vy_leg4 * t301)
+            - minus_gcross_wz_leg4 * t258;
+        let t884 = grod_vx_leg4 * t307 + grod_wz_leg4 * t258;
+        let t885 = t884 * t858;
+        let t893 = minus_gcross_vx_leg4 * t312 + minus_gcross_vy_leg4 * t314
+            - gcross_vz_leg4 * t374 - minus_gcross_wz_leg4 * t247;
+        let t897 = grod_wz_leg4 * t247 - grod_vx_leg4 * t312;
+        let t898 = t897 * t858;
+        let s_rod_leg1 = 1.7241379310344827 * t43;
+        let t905 = s_rod_leg1 * t577 + c_rod_leg1 * (1.7241379310344827 * (t585 - t589));
+        let t907 = t151 * t905 - t594;
+        let t909 = t601 * t601;
+        let t912 = 2.972651605231867 * (t909 - t402 * t402);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t169;
+        let t929 = minus_s_rod_leg2 * t669
+            + c_rod_leg2 * (1.7241379310344827 * (t676 - t682));
+        let t931 = t687 - t185 * t929;
+        let t933 = t649 * t649;
+        let t936 = 2.972651605231867 * (t933 - t451 * t451);
+        let minus_s_rod_leg3 = 1.7241379310344827 * t105;
+        let t953 = c_rod_leg3 * (1.7241379310344827 * (t759 - t752))
+            - minus_s_rod_leg3 * t746;
+        let t955 = t157 * t953 + t764;
+        let t957 = t771 * t771;
+        let t960 = 2.972651605231867 * (t957 - t494 * t494);
         let s_rod_leg4 = 1.7241379310344827 * t14;
-        let t975 = c_rod_leg4 * (1.7241379310344827 * (t842 - t835)) - s_rod_leg4 * t829;
-        let t977 = t847 + t30 * t975;
-        let t979 = t854 * t854;
-        let t982 = 2.972651605231867 * (t979 - t532 * t532);
-        let rate_dot_rod_leg1 = grod_vy_leg1 * t413;
-        let t997 = 2.972651605231867 * t907;
-        let t1000 = s_rod_leg1 * (t601 + rate_dot_rod_leg1) + c_rod_leg1 * (t403 - t997);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t460;
-        let t1016 = 2.972651605231867 * t931;
-        let t1019 = minus_s_rod_leg2 * (t649 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t439 - t1016);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t501;
-        let t1035 = 2.972651605231867 * t955;
-        let t1038 = minus_s_rod_leg3 * (t771 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t482 - t1035);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t542;
-        let t1054 = 2.972651605231867 * t979;
-        let t1057 = s_rod_leg4 * (t856 + rate_dot_rod_leg4)
-            + c_rod_leg4 * (t523 - t1054);
-        let t1102 = 1.7241379310344827 * t411;
-        let t1115 = 1.7241379310344827 * t458;
-        let t1129 = 1.7241379310344827 * t499;
-        let t1141 = 1.7241379310344827 * t540;
-        let t1170 = 0.8620689655172413 * t50;
-        let t1173 = t148 * t1170;
-        let t1179 = t576 - t546;
-        let t1181 = t550 - t581;
-        let t1184 = s_rod_leg1 * (c_cross_leg1 * t1179 - s_cross_leg1 * t1181);
-        let t1189 = c_cross_leg1 * t1181 + s_cross_leg1 * t1179;
-        let t1190 = c_rod_leg1 * t1189;
-        let t1192 = t1170 * (t601 - rate_dot_rod_leg1) + t1173 * (t997 + t403)
-            + t382 * t591 - t573 * t1184 - t598 * t1190;
-        let t1203 = 0.26 * rate_dot_arm_leg2 - t547;
-        let t1205 = t551 - t672;
-        let t1208 = minus_s_rod_leg2 * (c_cross_leg2 * t1203 - s_cross_leg2 * t1205);
-        let t1212 = c_cross_leg2 * t1205 + s_cross_leg2 * t1203;
-        let t1213 = c_rod_leg2 * t1212;
-        let t1216 = 0.8620689655172413 * t173;
-        let t1219 = t182 * t1216;
-        let t1228 = t1216 * (minus_rate_dot_rod_leg2 - t649) - t1219 * (t1016 + t439)
-            - t425 * t684 - t695 * t1208 + t699 * t1213;
-        let t1235 = t552 + t748;
-        let t1238 = t548 + 0.26 * rate_dot_arm_leg3;
-        let t1241 = minus_s_rod_leg3 * (s_cross_leg3 * t1235 + c_cross_leg3 * t1238);
-        let t1245 = s_cross_leg3 * t1238 - c_cross_leg3 * t1235;
-        let t1246 = c_rod_leg3 * t1245;
-        let t1252 = 0.8620689655172413 * t110;
-        let t1255 = t154 * t1252;
-        let t1264 = t1252 * (minus_rate_dot_rod_leg3 - t771) - t1255 * (t1035 + t482)
-            + t469 * t761 + t793 * t1241 - t797 * t1246;
-        let t1268 = t553 + t833;
-        let t1271 = t549 + 0.26 * rate_dot_arm_leg4;
-        let t1274 = s_rod_leg4 * (s_cross_leg4 * t1268 + c_cross_leg4 * t1271);
-        let t1278 = s_cross_leg4 * t1271 - c_cross_leg4 * t1268;
-        let t1279 = c_rod_leg4 * t1278;
-        let t1288 = 0.8620689655172413 * t21;
-        let t1291 = t30 * t1288;
-        let t1300 = t1288 * (t856 - rate_dot_rod_leg4) + t1291 * (t1054 + t523)
-            - t510 * t846 - t891 * t1274 - t895 * t1279;
+        let t977 = c_rod_leg4 * (1.7241379310344827 * (t844 - t837)) - s_rod_leg4 * t831;
+        let t979 = t849 + t32 * t977;
+        let t981 = t856 * t856;
+        let t984 = 2.972651605231867 * (t981 - t534 * t534);
+        let rate_dot_rod_leg1 = grod_vy_leg1 * t416;
+        let t999 = 2.972651605231867 * t909;
+        let t1002 = s_rod_leg1 * (t603 + rate_dot_rod_leg1) + c_rod_leg1 * (t406 - t999);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t463;
+        let t1018 = 2.972651605231867 * t933;
+        let t1021 = minus_s_rod_leg2 * (t651 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t442 - t1018);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t504;
+        let t1037 = 2.972651605231867 * t957;
+        let t1040 = minus_s_rod_leg3 * (t773 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t485 - t1037);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t544;
+        let t1056 = 2.972651605231867 * t981;
+        let t1059 = s_rod_leg4 * (t858 + rate_dot_rod_leg4)
+            + c_rod_leg4 * (t525 - t1056);
+        let t1104 = 1.7241379310344827 * t414;
+        let t1117 = 1.7241379310344827 * t461;
+        let t1131 = 1.7241379310344827 * t502;
+        let t1143 = 1.7241379310344827 * t542;
+        let t1172 = 0.8620689655172413 * t52;
+        let t1175 = t151 * t1172;
+        let t1181 = t578 - t548;
+        let t1183 = t552 - t583;
+        let t1186 = s_rod_leg1 * (c_cross_leg1 * t1181 - s_cross_leg1 * t1183);
+        let t1191 = c_cross_leg1 * t1183 + s_cross_leg1 * t1181;
+        let t1192 = c_rod_leg1 * t1191;
+        let t1194 = t1172 * (t603 - rate_dot_rod_leg1) + t1175 * (t999 + t406)
+            + t385 * t593 - t575 * t1186 - t600 * t1192;
+        let t1205 = 0.26 * rate_dot_arm_leg2 - t549;
+        let t1207 = t553 - t674;
+        let t1210 = minus_s_rod_leg2 * (c_cross_leg2 * t1205 - s_cross_leg2 * t1207);
+        let t1214 = c_cross_leg2 * t1207 + s_cross_leg2 * t1205;
+        let t1215 = c_rod_leg2 * t1214;
+        let t1218 = 0.8620689655172413 * t176;
+        let t1221 = t185 * t1218;
+        let t1230 = t1218 * (minus_rate_dot_rod_leg2 - t651) - t1221 * (t1018 + t442)
+            - t428 * t686 - t697 * t1210 + t701 * t1215;
+        let t1237 = t554 + t750;
+        let t1240 = t550 + 0.26 * rate_dot_arm_leg3;
+        let t1243 = minus_s_rod_leg3 * (s_cross_leg3 * t1237 + c_cross_leg3 * t1240);
+        let t1247 = s_cross_leg3 * t1240 - c_cross_leg3 * t1237;
+        let t1248 = c_rod_leg3 * t1247;
+        let t1254 = 0.8620689655172413 * t113;
+        let t1257 = t157 * t1254;
+        let t1266 = t1254 * (minus_rate_dot_rod_leg3 - t773) - t1257 * (t1037 + t485)
+            + t472 * t763 + t795 * t1243 - t799 * t1248;
+        let t1270 = t555 + t835;
+        let t1273 = t551 + 0.26 * rate_dot_arm_leg4;
+        let t1276 = s_rod_leg4 * (s_cross_leg4 * t1270 + c_cross_leg4 * t1273);
+        let t1280 = s_cross_leg4 * t1273 - c_cross_leg4 * t1270;
+        let t1281 = c_rod_leg4 * t1280;
+        let t1290 = 0.8620689655172413 * t22;
+        let t1293 = t32 * t1290;
+        let t1302 = t1290 * (t858 - rate_dot_rod_leg4) + t1293 * (t1056 + t525)
+            - t513 * t848 - t893 * t1276 - t897 * t1281;
         Ok([
             [
-                t245 * acceleration[3], t245 * t260 - (t273 * t277 + t280 * t283),
-                t273 * t283 - t280 * t277 - t245 * t321,
-                t273 * acceleration[0] + t280 * acceleration[1] - t347 * t348, rate_dot_arm_leg1,
-                0.0, 0.0, 0.0, -t546, 0.0, 0.0, 0.0, -t550, 0.0, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
+                t248 * acceleration[3], t248 * t263 - (t276 * t280 + t283 * t286),
+                t276 * t286 - t283 * t280 - t248 * t324,
+                t276 * acceleration[0] + t283 * acceleration[1] - t350 * t351, rate_dot_arm_leg1,
+                0.0, 0.0, 0.0, -t548, 0.0, 0.0, 0.0, -t552, 0.0, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
                 0.0, ::overact::math::sign(rate_arm_leg1), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-                -(t573 * t593 + t602), t650 - t665 * t686, t742 * t763 + t772,
-                -(t827 * t848 + t857), t573 * t905 + t598 * t910, t665 * t929 + t646 * t934,
-                t768 * t958 - t742 * t953, t853 * t982 - t827 * t977, t573 * t1000 - t598 * t589,
-                t665 * t1019 + t646 * t682, t742 * t1038 - t768 * t759, t853 * t844 - t827 * t1057,
-                t573 * t903 + t602, t665 * t927 - t650, t742 * t951 - t772, t857 - t827 * t975,
-                t573 * t1102 - t598 * t588, -(t665 * t1115 + t646 * t681),
-                t768 * t758 - t742 * t1129, t853 * t843 - t827 * t1141, t598 * rate_dot_rod_leg1,
-                -(t646 * minus_rate_dot_rod_leg2), -(t768 * minus_rate_dot_rod_leg3),
-                t853 * rate_dot_rod_leg4, t1192, t665 * t1208 - t646 * t1213,
-                t742 * t1241 - t768 * t1246, -(t853 * t1279 - t827 * t1274),
-                t382 * t401 - (t588 * t1170 + t589 * t1173) + t573 * t1189, t665 * t1212,
-                t742 * t1245, -(t827 * t1278),
+                -(t575 * t595 + t604), t652 - t667 * t688, t744 * t765 + t774,
+                -(t829 * t850 + t859), t575 * t907 + t600 * t912, t667 * t931 + t648 * t936,
+                t770 * t960 - t744 * t955, t855 * t984 - t829 * t979, t575 * t1002 - t600 * t591,
+                t667 * t1021 + t648 * t684, t744 * t1040 - t770 * t761, t855 * t846 - t829 * t1059,
+                t575 * t905 + t604, t667 * t929 - t652, t744 * t953 - t774, t859 - t829 * t977,
+                t575 * t1104 - t600 * t590, -(t667 * t1117 + t648 * t683),
+                t770 * t760 - t744 * t1131, t855 * t845 - t829 * t1143, t600 * rate_dot_rod_leg1,
+                -(t648 * minus_rate_dot_rod_leg2), -(t770 * minus_rate_dot_rod_leg3),
+                t855 * rate_dot_rod_leg4, t1194, t667 * t1210 - t648 * t1215,
+                t744 * t1243 - t770 * t1248, -(t855 * t1281 - t829 * t1276),
+                t385 * t404 - (t590 * t1172 + t591 * t1175) + t575 * t1191, t667 * t1214,
+                t744 * t1247, -(t829 * t1280),
             ],
             [
-                -(t248 * acceleration[3]), -(t289 * t277 + t292 * t283 + t248 * t260),
-                t289 * t283 - t292 * t277 + t248 * t321,
-                t289 * acceleration[0] + t292 * acceleration[1] + t356 * t348, 0.0,
-                rate_dot_arm_leg2, 0.0, 0.0, 0.0, -t547, 0.0, 0.0, 0.0, -t551, 0.0, 0.0, 0.0,
+                -(t251 * acceleration[3]), -(t292 * t280 + t295 * t286 + t251 * t263),
+                t292 * t286 - t295 * t280 + t251 * t324,
+                t292 * acceleration[0] + t295 * acceleration[1] + t359 * t351, 0.0,
+                rate_dot_arm_leg2, 0.0, 0.0, 0.0, -t549, 0.0, 0.0, 0.0, -t553, 0.0, 0.0, 0.0,
                 rate_arm_leg2, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg2), 0.0, 0.0, 0.0,
-                1.0, 0.0, 0.0, t610 * t593 - t615, -(t700 - t695 * t686), t780 * t763 - t785,
-                t865 * t848 - t870, t614 * t910 - t610 * t905, -(t695 * t929 + t699 * t934),
-                -(t780 * t953 + t784 * t958), t865 * t977 + t869 * t982,
-                -(t610 * t1000 + t614 * t589), -(t695 * t1019 + t699 * t682),
-                t780 * t1038 + t784 * t759, t865 * t1057 + t869 * t844, t615 - t610 * t903,
-                t700 - t695 * t927, t780 * t951 + t785, t865 * t975 + t870,
-                -(t610 * t1102 + t614 * t588), t699 * t681 + t695 * t1115,
-                -(t780 * t1129 + t784 * t758), t865 * t1141 + t869 * t843, t614 * rate_dot_rod_leg1,
-                t699 * minus_rate_dot_rod_leg2, t784 * minus_rate_dot_rod_leg3,
-                t869 * rate_dot_rod_leg4, t610 * t1184 - t614 * t1190, t1228,
-                t780 * t1241 + t784 * t1246, -(t865 * t1274 + t869 * t1279), -(t610 * t1189),
-                t425 * t450 - (t681 * t1216 + t682 * t1219) - t695 * t1212, t780 * t1245,
-                t865 * t1278,
+                1.0, 0.0, 0.0, t612 * t595 - t617, -(t702 - t697 * t688), t782 * t765 - t787,
+                t867 * t850 - t872, t616 * t912 - t612 * t907, -(t697 * t931 + t701 * t936),
+                -(t782 * t955 + t786 * t960), t867 * t979 + t871 * t984,
+                -(t612 * t1002 + t616 * t591), -(t697 * t1021 + t701 * t684),
+                t782 * t1040 + t786 * t761, t867 * t1059 + t871 * t846, t617 - t612 * t905,
+                t702 - t697 * t929, t782 * t953 + t787, t867 * t977 + t872,
+                -(t612 * t1104 + t616 * t590), t701 * t683 + t697 * t1117,
+                -(t782 * t1131 + t786 * t760), t867 * t1143 + t871 * t845, t616 * rate_dot_rod_leg1,
+                t701 * minus_rate_dot_rod_leg2, t786 * minus_rate_dot_rod_leg3,
+                t871 * rate_dot_rod_leg4, t612 * t1186 - t616 * t1192, t1230,
+                t782 * t1243 + t786 * t1248, -(t867 * t1276 + t871 * t1281), -(t612 * t1191),
+                t428 * t453 - (t683 * t1218 + t684 * t1221) - t697 * t1214, t782 * t1247,
+                t867 * t1280,
             ],
             [
-                t255 * acceleration[3], t298 * t283 - t304 * t277 + t255 * t260,
-                t304 * t283 + t298 * t277 - t255 * t321,
-                t304 * acceleration[0] - t298 * acceleration[1] + t365 * t348, 0.0, 0.0,
-                rate_dot_arm_leg3, 0.0, 0.0, 0.0, t548, 0.0, 0.0, 0.0, t552, 0.0, 0.0, 0.0,
+                t258 * acceleration[3], t301 * t286 - t307 * t280 + t258 * t263,
+                t307 * t286 + t301 * t280 - t258 * t324,
+                t307 * acceleration[0] - t301 * acceleration[1] + t368 * t351, 0.0, 0.0,
+                rate_dot_arm_leg3, 0.0, 0.0, 0.0, t550, 0.0, 0.0, 0.0, t554, 0.0, 0.0, 0.0,
                 rate_arm_leg3, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg3), 0.0, 0.0, 0.0,
-                1.0, 0.0, -(t623 * t593 + t628), t705 - t712 * t686, t793 * t763 + t798,
-                t878 * t848 - t883, t623 * t905 + t627 * t910, t712 * t929 + t704 * t934,
-                t797 * t958 - t793 * t953, t878 * t977 + t882 * t982, t623 * t1000 - t627 * t589,
-                t712 * t1019 + t704 * t682, t793 * t1038 - t797 * t759, t878 * t1057 + t882 * t844,
-                t623 * t903 + t628, t712 * t927 - t705, t793 * t951 - t798, t878 * t975 + t883,
-                t623 * t1102 - t627 * t588, -(t712 * t1115 + t704 * t681),
-                t797 * t758 - t793 * t1129, t878 * t1141 + t882 * t843, t627 * rate_dot_rod_leg1,
-                -(t704 * minus_rate_dot_rod_leg2), -(t797 * minus_rate_dot_rod_leg3),
-                t882 * rate_dot_rod_leg4, -(t623 * t1184 + t627 * t1190),
-                t712 * t1208 - t704 * t1213, t1264, -(t878 * t1274 + t882 * t1279), t623 * t1189,
-                t712 * t1212, t758 * t1252 + t759 * t1255 + t469 * t493 + t793 * t1245,
-                t878 * t1278,
+                1.0, 0.0, -(t625 * t595 + t630), t707 - t714 * t688, t795 * t765 + t800,
+                t880 * t850 - t885, t625 * t907 + t629 * t912, t714 * t931 + t706 * t936,
+                t799 * t960 - t795 * t955, t880 * t979 + t884 * t984, t625 * t1002 - t629 * t591,
+                t714 * t1021 + t706 * t684, t795 * t1040 - t799 * t761, t880 * t1059 + t884 * t846,
+                t625 * t905 + t630, t714 * t929 - t707, t795 * t953 - t800, t880 * t977 + t885,
+                t625 * t1104 - t629 * t590, -(t714 * t1117 + t706 * t683),
+                t799 * t760 - t795 * t1131, t880 * t1143 + t884 * t845, t629 * rate_dot_rod_leg1,
+                -(t706 * minus_rate_dot_rod_leg2), -(t799 * minus_rate_dot_rod_leg3),
+                t884 * rate_dot_rod_leg4, -(t625 * t1186 + t629 * t1192),
+                t714 * t1210 - t706 * t1215, t1266, -(t880 * t1276 + t884 * t1281), t625 * t1191,
+                t714 * t1214, t760 * t1254 + t761 * t1257 + t472 * t496 + t795 * t1247,
+                t880 * t1280,
             ],
             [
-                t244 * acceleration[3], t309 * t277 + t311 * t283 + t244 * t260,
-                t311 * t277 - t309 * t283 - t244 * t321,
-                -(t309 * acceleration[0] + t311 * acceleration[1] + t371 * t348), 0.0, 0.0, 0.0,
-                rate_dot_arm_leg4, 0.0, 0.0, 0.0, t549, 0.0, 0.0, 0.0, t553, 0.0, 0.0, 0.0,
+                t247 * acceleration[3], t312 * t280 + t314 * t286 + t247 * t263,
+                t314 * t280 - t312 * t286 - t247 * t324,
+                -(t312 * acceleration[0] + t314 * acceleration[1] + t374 * t351), 0.0, 0.0, 0.0,
+                rate_dot_arm_leg4, 0.0, 0.0, 0.0, t551, 0.0, 0.0, 0.0, t555, 0.0, 0.0, 0.0,
                 rate_arm_leg4, 0.0, 0.0, 0.0, ::overact::math::sign(rate_arm_leg4), 0.0, 0.0, 0.0,
-                1.0, -(t636 * t593 + t641), t718 - t725 * t686, t806 * t763 + t811,
-                t891 * t848 - t896, t636 * t905 + t640 * t910, t725 * t929 + t717 * t934,
-                t810 * t958 - t806 * t953, t891 * t977 + t895 * t982, t636 * t1000 - t640 * t589,
-                t725 * t1019 + t717 * t682, t806 * t1038 - t810 * t759, t891 * t1057 + t895 * t844,
-                t636 * t903 + t641, t725 * t927 - t718, t806 * t951 - t811, t891 * t975 + t896,
-                t636 * t1102 - t640 * t588, -(t725 * t1115 + t717 * t681),
-                t810 * t758 - t806 * t1129, t891 * t1141 + t895 * t843, t640 * rate_dot_rod_leg1,
-                -(t717 * minus_rate_dot_rod_leg2), -(t810 * minus_rate_dot_rod_leg3),
-                t895 * rate_dot_rod_leg4, -(t636 * t1184 + t640 * t1190),
-                t725 * t1208 - t717 * t1213, t806 * t1241 - t810 * t1246, t1300, t636 * t1189,
-                t725 * t1212, t806 * t1245,
-                t843 * t1288 + t844 * t1291 + t510 * t534 + t891 * t1278,
+                1.0, -(t638 * t595 + t643), t720 - t727 * t688, t808 * t765 + t813,
+                t893 * t850 - t898, t638 * t907 + t642 * t912, t727 * t931 + t719 * t936,
+                t812 * t960 - t808 * t955, t893 * t979 + t897 * t984, t638 * t1002 - t642 * t591,
+                t727 * t1021 + t719 * t684, t808 * t1040 - t812 * t761, t893 * t1059 + t897 * t846,
+                t638 * t905 + t643, t727 * t929 - t720, t808 * t953 - t813, t893 * t977 + t898,
+                t638 * t1104 - t642 * t590, -(t727 * t1117 + t719 * t683),
+                t812 * t760 - t808 * t1131, t893 * t1143 + t897 * t845, t642 * rate_dot_rod_leg1,
+                -(t719 * minus_rate_dot_rod_leg2), -(t812 * minus_rate_dot_rod_leg3),
+                t897 * rate_dot_rod_leg4, -(t638 * t1186 + t642 * t1192),
+                t727 * t1210 - t719 * t1215, t808 * t1243 - t812 * t1248, t1302, t638 * t1191,
+                t727 * t1214, t808 * t1247,
+                t845 * t1290 + t846 * t1293 + t513 * t536 + t893 * t1280,
             ],
         ])
     }
@@ -8709,7 +8743,7 @@ impl Schoenflies4 {
     /// Output: 4 x 60.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1536 operations (560 additions, 948 multiplications, 28 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1394 intermediates.
+    /// 1540 operations (562 additions, 950 multiplications, 28 divisions), 8 square roots, 1 trigonometric pairs, 4 signs, 1398 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -8725,677 +8759,677 @@ impl Schoenflies4 {
         let t3 = 0.05 * c_phi;
         let t4 = t2 + t3;
         let t6 = pose[1] - t4 + 0.24;
+        let t7 = t6 * t6;
         let t8 = pose[2] * pose[2];
-        let t9 = t6 * t6 + t8;
-        let t10 = 0.2704 * t9;
+        let t10 = 0.2704 * (t7 + t8);
         let t11 = 0.08660254037844387 * c_phi;
         let t12 = 0.05 * s_phi;
         let t13 = t11 - t12;
         let t14 = pose[0] - t13;
         let t15 = t14 * t14;
-        let t17 = t9 + t15 - 0.3364;
-        let t18 = t17 + 0.0676;
-        let t20 = t10 - t18 * t18;
-        ::overact::guard::reach(t20, "leg4")?;
-        let t21 = ::overact::math::sqrt(t20);
-        let t23 = 1.0 - 2.972651605231867 * t15;
-        ::overact::guard::reach(t23, "leg4")?;
-        let c_rod_leg4 = ::overact::math::sqrt(t23);
+        let t18 = t15 + t7 + t8 - 0.3364;
+        let t19 = t18 + 0.0676;
+        let t21 = t10 - t19 * t19;
+        ::overact::guard::reach(t21, "leg4")?;
+        let t22 = ::overact::math::sqrt(t21);
+        let t25 = 1.0 - 2.972651605231867 * t15;
+        ::overact::guard::reach(t25, "leg4")?;
+        let c_rod_leg4 = ::overact::math::sqrt(t25);
         ::overact::guard::leg(c_rod_leg4, 0.988789721306184, "leg4")?;
-        let t25 = 0.3016 * c_rod_leg4;
-        let s_cross_leg4 = t21 / t25;
+        let t27 = 0.58 * c_rod_leg4;
+        let s_cross_leg4 = 1.9230769230769231 * t22 / t27;
         ::overact::guard::leg(s_cross_leg4, 0.9289529667496113, "leg4")?;
-        let t27 = 1.0 / s_cross_leg4;
-        let t28 = 3.8461538461538463 * t27;
+        let t29 = 1.0 / s_cross_leg4;
+        let t30 = 3.8461538461538463 * t29;
         let grod_vx_leg4 = 1.7241379310344827 / c_rod_leg4;
-        let t30 = t14 * grod_vx_leg4;
-        let garm_vx_leg4 = t28 * t30;
-        let t32 = t3 - t2;
-        let t34 = pose[0] + t32 - 0.24;
-        let t36 = t34 * t34 + t8;
-        let t37 = 0.2704 * t36;
-        let t38 = 1.0 / t37;
-        let t39 = 0.52 * t34;
-        let t40 = t12 + t11;
-        let t41 = pose[1] + t40;
-        let t42 = t41 * t41;
-        let t44 = t36 + t42 - 0.3364;
-        let t45 = t44 + 0.0676;
-        let t47 = 0.52 * pose[2];
-        let t49 = t37 - t45 * t45;
-        ::overact::guard::reach(t49, "leg1")?;
-        let t50 = ::overact::math::sqrt(t49);
-        let c_arm_leg1 = t38 * (t39 * t45 - t47 * t50);
-        let t55 = 1.0 - 2.972651605231867 * t42;
-        ::overact::guard::reach(t55, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t55);
+        let t32 = t14 * grod_vx_leg4;
+        let garm_vx_leg4 = t30 * t32;
+        let t34 = t3 - t2;
+        let t36 = pose[0] + t34 - 0.24;
+        let t38 = t36 * t36 + t8;
+        let t39 = 0.2704 * t38;
+        let t40 = 1.0 / t39;
+        let t41 = 0.52 * t36;
+        let t42 = t12 + t11;
+        let t43 = pose[1] + t42;
+        let t44 = t43 * t43;
+        let t46 = t38 + t44 - 0.3364;
+        let t47 = t46 + 0.0676;
+        let t49 = 0.52 * pose[2];
+        let t51 = t39 - t47 * t47;
+        ::overact::guard::reach(t51, "leg1")?;
+        let t52 = ::overact::math::sqrt(t51);
+        let c_arm_leg1 = t40 * (t41 * t47 - t49 * t52);
+        let t57 = 1.0 - 2.972651605231867 * t44;
+        ::overact::guard::reach(t57, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t57);
         ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t57 = 0.3016 * c_rod_leg1;
-        let s_cross_leg1 = t50 / t57;
+        let t59 = 0.3016 * c_rod_leg1;
+        let s_cross_leg1 = t52 / t59;
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
-        let minus_s_arm_leg1 = t38 * (t47 * t45 + t39 * t50);
-        let c_cross_leg1 = (-0.0676 + t44) / t57;
+        let minus_s_arm_leg1 = t40 * (t49 * t47 + t41 * t52);
+        let c_cross_leg1 = (-0.0676 + t46) / t59;
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t68 = 1.0 / s_cross_leg1;
-        let t69 = 3.8461538461538463 * t68;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t69;
+        let t70 = 1.0 / s_cross_leg1;
+        let t71 = 3.8461538461538463 * t70;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t71;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t69;
+        let garm_vx_leg1 = c_armcross_leg1 * t71;
         ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
-        let t75 = 1.0 / garm_vx_leg1;
-        let t76 = minus_garm_vz_leg1 * t75;
-        let t78 = 1.0 / t10;
-        let t79 = 0.52 * t6;
-        let s_arm_leg4 = t78 * (t79 * t21 - t47 * t18);
-        let c_cross_leg4 = (t17 + -0.0676) / t25;
-        let minus_c_arm_leg4 = t78 * (t79 * t18 + t47 * t21);
+        let t77 = 1.0 / garm_vx_leg1;
+        let t78 = minus_garm_vz_leg1 * t77;
+        let t80 = 1.0 / t10;
+        let t81 = 0.52 * t6;
+        let s_arm_leg4 = t80 * (t81 * t22 - t49 * t19);
+        let c_cross_leg4 = (t18 + -0.0676) / (0.3016 * c_rod_leg4);
+        let minus_c_arm_leg4 = t80 * (t81 * t19 + t49 * t22);
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t28;
-        let t94 = garm_vx_leg4 * t76 - minus_garm_vz_leg4;
-        let t96 = pose[0] - t32 + 0.24;
-        let t98 = t96 * t96 + t8;
-        let t99 = 0.2704 * t98;
-        let t100 = 1.0 / t99;
-        let t101 = 0.52 * t96;
-        let t102 = pose[1] - t40;
-        let t103 = t102 * t102;
-        let t105 = t98 + t103 - 0.3364;
-        let t106 = t105 + 0.0676;
-        let t109 = t99 - t106 * t106;
-        ::overact::guard::reach(t109, "leg3")?;
-        let t110 = ::overact::math::sqrt(t109);
-        let minus_c_arm_leg3 = t100 * (t101 * t106 + t47 * t110);
-        let t116 = 1.0 - 2.972651605231867 * t103;
-        ::overact::guard::reach(t116, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t116);
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t30;
+        let t97 = garm_vx_leg4 * t78 - minus_garm_vz_leg4;
+        let t99 = pose[0] - t34 + 0.24;
+        let t101 = t99 * t99 + t8;
+        let t102 = 0.2704 * t101;
+        let t103 = 1.0 / t102;
+        let t104 = 0.52 * t99;
+        let t105 = pose[1] - t42;
+        let t106 = t105 * t105;
+        let t108 = t101 + t106 - 0.3364;
+        let t109 = t108 + 0.0676;
+        let t112 = t102 - t109 * t109;
+        ::overact::guard::reach(t112, "leg3")?;
+        let t113 = ::overact::math::sqrt(t112);
+        let minus_c_arm_leg3 = t103 * (t104 * t109 + t49 * t113);
+        let t119 = 1.0 - 2.972651605231867 * t106;
+        ::overact::guard::reach(t119, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t119);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t118 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t105) / t118;
-        let s_arm_leg3 = t100 * (t101 * t110 - t47 * t106);
-        let s_cross_leg3 = t110 / t118;
+        let t121 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t108) / t121;
+        let s_arm_leg3 = t103 * (t104 * t113 - t49 * t109);
+        let s_cross_leg3 = t113 / t121;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t128 = 1.0 / s_cross_leg3;
-        let t129 = 3.8461538461538463 * t128;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t129;
+        let t131 = 1.0 / s_cross_leg3;
+        let t132 = 3.8461538461538463 * t131;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t132;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t129;
-        let t137 = garm_vx_leg3 * t76 - minus_garm_vz_leg3;
-        ::overact::guard::platform(t137, 5.57829169092126, "kept actuators")?;
-        let t138 = 1.0 / t137;
-        let t139 = garm_vx_leg3 * t75 * t138;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t132;
+        let t140 = garm_vx_leg3 * t78 - minus_garm_vz_leg3;
+        ::overact::guard::platform(t140, 5.57829169092126, "kept actuators")?;
+        let t141 = 1.0 / t140;
+        let t142 = garm_vx_leg3 * t77 * t141;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
-        let garm_vy_leg4 = minus_c_armcross_leg4 * t28;
+        let garm_vy_leg4 = minus_c_armcross_leg4 * t30;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let t148 = t41 * grod_vy_leg1;
-        let garm_vy_leg1 = t69 * t148;
-        let t150 = garm_vy_leg1 * t75;
+        let t151 = t43 * grod_vy_leg1;
+        let garm_vy_leg1 = t71 * t151;
+        let t153 = garm_vy_leg1 * t77;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let t154 = t102 * minus_grod_vy_leg3;
-        let garm_vy_leg3 = t129 * t154;
-        let t158 = (garm_vy_leg3 - garm_vx_leg3 * t150) * t138;
-        let t160 = garm_vy_leg4 - garm_vx_leg4 * t150 - t94 * t158;
-        let t162 = pose[1] + t4 - 0.24;
-        let t164 = t162 * t162 + t8;
-        let t165 = 0.2704 * t164;
-        let t166 = pose[0] + t13;
-        let t167 = t166 * t166;
-        let t169 = t164 + t167 - 0.3364;
-        let t170 = t169 + 0.0676;
-        let t172 = t165 - t170 * t170;
-        ::overact::guard::reach(t172, "leg2")?;
-        let t173 = ::overact::math::sqrt(t172);
-        let t175 = 1.0 - 2.972651605231867 * t167;
+        let t157 = t105 * minus_grod_vy_leg3;
+        let garm_vy_leg3 = t132 * t157;
+        let t161 = (garm_vy_leg3 - garm_vx_leg3 * t153) * t141;
+        let t163 = garm_vy_leg4 - garm_vx_leg4 * t153 - t97 * t161;
+        let t165 = pose[1] + t4 - 0.24;
+        let t167 = t165 * t165 + t8;
+        let t168 = 0.2704 * t167;
+        let t169 = pose[0] + t13;
+        let t170 = t169 * t169;
+        let t172 = t167 + t170 - 0.3364;
+        let t173 = t172 + 0.0676;
+        let t175 = t168 - t173 * t173;
         ::overact::guard::reach(t175, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t175);
+        let t176 = ::overact::math::sqrt(t175);
+        let t178 = 1.0 - 2.972651605231867 * t170;
+        ::overact::guard::reach(t178, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t178);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t177 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t173 / t177;
+        let t180 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t176 / t180;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t179 = 1.0 / s_cross_leg2;
-        let t180 = 3.8461538461538463 * t179;
+        let t182 = 1.0 / s_cross_leg2;
+        let t183 = 3.8461538461538463 * t182;
         let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let t182 = t166 * minus_grod_vx_leg2;
-        let garm_vx_leg2 = t180 * t182;
-        let t185 = 1.0 / t165;
-        let t186 = 0.52 * t162;
-        let c_arm_leg2 = t185 * (t186 * t170 - t47 * t173);
-        let minus_s_arm_leg2 = t185 * (t47 * t170 + t186 * t173);
-        let c_cross_leg2 = (-0.0676 + t169) / t177;
+        let t185 = t169 * minus_grod_vx_leg2;
+        let garm_vx_leg2 = t183 * t185;
+        let t188 = 1.0 / t168;
+        let t189 = 0.52 * t165;
+        let c_arm_leg2 = t188 * (t189 * t173 - t49 * t176);
+        let minus_s_arm_leg2 = t188 * (t49 * t173 + t189 * t176);
+        let c_cross_leg2 = (-0.0676 + t172) / t180;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t180;
-        let t201 = garm_vx_leg2 * t76 - minus_garm_vz_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t183;
+        let t204 = garm_vx_leg2 * t78 - minus_garm_vz_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t180;
-        let t212 = garm_vy_leg2 - garm_vx_leg2 * t150 - t201 * t158;
-        ::overact::guard::platform(t212, 2.9321258366411205, "kept actuators")?;
-        let t213 = 1.0 / t212;
-        let t214 = (t201 * t139 - garm_vx_leg2 * t75) * t213;
+        let garm_vy_leg2 = c_armcross_leg2 * t183;
+        let t215 = garm_vy_leg2 - garm_vx_leg2 * t153 - t204 * t161;
+        ::overact::guard::platform(t215, 2.9321258366411205, "kept actuators")?;
+        let t216 = 1.0 / t215;
+        let t217 = (t204 * t142 - garm_vx_leg2 * t77) * t216;
         let garm_wz_leg4 = t4 * garm_vx_leg4 - t13 * garm_vy_leg4;
-        let garm_wz_leg1 = t32 * garm_vy_leg1 - t40 * garm_vx_leg1;
-        let t223 = garm_wz_leg1 * t75;
-        let garm_wz_leg3 = t40 * garm_vx_leg3 - t32 * garm_vy_leg3;
-        let t231 = (garm_wz_leg3 - garm_vx_leg3 * t223) * t138;
+        let garm_wz_leg1 = t34 * garm_vy_leg1 - t42 * garm_vx_leg1;
+        let t226 = garm_wz_leg1 * t77;
+        let garm_wz_leg3 = t42 * garm_vx_leg3 - t34 * garm_vy_leg3;
+        let t234 = (garm_wz_leg3 - garm_vx_leg3 * t226) * t141;
         let garm_wz_leg2 = t13 * garm_vy_leg2 - t4 * garm_vx_leg2;
-        let t241 = (garm_wz_leg2 - garm_vx_leg2 * t223 - t201 * t231) * t213;
-        let t243 = garm_wz_leg4 - garm_vx_leg4 * t223 - t94 * t231 - t160 * t241;
-        ::overact::guard::platform(t243, 1.1850155815331067, "kept actuators")?;
-        let t244 = 1.0 / t243;
-        let t245 = (t94 * t139 - garm_vx_leg4 * t75 - t160 * t214) * t244;
-        let t259 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
+        let t244 = (garm_wz_leg2 - garm_vx_leg2 * t226 - t204 * t234) * t216;
+        let t246 = garm_wz_leg4 - garm_vx_leg4 * t226 - t97 * t234 - t163 * t244;
+        ::overact::guard::platform(t246, 1.1850155815331067, "kept actuators")?;
+        let t247 = 1.0 / t246;
+        let t248 = (t97 * t142 - garm_vx_leg4 * t77 - t163 * t217) * t247;
+        let t262 = garm_vx_leg1 * garm_wz_leg1 + garm_vx_leg2 * garm_wz_leg2
             + garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t266 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
+        let t269 = garm_vx_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vx_leg2
             + garm_vx_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t266, 19.507470815645043, "actuators")?;
-        ::overact::guard::platform(t266, 19.507470815645043, "actuators")?;
-        let t267 = 1.0 / t266;
-        let t268 = t259 * t267;
-        let t284 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
+        ::overact::guard::platform(t269, 19.507470815645043, "actuators")?;
+        ::overact::guard::platform(t269, 19.507470815645043, "actuators")?;
+        let t270 = 1.0 / t269;
+        let t271 = t262 * t270;
+        let t287 = garm_vy_leg1 * garm_vx_leg1 + garm_vx_leg2 * garm_vy_leg2
             + garm_vy_leg3 * garm_vx_leg3 + garm_vx_leg4 * garm_vy_leg4;
-        let t286 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
-            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t284 * t268;
-        let t294 = t284 * t267;
-        let t296 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
-            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t284 * t294;
-        ::overact::guard::platform(t296, 16.505615550045768, "actuators")?;
-        ::overact::guard::platform(t296, 16.505615550045768, "actuators")?;
-        let t297 = 1.0 / t296;
-        let t298 = t286 * t297;
-        let t300 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t259 * t268
-            - t286 * t298;
-        let t307 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
+        let t289 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+            + garm_vy_leg3 * garm_wz_leg3 + garm_vy_leg4 * garm_wz_leg4 - t287 * t271;
+        let t297 = t287 * t270;
+        let t299 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+            + garm_vy_leg3 * garm_vy_leg3 + garm_vy_leg4 * garm_vy_leg4 - t287 * t297;
+        ::overact::guard::platform(t299, 16.505615550045768, "actuators")?;
+        ::overact::guard::platform(t299, 16.505615550045768, "actuators")?;
+        let t300 = 1.0 / t299;
+        let t301 = t289 * t300;
+        let t303 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t262 * t271
+            - t289 * t301;
+        let t310 = garm_vx_leg1 * minus_garm_vz_leg1 + garm_vx_leg2 * minus_garm_vz_leg2
             + garm_vx_leg3 * minus_garm_vz_leg3 + garm_vx_leg4 * minus_garm_vz_leg4;
-        let t317 = t307 * t267;
-        let t326 = t284 * t317
+        let t320 = t310 * t270;
+        let t329 = t287 * t320
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2
                 + garm_vy_leg3 * minus_garm_vz_leg3 + garm_vy_leg4 * minus_garm_vz_leg4);
-        let t328 = t307 * t268
+        let t331 = t310 * t271
             - (minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
                 + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4)
-            - t326 * t298;
-        let t338 = t326 * t297;
-        let t340 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            - t329 * t301;
+        let t341 = t329 * t300;
+        let t343 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t307 * t317 - t326 * t338;
-        ::overact::guard::platform(t340, 31.11733818900117, "actuators")?;
-        ::overact::guard::platform(t340, 31.11733818900117, "actuators")?;
-        let t341 = 1.0 / t340;
-        let t342 = t328 * t341;
-        let t344 = t300 - t328 * t342;
-        ::overact::guard::platform(t344, 0.35106548211906174, "actuators")?;
-        ::overact::guard::platform(t344, 0.35106548211906174, "actuators")?;
-        let t345 = 1.0 / t344;
-        let t346 = 0.26 * c_cross_leg1;
-        let t347 = actuator_velocities[0] * actuator_velocities[0];
-        let t357 = garm_vx_leg1 * actuator_velocities[0]
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t310 * t320 - t329 * t341;
+        ::overact::guard::platform(t343, 31.11733818900117, "actuators")?;
+        ::overact::guard::platform(t343, 31.11733818900117, "actuators")?;
+        let t344 = 1.0 / t343;
+        let t345 = t331 * t344;
+        let t347 = t303 - t331 * t345;
+        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
+        ::overact::guard::platform(t347, 0.35106548211906174, "actuators")?;
+        let t348 = 1.0 / t347;
+        let t349 = 0.26 * c_cross_leg1;
+        let t350 = actuator_velocities[0] * actuator_velocities[0];
+        let t360 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t367 = garm_vy_leg1 * actuator_velocities[0]
+        let t370 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t357 * t294;
-        let t379 = t357 * t317
+            + garm_vy_leg4 * actuator_velocities[3] - t360 * t297;
+        let t382 = t360 * t320
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t338 * t367;
-        let t391 = garm_wz_leg1 * actuator_velocities[0]
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t341 * t370;
+        let t394 = garm_wz_leg1 * actuator_velocities[0]
             + garm_wz_leg2 * actuator_velocities[1]
             + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t357 * t268 - t298 * t367;
-        let t394 = t345 * (t391 - t342 * t379);
-        let t396 = t341 * t379 - t342 * t394;
-        let t400 = t297 * t367 - t338 * t396 - t298 * t394;
-        let t406 = t357 * t267 - t294 * t400 + t317 * t396 - t268 * t394;
-        let t407 = t40 * t394;
-        let t412 = t346 * actuator_velocities[0] + s_armcross_leg1 * (t406 - t407)
-            + c_armcross_leg1 * t396;
-        let minus_rate_cross_leg1 = grod_vy_leg1 * t412;
-        let t414 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
-        let t415 = t32 * t394;
-        let rate_rod_leg1 = grod_vy_leg1 * (t400 + t415);
-        let t418 = rate_rod_leg1 * rate_rod_leg1;
-        let t422 = t394 * t415;
-        let t425 = t394 * t407;
-        let t426 = t41 * t418;
-        let t429 = t346 * t347 + 0.58 * c_rod_leg1 * (t414 + t418)
-            - c_armcross_leg1 * t422 - t148 * (t425 - t426);
-        let rate_dot_arm_leg1 = t69 * t429;
-        let t431 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t433 = 0.26 * c_cross_leg2;
-        let t434 = actuator_velocities[1] * actuator_velocities[1];
-        let t437 = t4 * t394;
-        let t438 = t406 - t437;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t438;
-        let t440 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t441 = c_cross_leg2 * t179;
-        let t442 = t13 * t394;
-        let t443 = t400 + t442;
-        let t452 = t433 * garm_vx_leg2;
-        let t454 = t441 * (c_armcross_leg2 * t443 - s_armcross_leg2 * t396)
-            + s_armcross_leg2 * t443 + c_armcross_leg2 * t396 + t452 * t438;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t454;
-        let t456 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
-        let t459 = t433 * t434 + 0.58 * c_rod_leg2 * (t440 + t456);
-        let t460 = t394 * t437;
-        let t463 = t394 * t442;
-        let t464 = t166 * t440;
-        let rate_dot_arm_leg2 = t180
-            * (t459 - c_armcross_leg2 * t460 - t182 * (t463 - t464));
-        let t469 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t473 = 0.26 * c_cross_leg3;
-        let t474 = actuator_velocities[2] * actuator_velocities[2];
-        let t477 = t400 - t415;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t477;
-        let t479 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t480 = t406 + t407;
-        let t484 = c_cross_leg3 * t128;
-        let t490 = t473 * garm_vy_leg3;
-        let t492 = s_armcross_leg3 * t480 + minus_c_armcross_leg3 * t396
-            - t484 * (minus_c_armcross_leg3 * t480 - s_armcross_leg3 * t396)
-            - t490 * t477;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t492;
-        let t494 = rate_cross_leg3 * rate_cross_leg3;
-        let t497 = t473 * t474 + 0.58 * c_rod_leg3 * (t479 + t494);
-        let t499 = t102 * t479;
-        let rate_dot_arm_leg3 = t129
-            * (minus_c_armcross_leg3 * t422 + t497 + t154 * (t425 + t499));
-        let t504 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t508 = 0.26 * c_cross_leg4;
-        let t509 = actuator_velocities[3] * actuator_velocities[3];
-        let t512 = t406 + t437;
-        let rate_rod_leg4 = grod_vx_leg4 * t512;
-        let t514 = rate_rod_leg4 * rate_rod_leg4;
-        let t515 = t400 - t442;
-        let t519 = c_cross_leg4 * t27;
-        let t525 = t508 * garm_vx_leg4;
-        let t527 = s_armcross_leg4 * t515 + minus_c_armcross_leg4 * t396
-            - t519 * (minus_c_armcross_leg4 * t515 - s_armcross_leg4 * t396)
-            - t525 * t512;
-        let rate_cross_leg4 = grod_vx_leg4 * t527;
-        let t529 = rate_cross_leg4 * rate_cross_leg4;
-        let t532 = t508 * t509 + 0.58 * c_rod_leg4 * (t514 + t529);
-        let t534 = t14 * t514;
-        let rate_dot_arm_leg4 = t28
-            * (minus_c_armcross_leg4 * t460 + t532 + t30 * (t463 + t534));
-        let t539 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t548 = garm_vx_leg1 * t431 + garm_vx_leg2 * t469 + garm_vx_leg3 * t504
-            + garm_vx_leg4 * t539;
-        let t559 = garm_vy_leg1 * t431 + garm_vy_leg2 * t469 + garm_vy_leg3 * t504
-            + garm_vy_leg4 * t539 - t294 * t548;
-        let t561 = garm_wz_leg1 * t431 + garm_wz_leg2 * t469 + garm_wz_leg3 * t504
-            + garm_wz_leg4 * t539 - t268 * t548 - t298 * t559;
-        let t572 = t317 * t548
-            - (minus_garm_vz_leg1 * t431 + minus_garm_vz_leg2 * t469
-                + minus_garm_vz_leg3 * t504 + minus_garm_vz_leg4 * t539) - t338 * t559;
-        let t575 = t345 * (t561 - t342 * t572);
-        let t578 = t160 * t213 * t244;
-        let t581 = t201 * t138 * t213;
-        let t585 = (t160 * t581 - t94 * t138) * t244;
-        let t591 = t341 * t572 - t342 * t575;
-        let t595 = t297 * t559 - t338 * t591 - t298 * t575;
-        let t603 = t267 * t548 - t294 * t595 + t317 * t591 - t268 * t575;
-        let t605 = c_phi * t595 - s_phi * t603;
-        let t610 = t150 + t76 * t158;
-        let t616 = t223 + t76 * t231 - t610 * t241;
-        let t618 = t75 - t76 * t139 - t610 * t214 - t616 * t245;
-        let t619 = t394 * t394;
-        let t622 = c_phi * t619 + s_phi * t575;
-        let t625 = t214 - t241 * t245;
-        let t628 = s_phi * t619 - c_phi * t575;
-        let t634 = t616 * t578 - t610 * t213;
-        let t637 = t213 + t241 * t578;
-        let t643 = t581 + t241 * t585;
-        let t649 = t76 * t138 + t610 * t581 - t616 * t585;
-        let t654 = t616 * t244;
-        let t656 = t241 * t244;
-        let t666 = s_phi * t595 + c_phi * t603;
-        let t690 = t231 - t158 * t241;
-        let t692 = t139 + t158 * t214 + t690 * t245;
-        let t693 = t591 + 9.81;
-        let t701 = t690 * t578 - t158 * t213;
-        let t710 = t138 + t158 * t581 - t690 * t585;
-        let t716 = t690 * t244;
-        let t719 = 9.81 * c_arm_leg1;
-        let t720 = 9.81 * c_arm_leg2;
-        let t721 = 9.81 * minus_c_arm_leg3;
-        let t722 = 9.81 * minus_c_arm_leg4;
-        let t723 = 9.81 * minus_s_arm_leg1;
-        let t724 = 9.81 * minus_s_arm_leg2;
-        let t725 = 9.81 * s_arm_leg3;
-        let t726 = 9.81 * s_arm_leg4;
-        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t68);
-        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t68);
-        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t346 * garm_vy_leg1);
-        let gcross_wz_leg1 = t40 * minus_gcross_vx_leg1 - t32 * minus_gcross_vy_leg1;
-        let t746 = minus_gcross_vz_leg1 * t692
-            - (minus_gcross_vx_leg1 * t618 + minus_gcross_vy_leg1 * t625)
-            + gcross_wz_leg1 * t245;
-        let t748 = rate_rod_leg1 * (1.7241379310344827 * t412);
-        let t749 = 0.26 * actuator_accelerations[0];
-        let t751 = t40 * t575;
-        let t757 = 0.26 * t347;
-        let t759 = t41 * minus_rate_cross_leg1;
-        let t760 = rate_rod_leg1 * t759;
-        let t764 = c_cross_leg1 * t749 + s_armcross_leg1 * (t603 - t751 - t422)
-            + c_armcross_leg1 * t591 + s_cross_leg1 * t757 + t760 + t760;
-        let t765 = 1.7241379310344827 * t764;
-        let t766 = t148 * t765;
-        let t768 = t748 + t766 + t748;
-        let t769 = c_rod_leg1 * t768;
-        let t770 = t148 * t769;
-        let grod_wz_leg1 = t32 * grod_vy_leg1;
-        let t775 = grod_vy_leg1 * t625 + grod_wz_leg1 * t245;
-        let t777 = 2.972651605231867 * (t412 * t759);
-        let t778 = t775 * t777;
-        let t786 = minus_gcross_vx_leg1 * t634 + minus_gcross_vy_leg1 * t637
-            + minus_gcross_vz_leg1 * t701 + gcross_wz_leg1 * t578;
-        let t790 = grod_vy_leg1 * t637 - grod_wz_leg1 * t578;
-        let t791 = t790 * t777;
-        let t799 = minus_gcross_vy_leg1 * t643 - minus_gcross_vx_leg1 * t649
-            - minus_gcross_vz_leg1 * t710 + gcross_wz_leg1 * t585;
-        let t803 = grod_wz_leg1 * t585 - grod_vy_leg1 * t643;
-        let t804 = t803 * t777;
-        let t812 = minus_gcross_vx_leg1 * t654 + minus_gcross_vy_leg1 * t656
-            + minus_gcross_vz_leg1 * t716 + gcross_wz_leg1 * t244;
-        let t816 = grod_wz_leg1 * t244 - grod_vy_leg1 * t656;
-        let t817 = t816 * t777;
+            + garm_wz_leg4 * actuator_velocities[3] - t360 * t271 - t301 * t370;
+        let t397 = t348 * (t394 - t345 * t382);
+        let t399 = t344 * t382 - t345 * t397;
+        let t403 = t300 * t370 - t341 * t399 - t301 * t397;
+        let t409 = t360 * t270 - t297 * t403 + t320 * t399 - t271 * t397;
+        let t410 = t42 * t397;
+        let t415 = t349 * actuator_velocities[0] + s_armcross_leg1 * (t409 - t410)
+            + c_armcross_leg1 * t399;
+        let minus_rate_cross_leg1 = grod_vy_leg1 * t415;
+        let t417 = minus_rate_cross_leg1 * minus_rate_cross_leg1;
+        let t418 = t34 * t397;
+        let rate_rod_leg1 = grod_vy_leg1 * (t403 + t418);
+        let t421 = rate_rod_leg1 * rate_rod_leg1;
+        let t425 = t397 * t418;
+        let t428 = t397 * t410;
+        let t429 = t43 * t421;
+        let t432 = t349 * t350 + 0.58 * c_rod_leg1 * (t417 + t421)
+            - c_armcross_leg1 * t425 - t151 * (t428 - t429);
+        let rate_dot_arm_leg1 = t71 * t432;
+        let t434 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t436 = 0.26 * c_cross_leg2;
+        let t437 = actuator_velocities[1] * actuator_velocities[1];
+        let t440 = t4 * t397;
+        let t441 = t409 - t440;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t441;
+        let t443 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t444 = c_cross_leg2 * t182;
+        let t445 = t13 * t397;
+        let t446 = t403 + t445;
+        let t455 = t436 * garm_vx_leg2;
+        let t457 = t444 * (c_armcross_leg2 * t446 - s_armcross_leg2 * t399)
+            + s_armcross_leg2 * t446 + c_armcross_leg2 * t399 + t455 * t441;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t457;
+        let t459 = minus_rate_cross_leg2 * minus_rate_cross_leg2;
+        let t462 = t436 * t437 + 0.58 * c_rod_leg2 * (t443 + t459);
+        let t463 = t397 * t440;
+        let t466 = t397 * t445;
+        let t467 = t169 * t443;
+        let rate_dot_arm_leg2 = t183
+            * (t462 - c_armcross_leg2 * t463 - t185 * (t466 - t467));
+        let t472 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t476 = 0.26 * c_cross_leg3;
+        let t477 = actuator_velocities[2] * actuator_velocities[2];
+        let t480 = t403 - t418;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t480;
+        let t482 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t483 = t409 + t410;
+        let t487 = c_cross_leg3 * t131;
+        let t493 = t476 * garm_vy_leg3;
+        let t495 = s_armcross_leg3 * t483 + minus_c_armcross_leg3 * t399
+            - t487 * (minus_c_armcross_leg3 * t483 - s_armcross_leg3 * t399)
+            - t493 * t480;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t495;
+        let t497 = rate_cross_leg3 * rate_cross_leg3;
+        let t500 = t476 * t477 + 0.58 * c_rod_leg3 * (t482 + t497);
+        let t502 = t105 * t482;
+        let rate_dot_arm_leg3 = t132
+            * (minus_c_armcross_leg3 * t425 + t500 + t157 * (t428 + t502));
+        let t507 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t511 = 0.26 * c_cross_leg4;
+        let t512 = actuator_velocities[3] * actuator_velocities[3];
+        let t514 = t409 + t440;
+        let rate_rod_leg4 = grod_vx_leg4 * t514;
+        let t516 = rate_rod_leg4 * rate_rod_leg4;
+        let t517 = t403 - t445;
+        let t521 = c_cross_leg4 * t29;
+        let t527 = t511 * garm_vx_leg4;
+        let t529 = s_armcross_leg4 * t517 + minus_c_armcross_leg4 * t399
+            - t521 * (minus_c_armcross_leg4 * t517 - s_armcross_leg4 * t399)
+            - t527 * t514;
+        let rate_cross_leg4 = grod_vx_leg4 * t529;
+        let t531 = rate_cross_leg4 * rate_cross_leg4;
+        let t534 = t511 * t512 + t27 * (t516 + t531);
+        let t536 = t14 * t516;
+        let rate_dot_arm_leg4 = t30
+            * (minus_c_armcross_leg4 * t463 + t534 + t32 * (t466 + t536));
+        let t541 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t550 = garm_vx_leg1 * t434 + garm_vx_leg2 * t472 + garm_vx_leg3 * t507
+            + garm_vx_leg4 * t541;
+        let t561 = garm_vy_leg1 * t434 + garm_vy_leg2 * t472 + garm_vy_leg3 * t507
+            + garm_vy_leg4 * t541 - t297 * t550;
+        let t563 = garm_wz_leg1 * t434 + garm_wz_leg2 * t472 + garm_wz_leg3 * t507
+            + garm_wz_leg4 * t541 - t271 * t550 - t301 * t561;
+        let t574 = t320 * t550
+            - (minus_garm_vz_leg1 * t434 + minus_garm_vz_leg2 * t472
+                + minus_garm_vz_leg3 * t507 + minus_garm_vz_leg4 * t541) - t341 * t561;
+        let t577 = t348 * (t563 - t345 * t574);
+        let t580 = t163 * t216 * t247;
+        let t583 = t204 * t141 * t216;
+        let t587 = (t163 * t583 - t97 * t141) * t247;
+        let t593 = t344 * t574 - t345 * t577;
+        let t597 = t300 * t561 - t341 * t593 - t301 * t577;
+        let t605 = t270 * t550 - t297 * t597 + t320 * t593 - t271 * t577;
+        let t607 = c_phi * t597 - s_phi * t605;
+        let t612 = t153 + t78 * t161;
+        let t618 = t226 + t78 * t234 - t612 * t244;
+        let t620 = t77 - t78 * t142 - t612 * t217 - t618 * t248;
+        let t621 = t397 * t397;
+        let t624 = c_phi * t621 + s_phi * t577;
+        let t627 = t217 - t244 * t248;
+        let t630 = s_phi * t621 - c_phi * t577;
+        let t636 = t618 * t580 - t612 * t216;
+        let t639 = t216 + t244 * t580;
+        let t645 = t583 + t244 * t587;
+        let t651 = t78 * t141 + t612 * t583 - t618 * t587;
+        let t656 = t618 * t247;
+        let t658 = t244 * t247;
+        let t668 = s_phi * t597 + c_phi * t605;
+        let t692 = t234 - t161 * t244;
+        let t694 = t142 + t161 * t217 + t692 * t248;
+        let t695 = t593 + 9.81;
+        let t703 = t692 * t580 - t161 * t216;
+        let t712 = t141 + t161 * t583 - t692 * t587;
+        let t718 = t692 * t247;
+        let t721 = 9.81 * c_arm_leg1;
+        let t722 = 9.81 * c_arm_leg2;
+        let t723 = 9.81 * minus_c_arm_leg3;
+        let t724 = 9.81 * minus_c_arm_leg4;
+        let t725 = 9.81 * minus_s_arm_leg1;
+        let t726 = 9.81 * minus_s_arm_leg2;
+        let t727 = 9.81 * s_arm_leg3;
+        let t728 = 9.81 * s_arm_leg4;
+        let minus_gcross_vz_leg1 = grod_vy_leg1 * (minus_s_arm_leg1 * t70);
+        let minus_gcross_vx_leg1 = grod_vy_leg1 * (c_arm_leg1 * t70);
+        let minus_gcross_vy_leg1 = grod_vy_leg1 * (t349 * garm_vy_leg1);
+        let gcross_wz_leg1 = t42 * minus_gcross_vx_leg1 - t34 * minus_gcross_vy_leg1;
+        let t748 = minus_gcross_vz_leg1 * t694
+            - (minus_gcross_vx_leg1 * t620 + minus_gcross_vy_leg1 * t627)
+            + gcross_wz_leg1 * t248;
+        let t750 = rate_rod_leg1 * (1.7241379310344827 * t415);
+        let t751 = 0.26 * actuator_accelerations[0];
+        let t753 = t42 * t577;
+        let t759 = 0.26 * t350;
+        let t761 = t43 * minus_rate_cross_leg1;
+        let t762 = rate_rod_leg1 * t761;
+        let t766 = c_cross_leg1 * t751 + s_armcross_leg1 * (t605 - t753 - t425)
+            + c_armcross_leg1 * t593 + s_cross_leg1 * t759 + t762 + t762;
+        let t767 = 1.7241379310344827 * t766;
+        let t768 = t151 * t767;
+        let t770 = t750 + t768 + t750;
+        let t771 = c_rod_leg1 * t770;
+        let t772 = t151 * t771;
+        let grod_wz_leg1 = t34 * grod_vy_leg1;
+        let t777 = grod_vy_leg1 * t627 + grod_wz_leg1 * t248;
+        let t779 = 2.972651605231867 * (t415 * t761);
+        let t780 = t777 * t779;
+        let t788 = minus_gcross_vx_leg1 * t636 + minus_gcross_vy_leg1 * t639
+            + minus_gcross_vz_leg1 * t703 + gcross_wz_leg1 * t580;
+        let t792 = grod_vy_leg1 * t639 - grod_wz_leg1 * t580;
+        let t793 = t792 * t779;
+        let t801 = minus_gcross_vy_leg1 * t645 - minus_gcross_vx_leg1 * t651
+            - minus_gcross_vz_leg1 * t712 + gcross_wz_leg1 * t587;
+        let t805 = grod_wz_leg1 * t587 - grod_vy_leg1 * t645;
+        let t806 = t805 * t779;
+        let t814 = minus_gcross_vx_leg1 * t656 + minus_gcross_vy_leg1 * t658
+            + minus_gcross_vz_leg1 * t718 + gcross_wz_leg1 * t247;
+        let t818 = grod_wz_leg1 * t247 - grod_vy_leg1 * t658;
+        let t819 = t818 * t779;
         let grod_wz_leg2 = t4 * minus_grod_vx_leg2;
-        let t822 = grod_wz_leg2 * t245 - minus_grod_vx_leg2 * t618;
-        let t823 = t166 * minus_rate_cross_leg2;
-        let t825 = 2.972651605231867 * (t454 * t823);
-        let t826 = t822 * t825;
-        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t452;
-        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t179 * c_arm_leg2);
+        let t824 = grod_wz_leg2 * t248 - minus_grod_vx_leg2 * t620;
+        let t825 = t169 * minus_rate_cross_leg2;
+        let t827 = 2.972651605231867 * (t457 * t825);
+        let t828 = t824 * t827;
+        let minus_gcross_vx_leg2 = minus_grod_vx_leg2 * t455;
+        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t182 * c_arm_leg2);
         let gcross_wz_leg2 = t4 * minus_gcross_vx_leg2 - t13 * minus_gcross_vy_leg2;
-        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t179 * minus_s_arm_leg2);
-        let t841 = gcross_wz_leg2 * t245
-            - (minus_gcross_vx_leg2 * t618 + minus_gcross_vy_leg2 * t625
-                - minus_gcross_vz_leg2 * t692);
-        let t843 = minus_rate_rod_leg2 * (1.7241379310344827 * t454);
-        let t844 = t13 * t575;
-        let t846 = t595 + t844 - t460;
-        let t855 = 0.26 * t434;
-        let t857 = minus_rate_rod_leg2 * t823;
-        let t861 = t441 * (c_armcross_leg2 * t846 - s_armcross_leg2 * t591 + t459)
-            + s_armcross_leg2 * t846 + c_armcross_leg2 * t591 + s_cross_leg2 * t855
-            + t857 + t857;
-        let t862 = t4 * t575;
-        let t864 = t603 - t862 - t463;
-        let t865 = t864 + t464;
-        let t867 = t861 + t452 * t865;
-        let t868 = 1.7241379310344827 * t867;
-        let t869 = t182 * t868;
-        let t871 = t843 + t869 + t843;
-        let t872 = c_rod_leg2 * t871;
-        let t873 = t182 * t872;
-        let t882 = minus_gcross_vz_leg2 * t701 + minus_gcross_vx_leg2 * t634
-            + minus_gcross_vy_leg2 * t637 + gcross_wz_leg2 * t578;
-        let t886 = minus_grod_vx_leg2 * t634 + grod_wz_leg2 * t578;
-        let t887 = t886 * t825;
-        let t891 = grod_wz_leg2 * t585 - minus_grod_vx_leg2 * t649;
-        let t892 = t891 * t825;
-        let t899 = minus_gcross_vy_leg2 * t643 - minus_gcross_vx_leg2 * t649
-            - minus_gcross_vz_leg2 * t710 + gcross_wz_leg2 * t585;
-        let t904 = minus_grod_vx_leg2 * t654 + grod_wz_leg2 * t244;
-        let t905 = t904 * t825;
-        let t912 = minus_gcross_vx_leg2 * t654 + minus_gcross_vy_leg2 * t656
-            + minus_gcross_vz_leg2 * t716 + gcross_wz_leg2 * t244;
-        let minus_gcross_vx_leg3 = minus_grod_vy_leg3 * (minus_c_arm_leg3 * t128);
-        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * t490;
-        let gcross_vz_leg3 = minus_grod_vy_leg3 * (s_arm_leg3 * t128);
-        let gcross_wz_leg3 = t32 * minus_gcross_vy_leg3 - t40 * minus_gcross_vx_leg3;
-        let t929 = gcross_wz_leg3 * t245
-            - (minus_gcross_vx_leg3 * t618 + minus_gcross_vy_leg3 * t625
-                + gcross_vz_leg3 * t692);
-        let t931 = minus_rate_rod_leg3 * (1.7241379310344827 * t492);
-        let t933 = t603 + t751 + t422;
-        let t937 = 0.26 * t474;
-        let t939 = t102 * rate_cross_leg3;
-        let t940 = minus_rate_rod_leg3 * t939;
-        let t949 = s_armcross_leg3 * t933 + minus_c_armcross_leg3 * t591
-            - (s_cross_leg3 * t937 - t940 - t940)
-            - t484 * (minus_c_armcross_leg3 * t933 - s_armcross_leg3 * t591 + t497);
-        let t950 = t32 * t575;
-        let t952 = t595 - t950 + t425;
-        let t953 = t952 + t499;
-        let t955 = t949 - t490 * t953;
-        let t956 = 1.7241379310344827 * t955;
-        let t957 = t154 * t956;
-        let t959 = t931 + t957 + t931;
-        let t960 = c_rod_leg3 * t959;
-        let t961 = t154 * t960;
-        let grod_wz_leg3 = t32 * minus_grod_vy_leg3;
-        let t966 = grod_wz_leg3 * t245 - minus_grod_vy_leg3 * t625;
-        let t968 = 2.972651605231867 * (t492 * t939);
-        let t969 = t966 * t968;
-        let t977 = gcross_vz_leg3 * t701
-            - (minus_gcross_vx_leg3 * t634 + minus_gcross_vy_leg3 * t637)
-            - gcross_wz_leg3 * t578;
-        let t981 = minus_grod_vy_leg3 * t637 + grod_wz_leg3 * t578;
-        let t982 = t981 * t968;
-        let t990 = minus_gcross_vy_leg3 * t643 - minus_gcross_vx_leg3 * t649
-            + gcross_vz_leg3 * t710 + gcross_wz_leg3 * t585;
-        let t994 = minus_grod_vy_leg3 * t643 + grod_wz_leg3 * t585;
-        let t995 = t994 * t968;
-        let t1003 = minus_gcross_vy_leg3 * t656 + minus_gcross_vx_leg3 * t654
-            - gcross_vz_leg3 * t716 + gcross_wz_leg3 * t244;
-        let t1007 = minus_grod_vy_leg3 * t656 + grod_wz_leg3 * t244;
-        let t1008 = t1007 * t968;
-        let minus_gcross_vy_leg4 = grod_vx_leg4 * (t27 * minus_c_arm_leg4);
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * t525;
-        let gcross_vz_leg4 = grod_vx_leg4 * (t27 * s_arm_leg4);
+        let minus_gcross_vz_leg2 = minus_grod_vx_leg2 * (t182 * minus_s_arm_leg2);
+        let t843 = gcross_wz_leg2 * t248
+            - (minus_gcross_vx_leg2 * t620 + minus_gcross_vy_leg2 * t627
+                - minus_gcross_vz_leg2 * t694);
+        let t845 = minus_rate_rod_leg2 * (1.7241379310344827 * t457);
+        let t846 = t13 * t577;
+        let t848 = t597 + t846 - t463;
+        let t857 = 0.26 * t437;
+        let t859 = minus_rate_rod_leg2 * t825;
+        let t863 = t444 * (c_armcross_leg2 * t848 - s_armcross_leg2 * t593 + t462)
+            + s_armcross_leg2 * t848 + c_armcross_leg2 * t593 + s_cross_leg2 * t857
+            + t859 + t859;
+        let t864 = t4 * t577;
+        let t866 = t605 - t864 - t466;
+        let t867 = t866 + t467;
+        let t869 = t863 + t455 * t867;
+        let t870 = 1.7241379310344827 * t869;
+        let t871 = t185 * t870;
+        let t873 = t845 + t871 + t845;
+        let t874 = c_rod_leg2 * t873;
+        let t875 = t185 * t874;
+        let t884 = minus_gcross_vz_leg2 * t703 + minus_gcross_vx_leg2 * t636
+            + minus_gcross_vy_leg2 * t639 + gcross_wz_leg2 * t580;
+        let t888 = minus_grod_vx_leg2 * t636 + grod_wz_leg2 * t580;
+        let t889 = t888 * t827;
+        let t893 = grod_wz_leg2 * t587 - minus_grod_vx_leg2 * t651;
+        let t894 = t893 * t827;
+        let t901 = minus_gcross_vy_leg2 * t645 - minus_gcross_vx_leg2 * t651
+            - minus_gcross_vz_leg2 * t712 + gcross_wz_leg2 * t587;
+        let t906 = minus_grod_vx_leg2 * t656 + grod_wz_leg2 * t247;
+        let t907 = t906 * t827;
+        let t914 = minus_gcross_vx_leg2 * t656 + minus_gcross_vy_leg2 * t658
+            + minus_gcross_vz_leg2 * t718 + gcross_wz_leg2 * t247;
+        let minus_gcross_vx_leg3 = minus_grod_vy_leg3 * (minus_c_arm_leg3 * t131);
+        let minus_gcross_vy_leg3 = minus_grod_vy_leg3 * t493;
+        let gcross_vz_leg3 = minus_grod_vy_leg3 * (s_arm_leg3 * t131);
+        let gcross_wz_leg3 = t34 * minus_gcross_vy_leg3 - t42 * minus_gcross_vx_leg3;
+        let t931 = gcross_wz_leg3 * t248
+            - (minus_gcross_vx_leg3 * t620 + minus_gcross_vy_leg3 * t627
+                + gcross_vz_leg3 * t694);
+        let t933 = minus_rate_rod_leg3 * (1.7241379310344827 * t495);
+        let t935 = t605 + t753 + t425;
+        let t939 = 0.26 * t477;
+        let t941 = t105 * rate_cross_leg3;
+        let t942 = minus_rate_rod_leg3 * t941;
+        let t951 = s_armcross_leg3 * t935 + minus_c_armcross_leg3 * t593
+            - (s_cross_leg3 * t939 - t942 - t942)
+            - t487 * (minus_c_armcross_leg3 * t935 - s_armcross_leg3 * t593 + t500);
+        let t952 = t34 * t577;
+        let t954 = t597 - t952 + t428;
+        let t955 = t954 + t502;
+        let t957 = t951 - t493 * t955;
+        let t958 = 1.7241379310344827 * t957;
+        let t959 = t157 * t958;
+        let t961 = t933 + t959 + t933;
+        let t962 = c_rod_leg3 * t961;
+        let t963 = t157 * t962;
+        let grod_wz_leg3 = t34 * minus_grod_vy_leg3;
+        let t968 = grod_wz_leg3 * t248 - minus_grod_vy_leg3 * t627;
+        let t970 = 2.972651605231867 * (t495 * t941);
+        let t971 = t968 * t970;
+        let t979 = gcross_vz_leg3 * t703
+            - (minus_gcross_vx_leg3 * t636 + minus_gcross_vy_leg3 * t639)
+            - gcross_wz_leg3 * t580;
+        let t983 = minus_grod_vy_leg3 * t639 + grod_wz_leg3 * t580;
+        let t984 = t983 * t970;
+        let t992 = minus_gcross_vy_leg3 * t645 - minus_gcross_vx_leg3 * t651
+            + gcross_vz_leg3 * t712 + gcross_wz_leg3 * t587;
+        let t996 = minus_grod_vy_leg3 * t645 + grod_wz_leg3 * t587;
+        let t997 = t996 * t970;
+        let t1005 = minus_gcross_vy_leg3 * t658 + minus_gcross_vx_leg3 * t656
+            - gcross_vz_leg3 * t718 + gcross_wz_leg3 * t247;
+        let t1009 = minus_grod_vy_leg3 * t658 + grod_wz_leg3 * t247;
+        let t1010 = t1009 * t970;
+        let minus_gcross_vy_leg4 = grod_vx_leg4 * (t29 * minus_c_arm_leg4);
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t527;
+        let gcross_vz_leg4 = grod_vx_leg4 * (t29 * s_arm_leg4);
         let minus_gcross_wz_leg4 = t4 * minus_gcross_vx_leg4
             - t13 * minus_gcross_vy_leg4;
-        let t1024 = minus_gcross_vy_leg4 * t625 + minus_gcross_vx_leg4 * t618
-            + gcross_vz_leg4 * t692 + minus_gcross_wz_leg4 * t245;
-        let t1026 = rate_rod_leg4 * (1.7241379310344827 * t527);
-        let t1028 = t595 - t844 + t460;
-        let t1032 = 0.26 * t509;
-        let t1034 = t14 * rate_cross_leg4;
-        let t1035 = rate_rod_leg4 * t1034;
-        let t1044 = s_armcross_leg4 * t1028 + minus_c_armcross_leg4 * t591
-            - (s_cross_leg4 * t1032 - t1035 - t1035)
-            - t519 * (minus_c_armcross_leg4 * t1028 - s_armcross_leg4 * t591 + t532);
-        let t1046 = t603 + t862 + t463;
-        let t1047 = t1046 + t534;
-        let t1049 = t1044 - t525 * t1047;
-        let t1050 = 1.7241379310344827 * t1049;
-        let t1051 = t30 * t1050;
-        let t1053 = t1026 + t1051 + t1026;
-        let t1054 = c_rod_leg4 * t1053;
-        let t1055 = t30 * t1054;
+        let t1026 = minus_gcross_vy_leg4 * t627 + minus_gcross_vx_leg4 * t620
+            + gcross_vz_leg4 * t694 + minus_gcross_wz_leg4 * t248;
+        let t1028 = rate_rod_leg4 * (1.7241379310344827 * t529);
+        let t1030 = t597 - t846 + t463;
+        let t1034 = 0.26 * t512;
+        let t1036 = t14 * rate_cross_leg4;
+        let t1037 = rate_rod_leg4 * t1036;
+        let t1046 = s_armcross_leg4 * t1030 + minus_c_armcross_leg4 * t593
+            - (s_cross_leg4 * t1034 - t1037 - t1037)
+            - t521 * (minus_c_armcross_leg4 * t1030 - s_armcross_leg4 * t593 + t534);
+        let t1048 = t605 + t864 + t466;
+        let t1049 = t1048 + t536;
+        let t1051 = t1046 - t527 * t1049;
+        let t1052 = 1.7241379310344827 * t1051;
+        let t1053 = t32 * t1052;
+        let t1055 = t1028 + t1053 + t1028;
+        let t1056 = c_rod_leg4 * t1055;
+        let t1057 = t32 * t1056;
         let grod_wz_leg4 = t4 * grod_vx_leg4;
-        let t1060 = grod_vx_leg4 * t618 + grod_wz_leg4 * t245;
-        let t1062 = 2.972651605231867 * (t527 * t1034);
-        let t1063 = t1060 * t1062;
-        let t1071 = gcross_vz_leg4 * t701
-            - (minus_gcross_vy_leg4 * t637 + minus_gcross_vx_leg4 * t634)
-            + minus_gcross_wz_leg4 * t578;
-        let t1075 = grod_vx_leg4 * t634 - grod_wz_leg4 * t578;
-        let t1076 = t1075 * t1062;
-        let t1084 = gcross_vz_leg4 * t710
-            - (minus_gcross_vx_leg4 * t649 - minus_gcross_vy_leg4 * t643)
-            - minus_gcross_wz_leg4 * t585;
-        let t1088 = grod_vx_leg4 * t649 + grod_wz_leg4 * t585;
-        let t1089 = t1088 * t1062;
-        let t1097 = minus_gcross_vx_leg4 * t654 + minus_gcross_vy_leg4 * t656
-            - gcross_vz_leg4 * t716 - minus_gcross_wz_leg4 * t244;
-        let t1101 = grod_wz_leg4 * t244 - grod_vx_leg4 * t654;
-        let t1102 = t1101 * t1062;
-        let s_rod_leg1 = 1.7241379310344827 * t41;
-        let t1109 = s_rod_leg1 * t748
-            + c_rod_leg1 * (1.7241379310344827 * (t760 - t764));
-        let t1111 = t148 * t1109 - t769;
-        let t1113 = t759 * t759;
-        let t1116 = 2.972651605231867 * (t1113 - t412 * t412);
-        let minus_s_rod_leg2 = 1.7241379310344827 * t166;
-        let t1133 = minus_s_rod_leg2 * t843
-            + c_rod_leg2 * (1.7241379310344827 * (t857 - t867));
-        let t1135 = t872 - t182 * t1133;
-        let t1137 = t823 * t823;
-        let t1140 = 2.972651605231867 * (t1137 - t454 * t454);
-        let minus_s_rod_leg3 = 1.7241379310344827 * t102;
-        let t1157 = c_rod_leg3 * (1.7241379310344827 * (t955 - t940))
-            - minus_s_rod_leg3 * t931;
-        let t1159 = t154 * t1157 + t960;
-        let t1161 = t939 * t939;
-        let t1164 = 2.972651605231867 * (t1161 - t492 * t492);
+        let t1062 = grod_vx_leg4 * t620 + grod_wz_leg4 * t248;
+        let t1064 = 2.972651605231867 * (t529 * t1036);
+        let t1065 = t1062 * t1064;
+        let t1073 = gcross_vz_leg4 * t703
+            - (minus_gcross_vy_leg4 * t639 + minus_gcross_vx_leg4 * t636)
+            + minus_gcross_wz_leg4 * t580;
+        let t1077 = grod_vx_leg4 * t636 - grod_wz_leg4 * t580;
+        let t1078 = t1077 * t1064;
+        let t1086 = gcross_vz_leg4 * t712
+            - (minus_gcross_vx_leg4 * t651 - minus_gcross_vy_leg4 * t645)
+            - minus_gcross_wz_leg4 * t587;
+        let t1090 = grod_vx_leg4 * t651 + grod_wz_leg4 * t587;
+        let t1091 = t1090 * t1064;
+        let t1099 = minus_gcross_vx_leg4 * t656 + minus_gcross_vy_leg4 * t658
+            - gcross_vz_leg4 * t718 - minus_gcross_wz_leg4 * t247;
+        let t1103 = grod_wz_leg4 * t247 - grod_vx_leg4 * t656;
+        let t1104 = t1103 * t1064;
+        let t1106 = t762 - t766;
+        let t1110 = 2.972651605231867 * (t43 * (t762 + t1106)) - t771;
+        let t1112 = t761 * t761;
+        let t1115 = 2.972651605231867 * (t1112 - t415 * t415);
+        let minus_s_rod_leg2 = 1.7241379310344827 * t169;
+        let t1132 = minus_s_rod_leg2 * t845
+            + c_rod_leg2 * (1.7241379310344827 * (t859 - t869));
+        let t1134 = t874 - t185 * t1132;
+        let t1136 = t825 * t825;
+        let t1139 = 2.972651605231867 * (t1136 - t457 * t457);
+        let minus_s_rod_leg3 = 1.7241379310344827 * t105;
+        let t1156 = c_rod_leg3 * (1.7241379310344827 * (t957 - t942))
+            - minus_s_rod_leg3 * t933;
+        let t1158 = t157 * t1156 + t962;
+        let t1160 = t941 * t941;
+        let t1163 = 2.972651605231867 * (t1160 - t495 * t495);
         let s_rod_leg4 = 1.7241379310344827 * t14;
-        let t1181 = c_rod_leg4 * (1.7241379310344827 * (t1049 - t1035))
-            - s_rod_leg4 * t1026;
-        let t1183 = t1054 + t30 * t1181;
-        let t1185 = t1034 * t1034;
-        let t1188 = 2.972651605231867 * (t1185 - t527 * t527);
-        let t1201 = t595 + t950 - t425;
-        let rate_dot_rod_leg1 = grod_vy_leg1 * (t1201 + t426);
-        let t1206 = 2.972651605231867 * t1113;
-        let t1209 = s_rod_leg1 * (t777 + rate_dot_rod_leg1)
-            + c_rod_leg1 * (t418 - t1206);
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t865;
-        let t1225 = 2.972651605231867 * t1137;
-        let t1228 = minus_s_rod_leg2 * (t825 + minus_rate_dot_rod_leg2)
-            + c_rod_leg2 * (t440 - t1225);
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t953;
-        let t1244 = 2.972651605231867 * t1161;
-        let t1247 = minus_s_rod_leg3 * (t968 + minus_rate_dot_rod_leg3)
-            + c_rod_leg3 * (t479 - t1244);
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t1047;
-        let t1263 = 2.972651605231867 * t1185;
-        let t1266 = s_rod_leg4 * (t1062 + rate_dot_rod_leg4)
-            + c_rod_leg4 * (t514 - t1263);
-        let t1311 = 1.7241379310344827 * t1201;
-        let t1324 = 1.7241379310344827 * t864;
-        let t1338 = 1.7241379310344827 * t952;
-        let t1350 = 1.7241379310344827 * t1046;
-        let t1379 = 0.8620689655172413 * t50;
-        let t1382 = t148 * t1379;
-        let t1388 = t749 - t719;
-        let t1390 = t723 - t757;
-        let t1393 = s_rod_leg1 * (c_cross_leg1 * t1388 - s_cross_leg1 * t1390);
-        let t1398 = c_cross_leg1 * t1390 + s_cross_leg1 * t1388;
-        let t1399 = c_rod_leg1 * t1398;
-        let t1401 = t1379 * (t777 - rate_dot_rod_leg1) + t1382 * (t1206 + t418)
-            + t346 * t768 - t746 * t1393 - t775 * t1399;
-        let t1412 = 0.26 * actuator_accelerations[1] - t720;
-        let t1414 = t724 - t855;
-        let t1417 = minus_s_rod_leg2 * (c_cross_leg2 * t1412 - s_cross_leg2 * t1414);
-        let t1421 = c_cross_leg2 * t1414 + s_cross_leg2 * t1412;
-        let t1422 = c_rod_leg2 * t1421;
-        let t1425 = 0.8620689655172413 * t173;
-        let t1428 = t182 * t1425;
-        let t1437 = t1425 * (minus_rate_dot_rod_leg2 - t825) - t1428 * (t1225 + t440)
-            - t433 * t871 - t882 * t1417 + t886 * t1422;
-        let t1444 = t725 + t937;
-        let t1447 = t721 + 0.26 * actuator_accelerations[2];
-        let t1450 = minus_s_rod_leg3 * (s_cross_leg3 * t1444 + c_cross_leg3 * t1447);
-        let t1454 = s_cross_leg3 * t1447 - c_cross_leg3 * t1444;
-        let t1455 = c_rod_leg3 * t1454;
-        let t1461 = 0.8620689655172413 * t110;
-        let t1464 = t154 * t1461;
-        let t1473 = t1461 * (minus_rate_dot_rod_leg3 - t968) - t1464 * (t1244 + t479)
-            + t473 * t959 + t990 * t1450 - t994 * t1455;
-        let t1477 = t726 + t1032;
-        let t1480 = t722 + 0.26 * actuator_accelerations[3];
-        let t1483 = s_rod_leg4 * (s_cross_leg4 * t1477 + c_cross_leg4 * t1480);
-        let t1487 = s_cross_leg4 * t1480 - c_cross_leg4 * t1477;
-        let t1488 = c_rod_leg4 * t1487;
-        let t1497 = 0.8620689655172413 * t21;
-        let t1500 = t30 * t1497;
-        let t1509 = t1497 * (t1062 - rate_dot_rod_leg4) + t1500 * (t1263 + t514)
-            - t508 * t1053 - t1097 * t1483 - t1101 * t1488;
+        let t1180 = c_rod_leg4 * (1.7241379310344827 * (t1051 - t1037))
+            - s_rod_leg4 * t1028;
+        let t1182 = t1056 + t32 * t1180;
+        let t1184 = t1036 * t1036;
+        let t1187 = 2.972651605231867 * (t1184 - t529 * t529);
+        let s_rod_leg1 = 1.7241379310344827 * t43;
+        let t1201 = t597 + t952 - t428;
+        let rate_dot_rod_leg1 = grod_vy_leg1 * (t1201 + t429);
+        let t1206 = 2.972651605231867 * t1112;
+        let t1209 = s_rod_leg1 * (t779 + rate_dot_rod_leg1)
+            + c_rod_leg1 * (t421 - t1206);
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t867;
+        let t1225 = 2.972651605231867 * t1136;
+        let t1228 = minus_s_rod_leg2 * (t827 + minus_rate_dot_rod_leg2)
+            + c_rod_leg2 * (t443 - t1225);
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t955;
+        let t1244 = 2.972651605231867 * t1160;
+        let t1247 = minus_s_rod_leg3 * (t970 + minus_rate_dot_rod_leg3)
+            + c_rod_leg3 * (t482 - t1244);
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t1049;
+        let t1263 = 2.972651605231867 * t1184;
+        let t1266 = s_rod_leg4 * (t1064 + rate_dot_rod_leg4)
+            + c_rod_leg4 * (t516 - t1263);
+        let t1282 = s_rod_leg1 * t750 + c_rod_leg1 * (1.7241379310344827 * t1106);
+        let t1315 = 1.7241379310344827 * t1201;
+        let t1328 = 1.7241379310344827 * t866;
+        let t1342 = 1.7241379310344827 * t954;
+        let t1354 = 1.7241379310344827 * t1048;
+        let t1383 = 0.8620689655172413 * t52;
+        let t1386 = t151 * t1383;
+        let t1392 = t751 - t721;
+        let t1394 = t725 - t759;
+        let t1397 = s_rod_leg1 * (c_cross_leg1 * t1392 - s_cross_leg1 * t1394);
+        let t1402 = c_cross_leg1 * t1394 + s_cross_leg1 * t1392;
+        let t1403 = c_rod_leg1 * t1402;
+        let t1405 = t1383 * (t779 - rate_dot_rod_leg1) + t1386 * (t1206 + t421)
+            + t349 * t770 - t748 * t1397 - t777 * t1403;
+        let t1416 = 0.26 * actuator_accelerations[1] - t722;
+        let t1418 = t726 - t857;
+        let t1421 = minus_s_rod_leg2 * (c_cross_leg2 * t1416 - s_cross_leg2 * t1418);
+        let t1425 = c_cross_leg2 * t1418 + s_cross_leg2 * t1416;
+        let t1426 = c_rod_leg2 * t1425;
+        let t1429 = 0.8620689655172413 * t176;
+        let t1432 = t185 * t1429;
+        let t1441 = t1429 * (minus_rate_dot_rod_leg2 - t827) - t1432 * (t1225 + t443)
+            - t436 * t873 - t884 * t1421 + t888 * t1426;
+        let t1448 = t727 + t939;
+        let t1451 = t723 + 0.26 * actuator_accelerations[2];
+        let t1454 = minus_s_rod_leg3 * (s_cross_leg3 * t1448 + c_cross_leg3 * t1451);
+        let t1458 = s_cross_leg3 * t1451 - c_cross_leg3 * t1448;
+        let t1459 = c_rod_leg3 * t1458;
+        let t1465 = 0.8620689655172413 * t113;
+        let t1468 = t157 * t1465;
+        let t1477 = t1465 * (minus_rate_dot_rod_leg3 - t970) - t1468 * (t1244 + t482)
+            + t476 * t961 + t992 * t1454 - t996 * t1459;
+        let t1481 = t728 + t1034;
+        let t1484 = t724 + 0.26 * actuator_accelerations[3];
+        let t1487 = s_rod_leg4 * (s_cross_leg4 * t1481 + c_cross_leg4 * t1484);
+        let t1491 = s_cross_leg4 * t1484 - c_cross_leg4 * t1481;
+        let t1492 = c_rod_leg4 * t1491;
+        let t1501 = 0.8620689655172413 * t22;
+        let t1504 = t32 * t1501;
+        let t1513 = t1501 * (t1064 - rate_dot_rod_leg4) + t1504 * (t1263 + t516)
+            - t511 * t1055 - t1099 * t1487 - t1103 * t1492;
         Ok([
             [
-                t245 * t575, t245 * t605 - (t618 * t622 + t625 * t628),
-                t618 * t628 - t625 * t622 - t245 * t666, t618 * t603 + t625 * t595 - t692 * t693,
-                actuator_accelerations[0], 0.0, 0.0, 0.0, -t719, 0.0, 0.0, 0.0, -t723, 0.0, 0.0,
+                t248 * t577, t248 * t607 - (t620 * t624 + t627 * t630),
+                t620 * t630 - t627 * t624 - t248 * t668, t620 * t605 + t627 * t597 - t694 * t695,
+                actuator_accelerations[0], 0.0, 0.0, 0.0, -t721, 0.0, 0.0, 0.0, -t725, 0.0, 0.0,
                 0.0, actuator_velocities[0], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[0]), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
-                -(t746 * t770 + t778), t826 - t841 * t873, t929 * t961 + t969,
-                -(t1024 * t1055 + t1063), t746 * t1111 + t775 * t1116, t841 * t1135 + t822 * t1140,
-                t966 * t1164 - t929 * t1159, t1060 * t1188 - t1024 * t1183,
-                t746 * t1209 - t775 * t766, t841 * t1228 + t822 * t869, t929 * t1247 - t966 * t957,
-                t1060 * t1051 - t1024 * t1266, t746 * t1109 + t778, t841 * t1133 - t826,
-                t929 * t1157 - t969, t1063 - t1024 * t1181, t746 * t1311 - t775 * t765,
-                -(t841 * t1324 + t822 * t868), t966 * t956 - t929 * t1338,
-                t1060 * t1050 - t1024 * t1350, t775 * rate_dot_rod_leg1,
-                -(t822 * minus_rate_dot_rod_leg2), -(t966 * minus_rate_dot_rod_leg3),
-                t1060 * rate_dot_rod_leg4, t1401, t841 * t1417 - t822 * t1422,
-                t929 * t1450 - t966 * t1455, -(t1060 * t1488 - t1024 * t1483),
-                t346 * t414 - (t765 * t1379 + t1382 * t766) + t746 * t1398, t841 * t1421,
-                t929 * t1454, -(t1024 * t1487),
+                -(t748 * t772 + t780), t828 - t843 * t875, t931 * t963 + t971,
+                -(t1026 * t1057 + t1065), t748 * t1110 + t777 * t1115, t843 * t1134 + t824 * t1139,
+                t968 * t1163 - t931 * t1158, t1062 * t1187 - t1026 * t1182,
+                t748 * t1209 - t777 * t768, t843 * t1228 + t824 * t871, t931 * t1247 - t968 * t959,
+                t1062 * t1053 - t1026 * t1266, t748 * t1282 + t780, t843 * t1132 - t828,
+                t931 * t1156 - t971, t1065 - t1026 * t1180, t748 * t1315 - t777 * t767,
+                -(t843 * t1328 + t824 * t870), t968 * t958 - t931 * t1342,
+                t1062 * t1052 - t1026 * t1354, t777 * rate_dot_rod_leg1,
+                -(t824 * minus_rate_dot_rod_leg2), -(t968 * minus_rate_dot_rod_leg3),
+                t1062 * rate_dot_rod_leg4, t1405, t843 * t1421 - t824 * t1426,
+                t931 * t1454 - t968 * t1459, -(t1062 * t1492 - t1026 * t1487),
+                t349 * t417 - (t767 * t1383 + t1386 * t768) + t748 * t1402, t843 * t1425,
+                t931 * t1458, -(t1026 * t1491),
             ],
             [
-                -(t578 * t575), -(t634 * t622 + t637 * t628 + t578 * t605),
-                t634 * t628 - t637 * t622 + t578 * t666, t634 * t603 + t637 * t595 + t701 * t693,
-                0.0, actuator_accelerations[1], 0.0, 0.0, 0.0, -t720, 0.0, 0.0, 0.0, -t724, 0.0,
+                -(t580 * t577), -(t636 * t624 + t639 * t630 + t580 * t607),
+                t636 * t630 - t639 * t624 + t580 * t668, t636 * t605 + t639 * t597 + t703 * t695,
+                0.0, actuator_accelerations[1], 0.0, 0.0, 0.0, -t722, 0.0, 0.0, 0.0, -t726, 0.0,
                 0.0, 0.0, actuator_velocities[1], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[1]), 0.0, 0.0, 0.0, 1.0, 0.0, 0.0,
-                t786 * t770 - t791, -(t887 - t882 * t873), t977 * t961 - t982,
-                t1071 * t1055 - t1076, t790 * t1116 - t786 * t1111, -(t882 * t1135 + t886 * t1140),
-                -(t977 * t1159 + t981 * t1164), t1071 * t1183 + t1075 * t1188,
-                -(t786 * t1209 + t790 * t766), -(t882 * t1228 + t886 * t869),
-                t977 * t1247 + t981 * t957, t1071 * t1266 + t1075 * t1051, t791 - t786 * t1109,
-                t887 - t882 * t1133, t977 * t1157 + t982, t1071 * t1181 + t1076,
-                -(t786 * t1311 + t790 * t765), t886 * t868 + t882 * t1324,
-                -(t977 * t1338 + t981 * t956), t1071 * t1350 + t1075 * t1050,
-                t790 * rate_dot_rod_leg1, t886 * minus_rate_dot_rod_leg2,
-                t981 * minus_rate_dot_rod_leg3, t1075 * rate_dot_rod_leg4,
-                t786 * t1393 - t790 * t1399, t1437, t977 * t1450 + t981 * t1455,
-                -(t1071 * t1483 + t1075 * t1488), -(t786 * t1398),
-                t433 * t456 - (t868 * t1425 + t1428 * t869) - t882 * t1421, t977 * t1454,
-                t1071 * t1487,
+                t788 * t772 - t793, -(t889 - t884 * t875), t979 * t963 - t984,
+                t1073 * t1057 - t1078, t792 * t1115 - t788 * t1110, -(t884 * t1134 + t888 * t1139),
+                -(t979 * t1158 + t983 * t1163), t1073 * t1182 + t1077 * t1187,
+                -(t788 * t1209 + t792 * t768), -(t884 * t1228 + t888 * t871),
+                t979 * t1247 + t983 * t959, t1073 * t1266 + t1077 * t1053, t793 - t788 * t1282,
+                t889 - t884 * t1132, t979 * t1156 + t984, t1073 * t1180 + t1078,
+                -(t788 * t1315 + t792 * t767), t888 * t870 + t884 * t1328,
+                -(t979 * t1342 + t983 * t958), t1073 * t1354 + t1077 * t1052,
+                t792 * rate_dot_rod_leg1, t888 * minus_rate_dot_rod_leg2,
+                t983 * minus_rate_dot_rod_leg3, t1077 * rate_dot_rod_leg4,
+                t788 * t1397 - t792 * t1403, t1441, t979 * t1454 + t983 * t1459,
+                -(t1073 * t1487 + t1077 * t1492), -(t788 * t1402),
+                t436 * t459 - (t870 * t1429 + t1432 * t871) - t884 * t1425, t979 * t1458,
+                t1073 * t1491,
             ],
             [
-                t585 * t575, t643 * t628 - t649 * t622 + t585 * t605,
-                t649 * t628 + t643 * t622 - t585 * t666, t649 * t603 - t643 * t595 + t710 * t693,
-                0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, t721, 0.0, 0.0, 0.0, t725, 0.0,
+                t587 * t577, t645 * t630 - t651 * t624 + t587 * t607,
+                t651 * t630 + t645 * t624 - t587 * t668, t651 * t605 - t645 * t597 + t712 * t695,
+                0.0, 0.0, actuator_accelerations[2], 0.0, 0.0, 0.0, t723, 0.0, 0.0, 0.0, t727, 0.0,
                 0.0, 0.0, actuator_velocities[2], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[2]), 0.0, 0.0, 0.0, 1.0, 0.0,
-                -(t799 * t770 + t804), t892 - t899 * t873, t990 * t961 + t995,
-                t1084 * t1055 - t1089, t799 * t1111 + t803 * t1116, t899 * t1135 + t891 * t1140,
-                t994 * t1164 - t990 * t1159, t1084 * t1183 + t1088 * t1188,
-                t799 * t1209 - t803 * t766, t899 * t1228 + t891 * t869, t990 * t1247 - t994 * t957,
-                t1084 * t1266 + t1088 * t1051, t799 * t1109 + t804, t899 * t1133 - t892,
-                t990 * t1157 - t995, t1084 * t1181 + t1089, t799 * t1311 - t803 * t765,
-                -(t899 * t1324 + t891 * t868), t994 * t956 - t990 * t1338,
-                t1084 * t1350 + t1088 * t1050, t803 * rate_dot_rod_leg1,
-                -(t891 * minus_rate_dot_rod_leg2), -(t994 * minus_rate_dot_rod_leg3),
-                t1088 * rate_dot_rod_leg4, -(t799 * t1393 + t803 * t1399),
-                t899 * t1417 - t891 * t1422, t1473, -(t1084 * t1483 + t1088 * t1488), t799 * t1398,
-                t899 * t1421, t956 * t1461 + t1464 * t957 + t473 * t494 + t990 * t1454,
-                t1084 * t1487,
+                -(t801 * t772 + t806), t894 - t901 * t875, t992 * t963 + t997,
+                t1086 * t1057 - t1091, t801 * t1110 + t805 * t1115, t901 * t1134 + t893 * t1139,
+                t996 * t1163 - t992 * t1158, t1086 * t1182 + t1090 * t1187,
+                t801 * t1209 - t805 * t768, t901 * t1228 + t893 * t871, t992 * t1247 - t996 * t959,
+                t1086 * t1266 + t1090 * t1053, t801 * t1282 + t806, t901 * t1132 - t894,
+                t992 * t1156 - t997, t1086 * t1180 + t1091, t801 * t1315 - t805 * t767,
+                -(t901 * t1328 + t893 * t870), t996 * t958 - t992 * t1342,
+                t1086 * t1354 + t1090 * t1052, t805 * rate_dot_rod_leg1,
+                -(t893 * minus_rate_dot_rod_leg2), -(t996 * minus_rate_dot_rod_leg3),
+                t1090 * rate_dot_rod_leg4, -(t801 * t1397 + t805 * t1403),
+                t901 * t1421 - t893 * t1426, t1477, -(t1086 * t1487 + t1090 * t1492), t801 * t1402,
+                t901 * t1425, t958 * t1465 + t1468 * t959 + t476 * t497 + t992 * t1458,
+                t1086 * t1491,
             ],
             [
-                t244 * t575, t654 * t622 + t656 * t628 + t244 * t605,
-                t656 * t622 - t654 * t628 - t244 * t666, -(t654 * t603 + t656 * t595 + t716 * t693),
-                0.0, 0.0, 0.0, actuator_accelerations[3], 0.0, 0.0, 0.0, t722, 0.0, 0.0, 0.0, t726,
+                t247 * t577, t656 * t624 + t658 * t630 + t247 * t607,
+                t658 * t624 - t656 * t630 - t247 * t668, -(t656 * t605 + t658 * t597 + t718 * t695),
+                0.0, 0.0, 0.0, actuator_accelerations[3], 0.0, 0.0, 0.0, t724, 0.0, 0.0, 0.0, t728,
                 0.0, 0.0, 0.0, actuator_velocities[3], 0.0, 0.0, 0.0,
                 ::overact::math::sign(actuator_velocities[3]), 0.0, 0.0, 0.0, 1.0,
-                -(t812 * t770 + t817), t905 - t912 * t873, t1003 * t961 + t1008,
-                t1097 * t1055 - t1102, t812 * t1111 + t816 * t1116, t912 * t1135 + t904 * t1140,
-                t1007 * t1164 - t1003 * t1159, t1097 * t1183 + t1101 * t1188,
-                t812 * t1209 - t816 * t766, t912 * t1228 + t904 * t869,
-                t1003 * t1247 - t1007 * t957, t1097 * t1266 + t1101 * t1051, t812 * t1109 + t817,
-                t912 * t1133 - t905, t1003 * t1157 - t1008, t1097 * t1181 + t1102,
-                t812 * t1311 - t816 * t765, -(t912 * t1324 + t904 * t868),
-                t1007 * t956 - t1003 * t1338, t1097 * t1350 + t1101 * t1050,
-                t816 * rate_dot_rod_leg1, -(t904 * minus_rate_dot_rod_leg2),
-                -(t1007 * minus_rate_dot_rod_leg3), t1101 * rate_dot_rod_leg4,
-                -(t812 * t1393 + t816 * t1399), t912 * t1417 - t904 * t1422,
-                t1003 * t1450 - t1007 * t1455, t1509, t812 * t1398, t912 * t1421, t1003 * t1454,
-                t1050 * t1497 + t1500 * t1051 + t508 * t529 + t1097 * t1487,
+                -(t814 * t772 + t819), t907 - t914 * t875, t1005 * t963 + t1010,
+                t1099 * t1057 - t1104, t814 * t1110 + t818 * t1115, t914 * t1134 + t906 * t1139,
+                t1009 * t1163 - t1005 * t1158, t1099 * t1182 + t1103 * t1187,
+                t814 * t1209 - t818 * t768, t914 * t1228 + t906 * t871,
+                t1005 * t1247 - t1009 * t959, t1099 * t1266 + t1103 * t1053, t814 * t1282 + t819,
+                t914 * t1132 - t907, t1005 * t1156 - t1010, t1099 * t1180 + t1104,
+                t814 * t1315 - t818 * t767, -(t914 * t1328 + t906 * t870),
+                t1009 * t958 - t1005 * t1342, t1099 * t1354 + t1103 * t1052,
+                t818 * rate_dot_rod_leg1, -(t906 * minus_rate_dot_rod_leg2),
+                -(t1009 * minus_rate_dot_rod_leg3), t1103 * rate_dot_rod_leg4,
+                -(t814 * t1397 + t818 * t1403), t914 * t1421 - t906 * t1426,
+                t1005 * t1454 - t1009 * t1459, t1513, t814 * t1402, t914 * t1425, t1005 * t1458,
+                t1052 * t1501 + t1504 * t1053 + t511 * t531 + t1099 * t1491,
             ],
         ])
     }
@@ -9472,7 +9506,7 @@ impl Schoenflies4 {
     /// Output: 4 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 544 operations (203 additions, 317 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 546 intermediates.
+    /// 543 operations (203 additions, 316 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 545 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9674,111 +9708,110 @@ impl Schoenflies4 {
         ::overact::guard::platform(t293, 0.35106548211906174, "actuators")?;
         ::overact::guard::platform(t293, 0.35106548211906174, "actuators")?;
         let t294 = 1.0 / t293;
-        let t295 = 0.26 * c_cross_leg1;
-        let t306 = garm_vx_leg1 * actuator_velocities[0]
+        let t296 = actuator_velocities[0] * (0.26 * c_cross_leg1);
+        let t305 = garm_vx_leg1 * actuator_velocities[0]
             + garm_vx_leg2 * actuator_velocities[1]
             + garm_vx_leg3 * actuator_velocities[2]
             + garm_vx_leg4 * actuator_velocities[3];
-        let t316 = garm_vy_leg1 * actuator_velocities[0]
+        let t315 = garm_vy_leg1 * actuator_velocities[0]
             + garm_vy_leg2 * actuator_velocities[1]
             + garm_vy_leg3 * actuator_velocities[2]
-            + garm_vy_leg4 * actuator_velocities[3] - t306 * t227;
-        let t328 = t306 * t266
+            + garm_vy_leg4 * actuator_velocities[3] - t305 * t227;
+        let t327 = t305 * t266
             - (minus_garm_vz_leg1 * actuator_velocities[0]
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]
-                + minus_garm_vz_leg4 * actuator_velocities[3]) - t287 * t316;
-        let t340 = garm_wz_leg1 * actuator_velocities[0]
+                + minus_garm_vz_leg4 * actuator_velocities[3]) - t287 * t315;
+        let t339 = garm_wz_leg1 * actuator_velocities[0]
             + garm_wz_leg2 * actuator_velocities[1]
             + garm_wz_leg3 * actuator_velocities[2]
-            + garm_wz_leg4 * actuator_velocities[3] - t306 * t201 - t231 * t316;
-        let t343 = t294 * (t340 - t291 * t328);
-        let t345 = t290 * t328 - t291 * t343;
-        let t349 = t230 * t316 - t287 * t345 - t231 * t343;
-        let t355 = t306 * t200 - t227 * t349 + t266 * t345 - t201 * t343;
-        let t356 = t13 * t343;
+            + garm_wz_leg4 * actuator_velocities[3] - t305 * t201 - t231 * t315;
+        let t342 = t294 * (t339 - t291 * t327);
+        let t344 = t290 * t327 - t291 * t342;
+        let t348 = t230 * t315 - t287 * t344 - t231 * t342;
+        let t354 = t305 * t200 - t227 * t348 + t266 * t344 - t201 * t342;
+        let t355 = t13 * t342;
         let minus_rate_cross_leg1 = grod_vy_leg1
-            * (actuator_velocities[0] * t295 + s_armcross_leg1 * (t355 - t356)
-                + c_armcross_leg1 * t345);
-        let t364 = t4 * t343;
-        let rate_rod_leg1 = grod_vy_leg1 * (t349 + t364);
-        let t367 = rate_rod_leg1 * rate_rod_leg1;
-        let t371 = t343 * t364;
-        let t374 = t343 * t356;
-        let t378 = t295 * (actuator_velocities[0] * actuator_velocities[0])
-            + 0.58 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t367)
-            - c_armcross_leg1 * t371 - t29 * (t374 - t14 * t367);
-        let rate_dot_arm_leg1 = t27 * t378;
-        let t380 = actuator_accelerations[0] - rate_dot_arm_leg1;
-        let t382 = 0.26 * c_cross_leg2;
-        let t386 = t53 * t343;
-        let t387 = t355 - t386;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t387;
-        let t389 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t391 = t52 * t343;
-        let t392 = t349 + t391;
-        let t403 = c_cross_leg2 * t87 * (c_armcross_leg2 * t392 - s_armcross_leg2 * t345)
-            + s_armcross_leg2 * t392 + c_armcross_leg2 * t345
-            + t382 * garm_vx_leg2 * t387;
-        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t403;
-        let t409 = t343 * t386;
-        let t412 = t343 * t391;
-        let t416 = t382 * (actuator_velocities[1] * actuator_velocities[1])
-            + 0.58 * c_rod_leg2 * (t389 + minus_rate_cross_leg2 * minus_rate_cross_leg2)
-            - c_armcross_leg2 * t409 - t92 * (t412 - t61 * t389);
-        let rate_dot_arm_leg2 = t88 * t416;
-        let t418 = actuator_accelerations[1] - rate_dot_arm_leg2;
-        let t422 = 0.26 * c_cross_leg3;
-        let t426 = t349 - t364;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t426;
-        let t428 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t429 = t355 + t356;
-        let t441 = s_armcross_leg3 * t429 + minus_c_armcross_leg3 * t345
+            * (t296 + s_armcross_leg1 * (t354 - t355) + c_armcross_leg1 * t344);
+        let t363 = t4 * t342;
+        let rate_rod_leg1 = grod_vy_leg1 * (t348 + t363);
+        let t366 = rate_rod_leg1 * rate_rod_leg1;
+        let t370 = t342 * t363;
+        let t373 = t342 * t355;
+        let t377 = actuator_velocities[0] * t296
+            + 0.58 * c_rod_leg1 * (minus_rate_cross_leg1 * minus_rate_cross_leg1 + t366)
+            - c_armcross_leg1 * t370 - t29 * (t373 - t14 * t366);
+        let rate_dot_arm_leg1 = t27 * t377;
+        let t379 = actuator_accelerations[0] - rate_dot_arm_leg1;
+        let t381 = 0.26 * c_cross_leg2;
+        let t385 = t53 * t342;
+        let t386 = t354 - t385;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t386;
+        let t388 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t390 = t52 * t342;
+        let t391 = t348 + t390;
+        let t402 = c_cross_leg2 * t87 * (c_armcross_leg2 * t391 - s_armcross_leg2 * t344)
+            + s_armcross_leg2 * t391 + c_armcross_leg2 * t344
+            + t381 * garm_vx_leg2 * t386;
+        let minus_rate_cross_leg2 = minus_grod_vx_leg2 * t402;
+        let t408 = t342 * t385;
+        let t411 = t342 * t390;
+        let t415 = t381 * (actuator_velocities[1] * actuator_velocities[1])
+            + 0.58 * c_rod_leg2 * (t388 + minus_rate_cross_leg2 * minus_rate_cross_leg2)
+            - c_armcross_leg2 * t408 - t92 * (t411 - t61 * t388);
+        let rate_dot_arm_leg2 = t88 * t415;
+        let t417 = actuator_accelerations[1] - rate_dot_arm_leg2;
+        let t421 = 0.26 * c_cross_leg3;
+        let t425 = t348 - t363;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t425;
+        let t427 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t428 = t354 + t355;
+        let t440 = s_armcross_leg3 * t428 + minus_c_armcross_leg3 * t344
             - c_cross_leg3 * t131
-                * (minus_c_armcross_leg3 * t429 - s_armcross_leg3 * t345)
-            - t422 * garm_vy_leg3 * t426;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t441;
-        let t451 = minus_c_armcross_leg3 * t371
-            + t422 * (actuator_velocities[2] * actuator_velocities[2])
-            + 0.58 * c_rod_leg3 * (t428 + rate_cross_leg3 * rate_cross_leg3)
-            + t136 * (t374 + t105 * t428);
-        let rate_dot_arm_leg3 = t132 * t451;
-        let t453 = actuator_accelerations[2] - rate_dot_arm_leg3;
-        let t457 = 0.26 * c_cross_leg4;
-        let t461 = t355 + t386;
-        let rate_rod_leg4 = grod_vx_leg4 * t461;
-        let t463 = rate_rod_leg4 * rate_rod_leg4;
-        let t464 = t349 - t391;
-        let t476 = s_armcross_leg4 * t464 + minus_c_armcross_leg4 * t345
+                * (minus_c_armcross_leg3 * t428 - s_armcross_leg3 * t344)
+            - t421 * garm_vy_leg3 * t425;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t440;
+        let t450 = minus_c_armcross_leg3 * t370
+            + t421 * (actuator_velocities[2] * actuator_velocities[2])
+            + 0.58 * c_rod_leg3 * (t427 + rate_cross_leg3 * rate_cross_leg3)
+            + t136 * (t373 + t105 * t427);
+        let rate_dot_arm_leg3 = t132 * t450;
+        let t452 = actuator_accelerations[2] - rate_dot_arm_leg3;
+        let t456 = 0.26 * c_cross_leg4;
+        let t460 = t354 + t385;
+        let rate_rod_leg4 = grod_vx_leg4 * t460;
+        let t462 = rate_rod_leg4 * rate_rod_leg4;
+        let t463 = t348 - t390;
+        let t475 = s_armcross_leg4 * t463 + minus_c_armcross_leg4 * t344
             - c_cross_leg4 * t160
-                * (minus_c_armcross_leg4 * t464 - s_armcross_leg4 * t345)
-            - t457 * garm_vx_leg4 * t461;
-        let rate_cross_leg4 = grod_vx_leg4 * t476;
-        let t486 = minus_c_armcross_leg4 * t409
-            + t457 * (actuator_velocities[3] * actuator_velocities[3])
-            + 0.58 * c_rod_leg4 * (t463 + rate_cross_leg4 * rate_cross_leg4)
-            + t163 * (t412 + t147 * t463);
-        let rate_dot_arm_leg4 = t161 * t486;
-        let t488 = actuator_accelerations[3] - rate_dot_arm_leg4;
-        let t497 = garm_vx_leg1 * t380 + garm_vx_leg2 * t418 + garm_vx_leg3 * t453
-            + garm_vx_leg4 * t488;
-        let t508 = garm_vy_leg1 * t380 + garm_vy_leg2 * t418 + garm_vy_leg3 * t453
-            + garm_vy_leg4 * t488 - t227 * t497;
-        let t510 = garm_wz_leg1 * t380 + garm_wz_leg2 * t418 + garm_wz_leg3 * t453
-            + garm_wz_leg4 * t488 - t201 * t497 - t231 * t508;
-        let t521 = t266 * t497
-            - (minus_garm_vz_leg1 * t380 + minus_garm_vz_leg2 * t418
-                + minus_garm_vz_leg3 * t453 + minus_garm_vz_leg4 * t488) - t287 * t508;
-        let t524 = t294 * (t510 - t291 * t521);
-        let t525 = t343 * t343;
-        let t528 = c_phi * t525 + s_phi * t524;
-        let t531 = s_phi * t525 - c_phi * t524;
-        let t535 = t290 * t521 - t291 * t524;
-        let t539 = t230 * t508 - t287 * t535 - t231 * t524;
-        let t547 = t200 * t497 - t227 * t539 + t266 * t535 - t201 * t524;
+                * (minus_c_armcross_leg4 * t463 - s_armcross_leg4 * t344)
+            - t456 * garm_vx_leg4 * t460;
+        let rate_cross_leg4 = grod_vx_leg4 * t475;
+        let t485 = minus_c_armcross_leg4 * t408
+            + t456 * (actuator_velocities[3] * actuator_velocities[3])
+            + 0.58 * c_rod_leg4 * (t462 + rate_cross_leg4 * rate_cross_leg4)
+            + t163 * (t411 + t147 * t462);
+        let rate_dot_arm_leg4 = t161 * t485;
+        let t487 = actuator_accelerations[3] - rate_dot_arm_leg4;
+        let t496 = garm_vx_leg1 * t379 + garm_vx_leg2 * t417 + garm_vx_leg3 * t452
+            + garm_vx_leg4 * t487;
+        let t507 = garm_vy_leg1 * t379 + garm_vy_leg2 * t417 + garm_vy_leg3 * t452
+            + garm_vy_leg4 * t487 - t227 * t496;
+        let t509 = garm_wz_leg1 * t379 + garm_wz_leg2 * t417 + garm_wz_leg3 * t452
+            + garm_wz_leg4 * t487 - t201 * t496 - t231 * t507;
+        let t520 = t266 * t496
+            - (minus_garm_vz_leg1 * t379 + minus_garm_vz_leg2 * t417
+                + minus_garm_vz_leg3 * t452 + minus_garm_vz_leg4 * t487) - t287 * t507;
+        let t523 = t294 * (t509 - t291 * t520);
+        let t524 = t342 * t342;
+        let t527 = c_phi * t524 + s_phi * t523;
+        let t530 = s_phi * t524 - c_phi * t523;
+        let t534 = t290 * t520 - t291 * t523;
+        let t538 = t230 * t507 - t287 * t534 - t231 * t523;
+        let t546 = t200 * t496 - t227 * t538 + t266 * t534 - t201 * t523;
         Ok([
-            [0.0, -t528, t531, t547], [0.0, -t531, -t528, t539], [0.0, 0.0, 0.0, t535 + 9.81],
-            [t524, c_phi * t539 - s_phi * t547, -(s_phi * t539 + c_phi * t547), 0.0],
+            [0.0, -t527, t530, t546], [0.0, -t530, -t527, t538], [0.0, 0.0, 0.0, t534 + 9.81],
+            [t523, c_phi * t538 - s_phi * t546, -(s_phi * t538 + c_phi * t546), 0.0],
         ])
     }
     /// The payload's columns of case 2, eq. (38).
@@ -9791,7 +9824,7 @@ impl Schoenflies4 {
     /// Output: 4 x 4.
     /// Columns: `PAYLOAD_PARAMETERS`.
     ///
-    /// 360 operations (129 additions, 207 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 354 intermediates.
+    /// 363 operations (130 additions, 209 multiplications, 24 divisions), 8 square roots, 1 trigonometric pairs, 0 signs, 357 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9830,181 +9863,180 @@ impl Schoenflies4 {
         let garm_vx_leg4 = t27 * (t14 * grod_vx_leg4);
         let t31 = t3 - t2;
         let t33 = pose[0] + t31 - 0.24;
-        let t35 = t33 * t33 + t8;
-        let t36 = 0.2704 * t35;
+        let t34 = t33 * t33;
+        let t36 = 0.2704 * (t34 + t8);
         let t37 = 1.0 / t36;
         let t38 = 0.52 * t33;
         let t39 = t12 + t11;
         let t40 = pose[1] + t39;
         let t41 = t40 * t40;
-        let t43 = t35 + t41 - 0.3364;
-        let t44 = t43 + 0.0676;
-        let t46 = 0.52 * pose[2];
-        let t48 = t36 - t44 * t44;
-        ::overact::guard::reach(t48, "leg1")?;
-        let t49 = ::overact::math::sqrt(t48);
-        let c_arm_leg1 = t37 * (t38 * t44 - t46 * t49);
-        let t54 = 1.0 - 2.972651605231867 * t41;
-        ::overact::guard::reach(t54, "leg1")?;
-        let c_rod_leg1 = ::overact::math::sqrt(t54);
+        let t44 = t34 + t41 + t8 - 0.3364;
+        let t45 = t44 + 0.0676;
+        let t47 = 0.52 * pose[2];
+        let t49 = t36 - t45 * t45;
+        ::overact::guard::reach(t49, "leg1")?;
+        let t50 = ::overact::math::sqrt(t49);
+        let c_arm_leg1 = t37 * (t38 * t45 - t47 * t50);
+        let t56 = 1.0 - 2.972651605231867 * t41;
+        ::overact::guard::reach(t56, "leg1")?;
+        let c_rod_leg1 = ::overact::math::sqrt(t56);
         ::overact::guard::leg(c_rod_leg1, 0.988789721306184, "leg1")?;
-        let t56 = 0.3016 * c_rod_leg1;
-        let s_cross_leg1 = t49 / t56;
+        let s_cross_leg1 = 1.9230769230769231 * t50 / (0.58 * c_rod_leg1);
         ::overact::guard::leg(s_cross_leg1, 0.9289529667496113, "leg1")?;
-        let minus_s_arm_leg1 = t37 * (t46 * t44 + t38 * t49);
-        let c_cross_leg1 = (-0.0676 + t43) / t56;
+        let minus_s_arm_leg1 = t37 * (t47 * t45 + t38 * t50);
+        let c_cross_leg1 = (-0.0676 + t44) / (0.3016 * c_rod_leg1);
         let s_armcross_leg1 = c_arm_leg1 * s_cross_leg1
             - minus_s_arm_leg1 * c_cross_leg1;
-        let t67 = 3.8461538461538463 / s_cross_leg1;
-        let minus_garm_vz_leg1 = s_armcross_leg1 * t67;
+        let t70 = 3.8461538461538463 / s_cross_leg1;
+        let minus_garm_vz_leg1 = s_armcross_leg1 * t70;
         let c_armcross_leg1 = c_arm_leg1 * c_cross_leg1
             + minus_s_arm_leg1 * s_cross_leg1;
-        let garm_vx_leg1 = c_armcross_leg1 * t67;
+        let garm_vx_leg1 = c_armcross_leg1 * t70;
         ::overact::guard::platform(garm_vx_leg1, 3.059875421275039, "kept actuators")?;
-        let t73 = 1.0 / garm_vx_leg1;
-        let t74 = minus_garm_vz_leg1 * t73;
-        let t76 = 1.0 / t10;
-        let t77 = 0.52 * t6;
-        let s_arm_leg4 = t76 * (t77 * t21 - t46 * t18);
+        let t76 = 1.0 / garm_vx_leg1;
+        let t77 = minus_garm_vz_leg1 * t76;
+        let t79 = 1.0 / t10;
+        let t80 = 0.52 * t6;
+        let s_arm_leg4 = t79 * (t80 * t21 - t47 * t18);
         let c_cross_leg4 = (t17 + -0.0676) / t25;
-        let minus_c_arm_leg4 = t76 * (t77 * t18 + t46 * t21);
+        let minus_c_arm_leg4 = t79 * (t80 * t18 + t47 * t21);
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
         let minus_garm_vz_leg4 = s_armcross_leg4 * t27;
-        let t92 = garm_vx_leg4 * t74 - minus_garm_vz_leg4;
-        let t94 = pose[0] - t31 + 0.24;
-        let t96 = t94 * t94 + t8;
-        let t97 = 0.2704 * t96;
-        let t98 = 1.0 / t97;
-        let t99 = 0.52 * t94;
-        let t100 = pose[1] - t39;
-        let t101 = t100 * t100;
-        let t103 = t96 + t101 - 0.3364;
-        let t104 = t103 + 0.0676;
-        let t107 = t97 - t104 * t104;
-        ::overact::guard::reach(t107, "leg3")?;
-        let t108 = ::overact::math::sqrt(t107);
-        let minus_c_arm_leg3 = t98 * (t99 * t104 + t46 * t108);
-        let t114 = 1.0 - 2.972651605231867 * t101;
-        ::overact::guard::reach(t114, "leg3")?;
-        let c_rod_leg3 = ::overact::math::sqrt(t114);
+        let t95 = garm_vx_leg4 * t77 - minus_garm_vz_leg4;
+        let t97 = pose[0] - t31 + 0.24;
+        let t99 = t97 * t97 + t8;
+        let t100 = 0.2704 * t99;
+        let t101 = 1.0 / t100;
+        let t102 = 0.52 * t97;
+        let t103 = pose[1] - t39;
+        let t104 = t103 * t103;
+        let t106 = t99 + t104 - 0.3364;
+        let t107 = t106 + 0.0676;
+        let t110 = t100 - t107 * t107;
+        ::overact::guard::reach(t110, "leg3")?;
+        let t111 = ::overact::math::sqrt(t110);
+        let minus_c_arm_leg3 = t101 * (t102 * t107 + t47 * t111);
+        let t117 = 1.0 - 2.972651605231867 * t104;
+        ::overact::guard::reach(t117, "leg3")?;
+        let c_rod_leg3 = ::overact::math::sqrt(t117);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
-        let t116 = 0.3016 * c_rod_leg3;
-        let c_cross_leg3 = (-0.0676 + t103) / t116;
-        let s_arm_leg3 = t98 * (t99 * t108 - t46 * t104);
-        let s_cross_leg3 = t108 / t116;
+        let t119 = 0.3016 * c_rod_leg3;
+        let c_cross_leg3 = (-0.0676 + t106) / t119;
+        let s_arm_leg3 = t101 * (t102 * t111 - t47 * t107);
+        let s_cross_leg3 = t111 / t119;
         ::overact::guard::leg(s_cross_leg3, 0.9289529667496113, "leg3")?;
         let minus_c_armcross_leg3 = minus_c_arm_leg3 * c_cross_leg3
             + s_arm_leg3 * s_cross_leg3;
-        let t126 = 3.8461538461538463 / s_cross_leg3;
-        let garm_vx_leg3 = minus_c_armcross_leg3 * t126;
+        let t129 = 3.8461538461538463 / s_cross_leg3;
+        let garm_vx_leg3 = minus_c_armcross_leg3 * t129;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t126;
-        let t134 = garm_vx_leg3 * t74 - minus_garm_vz_leg3;
-        ::overact::guard::platform(t134, 5.57829169092126, "kept actuators")?;
-        let t135 = 1.0 / t134;
-        let t136 = garm_vx_leg3 * t73 * t135;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t129;
+        let t137 = garm_vx_leg3 * t77 - minus_garm_vz_leg3;
+        ::overact::guard::platform(t137, 5.57829169092126, "kept actuators")?;
+        let t138 = 1.0 / t137;
+        let t139 = garm_vx_leg3 * t76 * t138;
         let minus_c_armcross_leg4 = minus_c_arm_leg4 * c_cross_leg4
             + s_arm_leg4 * s_cross_leg4;
         let garm_vy_leg4 = minus_c_armcross_leg4 * t27;
         let grod_vy_leg1 = 1.7241379310344827 / c_rod_leg1;
-        let garm_vy_leg1 = t67 * (t40 * grod_vy_leg1);
-        let t147 = garm_vy_leg1 * t73;
+        let garm_vy_leg1 = t70 * (t40 * grod_vy_leg1);
+        let t150 = garm_vy_leg1 * t76;
         let minus_grod_vy_leg3 = 1.7241379310344827 / c_rod_leg3;
-        let garm_vy_leg3 = t126 * (t100 * minus_grod_vy_leg3);
-        let t155 = (garm_vy_leg3 - garm_vx_leg3 * t147) * t135;
-        let t157 = garm_vy_leg4 - garm_vx_leg4 * t147 - t92 * t155;
-        let t159 = pose[1] + t4 - 0.24;
-        let t161 = t159 * t159 + t8;
-        let t162 = 0.2704 * t161;
-        let t163 = pose[0] + t13;
-        let t164 = t163 * t163;
-        let t166 = t161 + t164 - 0.3364;
-        let t167 = t166 + 0.0676;
-        let t169 = t162 - t167 * t167;
-        ::overact::guard::reach(t169, "leg2")?;
-        let t170 = ::overact::math::sqrt(t169);
-        let t172 = 1.0 - 2.972651605231867 * t164;
+        let garm_vy_leg3 = t129 * (t103 * minus_grod_vy_leg3);
+        let t158 = (garm_vy_leg3 - garm_vx_leg3 * t150) * t138;
+        let t160 = garm_vy_leg4 - garm_vx_leg4 * t150 - t95 * t158;
+        let t162 = pose[1] + t4 - 0.24;
+        let t164 = t162 * t162 + t8;
+        let t165 = 0.2704 * t164;
+        let t166 = pose[0] + t13;
+        let t167 = t166 * t166;
+        let t169 = t164 + t167 - 0.3364;
+        let t170 = t169 + 0.0676;
+        let t172 = t165 - t170 * t170;
         ::overact::guard::reach(t172, "leg2")?;
-        let c_rod_leg2 = ::overact::math::sqrt(t172);
+        let t173 = ::overact::math::sqrt(t172);
+        let t175 = 1.0 - 2.972651605231867 * t167;
+        ::overact::guard::reach(t175, "leg2")?;
+        let c_rod_leg2 = ::overact::math::sqrt(t175);
         ::overact::guard::leg(c_rod_leg2, 0.988789721306184, "leg2")?;
-        let t174 = 0.3016 * c_rod_leg2;
-        let s_cross_leg2 = t170 / t174;
+        let t177 = 0.3016 * c_rod_leg2;
+        let s_cross_leg2 = t173 / t177;
         ::overact::guard::leg(s_cross_leg2, 0.9289529667496113, "leg2")?;
-        let t176 = 3.8461538461538463 / s_cross_leg2;
+        let t179 = 3.8461538461538463 / s_cross_leg2;
         let minus_grod_vx_leg2 = 1.7241379310344827 / c_rod_leg2;
-        let garm_vx_leg2 = t176 * (t163 * minus_grod_vx_leg2);
-        let t181 = 1.0 / t162;
-        let t182 = 0.52 * t159;
-        let c_arm_leg2 = t181 * (t182 * t167 - t46 * t170);
-        let minus_s_arm_leg2 = t181 * (t46 * t167 + t182 * t170);
-        let c_cross_leg2 = (-0.0676 + t166) / t174;
+        let garm_vx_leg2 = t179 * (t166 * minus_grod_vx_leg2);
+        let t184 = 1.0 / t165;
+        let t185 = 0.52 * t162;
+        let c_arm_leg2 = t184 * (t185 * t170 - t47 * t173);
+        let minus_s_arm_leg2 = t184 * (t47 * t170 + t185 * t173);
+        let c_cross_leg2 = (-0.0676 + t169) / t177;
         let s_armcross_leg2 = c_arm_leg2 * s_cross_leg2
             - minus_s_arm_leg2 * c_cross_leg2;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t176;
-        let t197 = garm_vx_leg2 * t74 - minus_garm_vz_leg2;
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t179;
+        let t200 = garm_vx_leg2 * t77 - minus_garm_vz_leg2;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2
             + minus_s_arm_leg2 * s_cross_leg2;
-        let garm_vy_leg2 = c_armcross_leg2 * t176;
-        let t208 = garm_vy_leg2 - garm_vx_leg2 * t147 - t197 * t155;
-        ::overact::guard::platform(t208, 2.9321258366411205, "kept actuators")?;
-        let t209 = 1.0 / t208;
-        let t210 = (t197 * t136 - garm_vx_leg2 * t73) * t209;
+        let garm_vy_leg2 = c_armcross_leg2 * t179;
+        let t211 = garm_vy_leg2 - garm_vx_leg2 * t150 - t200 * t158;
+        ::overact::guard::platform(t211, 2.9321258366411205, "kept actuators")?;
+        let t212 = 1.0 / t211;
+        let t213 = (t200 * t139 - garm_vx_leg2 * t76) * t212;
         let garm_wz_leg4 = t4 * garm_vx_leg4 - t13 * garm_vy_leg4;
         let garm_wz_leg1 = t31 * garm_vy_leg1 - t39 * garm_vx_leg1;
-        let t219 = garm_wz_leg1 * t73;
+        let t222 = garm_wz_leg1 * t76;
         let garm_wz_leg3 = t39 * garm_vx_leg3 - t31 * garm_vy_leg3;
-        let t227 = (garm_wz_leg3 - garm_vx_leg3 * t219) * t135;
+        let t230 = (garm_wz_leg3 - garm_vx_leg3 * t222) * t138;
         let garm_wz_leg2 = t13 * garm_vy_leg2 - t4 * garm_vx_leg2;
-        let t237 = (garm_wz_leg2 - garm_vx_leg2 * t219 - t197 * t227) * t209;
-        let t239 = garm_wz_leg4 - garm_vx_leg4 * t219 - t92 * t227 - t157 * t237;
-        ::overact::guard::platform(t239, 1.1850155815331067, "kept actuators")?;
-        let t240 = 1.0 / t239;
-        let t241 = (t92 * t136 - garm_vx_leg4 * t73 - t157 * t210) * t240;
-        let t244 = t157 * t209 * t240;
-        let t247 = t197 * t135 * t209;
-        let t251 = (t157 * t247 - t92 * t135) * t240;
-        let t256 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t261 = t147 + t74 * t155;
-        let t267 = t219 + t74 * t227 - t261 * t237;
-        let t269 = t73 - t74 * t136 - t261 * t210 - t267 * t241;
-        let t270 = twist[3] * twist[3];
-        let t273 = c_phi * t270 + s_phi * acceleration[3];
-        let t276 = t210 - t237 * t241;
-        let t279 = s_phi * t270 - c_phi * acceleration[3];
-        let t285 = t267 * t244 - t261 * t209;
-        let t288 = t209 + t237 * t244;
-        let t294 = t247 + t237 * t251;
-        let t300 = t74 * t135 + t261 * t247 - t267 * t251;
-        let t305 = t267 * t240;
-        let t307 = t237 * t240;
-        let t317 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t341 = t227 - t155 * t237;
-        let t344 = acceleration[2] + 9.81;
+        let t240 = (garm_wz_leg2 - garm_vx_leg2 * t222 - t200 * t230) * t212;
+        let t242 = garm_wz_leg4 - garm_vx_leg4 * t222 - t95 * t230 - t160 * t240;
+        ::overact::guard::platform(t242, 1.1850155815331067, "kept actuators")?;
+        let t243 = 1.0 / t242;
+        let t244 = (t95 * t139 - garm_vx_leg4 * t76 - t160 * t213) * t243;
+        let t247 = t160 * t212 * t243;
+        let t250 = t200 * t138 * t212;
+        let t254 = (t160 * t250 - t95 * t138) * t243;
+        let t259 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t264 = t150 + t77 * t158;
+        let t270 = t222 + t77 * t230 - t264 * t240;
+        let t272 = t76 - t77 * t139 - t264 * t213 - t270 * t244;
+        let t273 = twist[3] * twist[3];
+        let t276 = c_phi * t273 + s_phi * acceleration[3];
+        let t279 = t213 - t240 * t244;
+        let t282 = s_phi * t273 - c_phi * acceleration[3];
+        let t288 = t270 * t247 - t264 * t212;
+        let t291 = t212 + t240 * t247;
+        let t297 = t250 + t240 * t254;
+        let t303 = t77 * t138 + t264 * t250 - t270 * t254;
+        let t308 = t270 * t243;
+        let t310 = t240 * t243;
+        let t320 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t344 = t230 - t158 * t240;
+        let t347 = acceleration[2] + 9.81;
         Ok([
             [
-                t241 * acceleration[3], t241 * t256 - (t269 * t273 + t276 * t279),
-                t269 * t279 - t276 * t273 - t241 * t317,
-                t269 * acceleration[0] + t276 * acceleration[1]
-                    - (t136 + t155 * t210 + t341 * t241) * t344,
+                t244 * acceleration[3], t244 * t259 - (t272 * t276 + t279 * t282),
+                t272 * t282 - t279 * t276 - t244 * t320,
+                t272 * acceleration[0] + t279 * acceleration[1]
+                    - (t139 + t158 * t213 + t344 * t244) * t347,
             ],
             [
-                -(t244 * acceleration[3]), -(t285 * t273 + t288 * t279 + t244 * t256),
-                t285 * t279 - t288 * t273 + t244 * t317,
-                t285 * acceleration[0] + t288 * acceleration[1]
-                    + (t341 * t244 - t155 * t209) * t344,
+                -(t247 * acceleration[3]), -(t288 * t276 + t291 * t282 + t247 * t259),
+                t288 * t282 - t291 * t276 + t247 * t320,
+                t288 * acceleration[0] + t291 * acceleration[1]
+                    + (t344 * t247 - t158 * t212) * t347,
             ],
             [
-                t251 * acceleration[3], t294 * t279 - t300 * t273 + t251 * t256,
-                t300 * t279 + t294 * t273 - t251 * t317,
-                t300 * acceleration[0] - t294 * acceleration[1]
-                    + (t135 + t155 * t247 - t341 * t251) * t344,
+                t254 * acceleration[3], t297 * t282 - t303 * t276 + t254 * t259,
+                t303 * t282 + t297 * t276 - t254 * t320,
+                t303 * acceleration[0] - t297 * acceleration[1]
+                    + (t138 + t158 * t250 - t344 * t254) * t347,
             ],
             [
-                t240 * acceleration[3], t305 * t273 + t307 * t279 + t240 * t256,
-                t307 * t273 - t305 * t279 - t240 * t317,
-                -(t305 * acceleration[0] + t307 * acceleration[1] + t341 * t240 * t344),
+                t243 * acceleration[3], t308 * t276 + t310 * t282 + t243 * t259,
+                t310 * t276 - t308 * t282 - t243 * t320,
+                -(t308 * acceleration[0] + t310 * acceleration[1] + t344 * t243 * t347),
             ],
         ])
     }
@@ -10804,7 +10836,7 @@ impl Schoenflies4 {
     ///
     /// Output: 4.
     ///
-    /// 1113 operations (459 additions, 642 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1139 intermediates.
+    /// 1104 operations (455 additions, 637 multiplications, 12 divisions), 0 square roots, 13 trigonometric pairs, 4 signs, 1130 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -10876,447 +10908,446 @@ impl Schoenflies4 {
             + parameters[4] * rate_arm_leg1
             + ::overact::math::signed(parameters[5], rate_arm_leg1) + parameters[6];
         let t83 = 0.26 * s_cross_leg1;
-        let t85 = t38 * t51;
-        let t87 = 2.972651605231867 * (t85 * t85);
-        let t88 = t53 - t87;
-        let t89 = t38 * t88;
+        let t85 = 1.7241379310344827 * t51;
+        let t86 = t85 * t85;
+        let t87 = t38 * t86;
         let rate_dot_rod_leg1 = grod_vy_leg1 * t65;
-        let t91 = t89 - rate_dot_rod_leg1;
-        let t96 = 0.26 * rate_dot_arm_leg1;
-        let t102 = t40 * minus_rate_cross_leg1;
-        let t107 = 1.7241379310344827
-            * (c_cross_leg1 * t96 + s_armcross_leg1 * t25
-                + c_armcross_leg1 * acceleration[2] + t83 * t43 + t102 + t102);
-        let t110 = t96 - t70;
-        let t113 = t73 + 0.26 * t43;
-        let t115 = s_cross_leg1 * t110 - c_cross_leg1 * t113;
-        let t116 = c_rod_leg1 * t115;
-        let t119 = c_rod_leg1 * t83
-            * (parameters[14] * t91 - parameters[13] * (t88 + t55)
-                - parameters[15] * t107 + parameters[16] * t116);
-        let t121 = t89 + rate_dot_rod_leg1;
-        let t126 = t38 * t107;
-        let t129 = s_rod_leg1 * t115;
-        let t132 = t83 * s_rod_leg1
-            * (parameters[13] * t121 - parameters[14] * (t87 + t55)
-                + parameters[15] * t126 - parameters[16] * t129);
-        let t134 = 1.7241379310344827 * t102;
-        let t135 = t134 - t107;
-        let t136 = t134 + t135;
-        let t139 = rate_rod_leg1 * (1.7241379310344827 * t51);
-        let t140 = t126 + t139;
-        let t141 = t139 + t140;
-        let t148 = s_cross_leg1 * t113 + c_cross_leg1 * t110;
-        let t152 = t119 - t132
+        let t89 = t87 - rate_dot_rod_leg1;
+        let t94 = 0.26 * rate_dot_arm_leg1;
+        let t100 = t40 * minus_rate_cross_leg1;
+        let t105 = 1.7241379310344827
+            * (c_cross_leg1 * t94 + s_armcross_leg1 * t25
+                + c_armcross_leg1 * acceleration[2] + t83 * t43 + t100 + t100);
+        let t108 = t94 - t70;
+        let t111 = t73 + 0.26 * t43;
+        let t113 = s_cross_leg1 * t108 - c_cross_leg1 * t111;
+        let t114 = c_rod_leg1 * t113;
+        let t117 = c_rod_leg1 * t83
+            * (parameters[14] * t89 - parameters[13] * (t86 + t55)
+                - parameters[15] * t105 + parameters[16] * t114);
+        let t119 = t87 + rate_dot_rod_leg1;
+        let t121 = t38 * t87;
+        let t125 = t38 * t105;
+        let t128 = s_rod_leg1 * t113;
+        let t131 = t83 * s_rod_leg1
+            * (parameters[13] * t119 - parameters[14] * (t121 + t55)
+                + parameters[15] * t125 - parameters[16] * t128);
+        let t133 = 1.7241379310344827 * t100;
+        let t134 = t133 - t105;
+        let t135 = t133 + t134;
+        let t137 = rate_rod_leg1 * t85;
+        let t138 = t125 + t137;
+        let t139 = t137 + t138;
+        let t146 = s_cross_leg1 * t111 + c_cross_leg1 * t108;
+        let t150 = t117 - t131
             + t29
-                * (parameters[13] * t136 + parameters[14] * t141 + parameters[15] * t53
-                    + parameters[16] * t148);
-        let t153 = t82 + t152;
+                * (parameters[13] * t135 + parameters[14] * t139 + parameters[15] * t53
+                    + parameters[16] * t146);
+        let t151 = t82 + t150;
         let minus_gcross_vx_leg1 = grod_vy_leg1 * (t10 * c_arm_leg1);
-        let t166 = parameters[8] * t136 - parameters[7] * t140 + parameters[9] * t121
-            + parameters[10] * t139 + parameters[11] * (t88 - t55);
-        let t183 = parameters[9] * (t55 - t87)
-            - (parameters[7] * t134 + parameters[8] * t141) + parameters[10] * t135
-            - parameters[11] * t91;
-        let t191 = s_rod_leg1
-            * (t166 - parameters[12] * t139 - parameters[14] * t148
-                + parameters[15] * t129)
+        let t164 = parameters[8] * t135 - parameters[7] * t138 + parameters[9] * t119
+            + parameters[10] * t137 + parameters[11] * (t86 - t55);
+        let t181 = parameters[9] * (t55 - t121)
+            - (parameters[7] * t133 + parameters[8] * t139) + parameters[10] * t134
+            - parameters[11] * t89;
+        let t189 = s_rod_leg1
+            * (t164 - parameters[12] * t137 - parameters[14] * t146
+                + parameters[15] * t128)
             + c_rod_leg1
-                * (t183 + parameters[12] * t134 + parameters[13] * t148
-                    + parameters[15] * t116);
-        let t196 = 1.0 / c_rod_leg2;
-        let minus_grod_vx_leg2 = 1.7241379310344827 * t196;
-        let t200 = 0.26 * c_cross_leg2;
-        let t201 = 1.0 / s_cross_leg2;
-        let t202 = 3.8461538461538463 * t201;
-        let t203 = s_rod_leg2 * t196;
-        let minus_garm_vx_leg2 = t202 * t203;
-        let t205 = t200 * minus_garm_vx_leg2;
-        let gcross_vx_leg2 = minus_grod_vx_leg2 * t205;
-        let t207 = t21 + t20;
-        let t208 = t207 * acceleration[3];
-        let t210 = t16 - t15;
-        let t211 = t210 * twist[3];
-        let t212 = twist[3] * t211;
-        let t214 = 0.58 * s_rod_leg2;
-        let t215 = t207 * twist[3];
-        let t216 = twist[0] - t215;
-        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t216;
-        let t218 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
-        let t220 = acceleration[0] - t208 - t212 - t214 * t218;
-        let t222 = c_cross_leg2 * t201;
+                * (t181 + parameters[12] * t133 + parameters[13] * t146
+                    + parameters[15] * t114);
+        let t194 = 1.0 / c_rod_leg2;
+        let minus_grod_vx_leg2 = 1.7241379310344827 * t194;
+        let t198 = 0.26 * c_cross_leg2;
+        let t199 = 1.0 / s_cross_leg2;
+        let t200 = 3.8461538461538463 * t199;
+        let t201 = s_rod_leg2 * t194;
+        let minus_garm_vx_leg2 = t200 * t201;
+        let t203 = t198 * minus_garm_vx_leg2;
+        let gcross_vx_leg2 = minus_grod_vx_leg2 * t203;
+        let t205 = t21 + t20;
+        let t206 = t205 * acceleration[3];
+        let t208 = t16 - t15;
+        let t209 = t208 * twist[3];
+        let t210 = twist[3] * t209;
+        let t212 = t205 * twist[3];
+        let t213 = twist[0] - t212;
+        let minus_rate_rod_leg2 = minus_grod_vx_leg2 * t213;
+        let t215 = t201 * t213;
+        let t217 = acceleration[0] - t206 - t210 - minus_rate_rod_leg2 * t215;
+        let t219 = c_cross_leg2 * t199;
         let c_armcross_leg2 = c_arm_leg2 * c_cross_leg2 - s_arm_leg2 * s_cross_leg2;
         let s_armcross_leg2 = s_arm_leg2 * c_cross_leg2 + c_arm_leg2 * s_cross_leg2;
-        let t231 = t210 * acceleration[3];
-        let t233 = twist[3] * t215;
-        let t234 = acceleration[1] + t231 - t233;
-        let t238 = twist[1] + t211;
-        let t241 = c_armcross_leg2 * t238 - s_armcross_leg2 * twist[2];
-        let t242 = t203 * t216;
-        let rate_arm_leg2 = t202 * (t241 - t242);
-        let t245 = rate_arm_leg2 * rate_arm_leg2;
-        let t254 = t205 * t216
-            - (t222 * t241 + s_armcross_leg2 * t238 + c_armcross_leg2 * twist[2]);
-        let rate_cross_leg2 = minus_grod_vx_leg2 * t254;
-        let t256 = rate_cross_leg2 * rate_cross_leg2;
-        let t260 = c_armcross_leg2 * t234 - s_armcross_leg2 * acceleration[2]
-            + t200 * t245 + 0.58 * c_rod_leg2 * (t218 + t256);
-        let t265 = 0.26 * s_cross_leg2;
-        let t267 = rate_cross_leg2 * t242;
-        let t272 = t205 * t220
-            - (t222 * t260 + s_armcross_leg2 * t234 + c_armcross_leg2 * acceleration[2]
-                + t265 * t245 + t267 + t267);
-        let t273 = 1.7241379310344827 * t272;
-        let t274 = t203 * t273;
-        let t276 = minus_rate_rod_leg2 * (1.7241379310344827 * t254);
-        let t277 = t274 - t276;
-        let t279 = 1.7241379310344827 * t267;
-        let t280 = t279 + t273;
-        let t281 = t279 + t280;
-        let t284 = t214 * rate_cross_leg2;
-        let t286 = 2.972651605231867 * (t284 * t284);
-        let t287 = t256 - t286;
-        let t288 = t203 * t287;
-        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t220;
-        let t290 = t288 - minus_rate_dot_rod_leg2;
-        let t297 = parameters[24] * t277 + parameters[25] * t281 + parameters[26] * t290
-            + parameters[27] * t276 + parameters[28] * (t287 - t218);
-        let t300 = 9.81 * s_arm_leg2;
-        let t302 = t300 + 0.26 * t245;
-        let rate_dot_arm_leg2 = t202 * (t260 - t203 * t220);
-        let t308 = 9.81 * c_arm_leg2;
-        let t309 = 0.26 * rate_dot_arm_leg2 - t308;
-        let t311 = s_cross_leg2 * t302 + c_cross_leg2 * t309;
-        let t316 = s_cross_leg2 * t309 - c_cross_leg2 * t302;
-        let t317 = s_rod_leg2 * t316;
-        let t321 = t277 - t276;
-        let t330 = t288 + minus_rate_dot_rod_leg2;
-        let t332 = parameters[25] * t321 - parameters[24] * t279
-            + parameters[26] * (t218 - t286) + parameters[27] * t280
-            - parameters[28] * t330;
-        let t337 = c_rod_leg2 * t316;
-        let t341 = s_rod_leg2
-            * (t297 - parameters[29] * t276 - parameters[31] * t311
-                + parameters[32] * t317)
+        let t228 = t208 * acceleration[3];
+        let t230 = twist[3] * t212;
+        let t231 = acceleration[1] + t228 - t230;
+        let t235 = twist[1] + t209;
+        let t238 = c_armcross_leg2 * t235 - s_armcross_leg2 * twist[2];
+        let rate_arm_leg2 = t200 * (t238 - t215);
+        let t241 = rate_arm_leg2 * rate_arm_leg2;
+        let t244 = minus_rate_rod_leg2 * minus_rate_rod_leg2;
+        let t251 = t203 * t213
+            - (t219 * t238 + s_armcross_leg2 * t235 + c_armcross_leg2 * twist[2]);
+        let rate_cross_leg2 = minus_grod_vx_leg2 * t251;
+        let t253 = rate_cross_leg2 * rate_cross_leg2;
+        let t257 = c_armcross_leg2 * t231 - s_armcross_leg2 * acceleration[2]
+            + t198 * t241 + 0.58 * c_rod_leg2 * (t244 + t253);
+        let t262 = 0.26 * s_cross_leg2;
+        let t264 = rate_cross_leg2 * t215;
+        let t269 = t203 * t217
+            - (t219 * t257 + s_armcross_leg2 * t231 + c_armcross_leg2 * acceleration[2]
+                + t262 * t241 + t264 + t264);
+        let t270 = 1.7241379310344827 * t269;
+        let t271 = t201 * t270;
+        let t272 = 1.7241379310344827 * t251;
+        let t273 = minus_rate_rod_leg2 * t272;
+        let t274 = t271 - t273;
+        let t276 = 1.7241379310344827 * t264;
+        let t277 = t276 + t270;
+        let t278 = t276 + t277;
+        let t281 = t272 * t272;
+        let t282 = t201 * t281;
+        let minus_rate_dot_rod_leg2 = minus_grod_vx_leg2 * t217;
+        let t284 = t282 - minus_rate_dot_rod_leg2;
+        let t291 = parameters[24] * t274 + parameters[25] * t278 + parameters[26] * t284
+            + parameters[27] * t273 + parameters[28] * (t281 - t244);
+        let t294 = 9.81 * s_arm_leg2;
+        let t296 = t294 + 0.26 * t241;
+        let rate_dot_arm_leg2 = t200 * (t257 - t201 * t217);
+        let t302 = 9.81 * c_arm_leg2;
+        let t303 = 0.26 * rate_dot_arm_leg2 - t302;
+        let t305 = s_cross_leg2 * t296 + c_cross_leg2 * t303;
+        let t310 = s_cross_leg2 * t303 - c_cross_leg2 * t296;
+        let t311 = s_rod_leg2 * t310;
+        let t315 = t274 - t273;
+        let t319 = t201 * t282;
+        let t325 = t282 + minus_rate_dot_rod_leg2;
+        let t327 = parameters[25] * t315 - parameters[24] * t276
+            + parameters[26] * (t244 - t319) + parameters[27] * t277
+            - parameters[28] * t325;
+        let t332 = c_rod_leg2 * t310;
+        let t336 = s_rod_leg2
+            * (t291 - parameters[29] * t273 - parameters[31] * t305
+                + parameters[32] * t311)
             + c_rod_leg2
-                * (t332 + parameters[29] * t279 + parameters[30] * t311
-                    + parameters[32] * t337);
-        let t354 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t308
-            + parameters[19] * t300 + parameters[20] * rate_dot_arm_leg2
+                * (t327 + parameters[29] * t276 + parameters[30] * t305
+                    + parameters[32] * t332);
+        let t349 = parameters[17] * rate_dot_arm_leg2 - parameters[18] * t302
+            + parameters[19] * t294 + parameters[20] * rate_dot_arm_leg2
             + parameters[21] * rate_arm_leg2
             + ::overact::math::signed(parameters[22], rate_arm_leg2) + parameters[23];
-        let t364 = c_rod_leg2 * t265
-            * (parameters[31] * t330 - parameters[30] * (t287 + t218)
-                + parameters[32] * t273 + parameters[33] * t337);
-        let t374 = t265 * s_rod_leg2
-            * (parameters[30] * t290 - parameters[31] * (t286 + t218)
-                - parameters[32] * t274 - parameters[33] * t317);
-        let t384 = t364 - t374
-            - t200
-                * (parameters[31] * t321 - parameters[30] * t281 - parameters[32] * t256
-                    - parameters[33] * t311);
-        let t385 = t354 + t384;
-        let t397 = parameters[25] * (t286 - t287) - parameters[24] * t288
-            + parameters[26] * t274 + parameters[27] * t288 + parameters[28] * t273;
-        let t404 = minus_grod_vx_leg2
-            * (t397 - parameters[29] * minus_rate_dot_rod_leg2 - parameters[30] * t317
-                - parameters[31] * t337);
-        let t409 = 1.0 / c_rod_leg3;
-        let minus_grod_vy_leg3 = 1.7241379310344827 * t409;
-        let t413 = 1.0 / s_cross_leg3;
-        let gcross_vx_leg3 = minus_grod_vy_leg3 * (t413 * c_arm_leg3);
-        let t418 = s_rod_leg3 * t409;
+        let t359 = c_rod_leg2 * t262
+            * (parameters[31] * t325 - parameters[30] * (t281 + t244)
+                + parameters[32] * t270 + parameters[33] * t332);
+        let t369 = t262 * s_rod_leg2
+            * (parameters[30] * t284 - parameters[31] * (t319 + t244)
+                - parameters[32] * t271 - parameters[33] * t311);
+        let t379 = t359 - t369
+            - t198
+                * (parameters[31] * t315 - parameters[30] * t278 - parameters[32] * t253
+                    - parameters[33] * t305);
+        let t380 = t349 + t379;
+        let t392 = parameters[25] * (t319 - t281) - parameters[24] * t282
+            + parameters[26] * t271 + parameters[27] * t282 + parameters[28] * t270;
+        let t399 = minus_grod_vx_leg2
+            * (t392 - parameters[29] * minus_rate_dot_rod_leg2 - parameters[30] * t311
+                - parameters[31] * t332);
+        let t404 = 1.0 / c_rod_leg3;
+        let minus_grod_vy_leg3 = 1.7241379310344827 * t404;
+        let t408 = 1.0 / s_cross_leg3;
+        let gcross_vx_leg3 = minus_grod_vy_leg3 * (t408 * c_arm_leg3);
+        let t413 = s_rod_leg3 * t404;
         let c_armcross_leg3 = c_arm_leg3 * c_cross_leg3 - s_arm_leg3 * s_cross_leg3;
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3 + c_arm_leg3 * s_cross_leg3;
-        let t426 = acceleration[0] + t18 + t24;
-        let t430 = 0.26 * s_cross_leg3;
-        let t431 = 3.8461538461538463 * t413;
-        let t432 = twist[0] + t30;
-        let t435 = c_armcross_leg3 * t432 + s_armcross_leg3 * twist[2];
-        let t436 = twist[1] - t23;
-        let t437 = t418 * t436;
-        let minus_rate_arm_leg3 = t431 * (t435 + t437);
-        let t440 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
-        let t442 = c_cross_leg3 * t413;
-        let t448 = 0.26 * c_cross_leg3;
-        let minus_garm_vy_leg3 = t431 * t418;
-        let t450 = t448 * minus_garm_vy_leg3;
-        let t452 = t442 * t435 + s_armcross_leg3 * t432 - c_armcross_leg3 * twist[2]
-            + t450 * t436;
-        let rate_cross_leg3 = minus_grod_vy_leg3 * t452;
-        let t454 = t437 * rate_cross_leg3;
-        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t436;
-        let t461 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
-        let t462 = rate_cross_leg3 * rate_cross_leg3;
-        let t469 = t448 * t440 + 0.58 * c_rod_leg3 * (t461 + t462)
-            - (c_armcross_leg3 * t426 + s_armcross_leg3 * acceleration[2]);
-        let t475 = acceleration[1] - t60 + t62 - t437 * minus_rate_rod_leg3;
-        let t477 = s_armcross_leg3 * t426 - c_armcross_leg3 * acceleration[2]
-            - (t430 * t440 + t454 + t454) - t442 * t469 + t450 * t475;
-        let t478 = 1.7241379310344827 * t477;
-        let t479 = t418 * t478;
-        let t481 = minus_rate_rod_leg3 * (1.7241379310344827 * t452);
-        let t482 = t479 - t481;
-        let t484 = 1.7241379310344827 * t454;
-        let t485 = t484 + t478;
-        let t486 = t484 + t485;
-        let t489 = t418 * t452;
-        let t491 = 2.972651605231867 * (t489 * t489);
-        let t492 = t462 - t491;
-        let t493 = t418 * t492;
-        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t475;
-        let t495 = t493 - minus_rate_dot_rod_leg3;
-        let t502 = parameters[41] * t482 + parameters[42] * t486 + parameters[43] * t495
-            + parameters[44] * t481 + parameters[45] * (t492 - t461);
-        let t505 = 9.81 * s_arm_leg3;
-        let t507 = t505 + 0.26 * t440;
-        let rate_dot_arm_leg3 = t431 * (t469 - t418 * t475);
-        let t513 = 9.81 * c_arm_leg3;
-        let t514 = 0.26 * rate_dot_arm_leg3 - t513;
-        let t516 = s_cross_leg3 * t507 + c_cross_leg3 * t514;
-        let t521 = s_cross_leg3 * t514 - c_cross_leg3 * t507;
-        let t522 = s_rod_leg3 * t521;
-        let t526 = t482 - t481;
-        let t535 = t493 + minus_rate_dot_rod_leg3;
-        let t537 = parameters[42] * t526 - parameters[41] * t484
-            + parameters[43] * (t461 - t491) + parameters[44] * t485
-            - parameters[45] * t535;
-        let t542 = c_rod_leg3 * t521;
-        let t546 = s_rod_leg3
-            * (t502 - parameters[46] * t481 - parameters[48] * t516
-                + parameters[49] * t522)
+        let t421 = acceleration[0] + t18 + t24;
+        let t425 = 0.26 * s_cross_leg3;
+        let t426 = 3.8461538461538463 * t408;
+        let t427 = twist[0] + t30;
+        let t430 = c_armcross_leg3 * t427 + s_armcross_leg3 * twist[2];
+        let t431 = twist[1] - t23;
+        let t432 = t413 * t431;
+        let minus_rate_arm_leg3 = t426 * (t430 + t432);
+        let t435 = minus_rate_arm_leg3 * minus_rate_arm_leg3;
+        let t437 = c_cross_leg3 * t408;
+        let t443 = 0.26 * c_cross_leg3;
+        let minus_garm_vy_leg3 = t426 * t413;
+        let t445 = t443 * minus_garm_vy_leg3;
+        let t447 = t437 * t430 + s_armcross_leg3 * t427 - c_armcross_leg3 * twist[2]
+            + t445 * t431;
+        let rate_cross_leg3 = minus_grod_vy_leg3 * t447;
+        let t449 = t432 * rate_cross_leg3;
+        let minus_rate_rod_leg3 = minus_grod_vy_leg3 * t431;
+        let t456 = minus_rate_rod_leg3 * minus_rate_rod_leg3;
+        let t457 = rate_cross_leg3 * rate_cross_leg3;
+        let t464 = t443 * t435 + 0.58 * c_rod_leg3 * (t456 + t457)
+            - (c_armcross_leg3 * t421 + s_armcross_leg3 * acceleration[2]);
+        let t470 = acceleration[1] - t60 + t62 - t432 * minus_rate_rod_leg3;
+        let t472 = s_armcross_leg3 * t421 - c_armcross_leg3 * acceleration[2]
+            - (t425 * t435 + t449 + t449) - t437 * t464 + t445 * t470;
+        let t473 = 1.7241379310344827 * t472;
+        let t474 = t413 * t473;
+        let t475 = 1.7241379310344827 * t447;
+        let t476 = minus_rate_rod_leg3 * t475;
+        let t477 = t474 - t476;
+        let t479 = 1.7241379310344827 * t449;
+        let t480 = t479 + t473;
+        let t481 = t479 + t480;
+        let t484 = t475 * t475;
+        let t485 = t413 * t484;
+        let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t470;
+        let t487 = t485 - minus_rate_dot_rod_leg3;
+        let t494 = parameters[41] * t477 + parameters[42] * t481 + parameters[43] * t487
+            + parameters[44] * t476 + parameters[45] * (t484 - t456);
+        let t497 = 9.81 * s_arm_leg3;
+        let t499 = t497 + 0.26 * t435;
+        let rate_dot_arm_leg3 = t426 * (t464 - t413 * t470);
+        let t505 = 9.81 * c_arm_leg3;
+        let t506 = 0.26 * rate_dot_arm_leg3 - t505;
+        let t508 = s_cross_leg3 * t499 + c_cross_leg3 * t506;
+        let t513 = s_cross_leg3 * t506 - c_cross_leg3 * t499;
+        let t514 = s_rod_leg3 * t513;
+        let t518 = t477 - t476;
+        let t522 = t413 * t485;
+        let t528 = t485 + minus_rate_dot_rod_leg3;
+        let t530 = parameters[42] * t518 - parameters[41] * t479
+            + parameters[43] * (t456 - t522) + parameters[44] * t480
+            - parameters[45] * t528;
+        let t535 = c_rod_leg3 * t513;
+        let t539 = s_rod_leg3
+            * (t494 - parameters[46] * t476 - parameters[48] * t508
+                + parameters[49] * t514)
             + c_rod_leg3
-                * (t537 + parameters[46] * t484 + parameters[47] * t516
-                    + parameters[49] * t542);
-        let minus_garm_vx_leg3 = c_armcross_leg3 * t431;
-        let t560 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t513
-            + parameters[36] * t505 + parameters[37] * rate_dot_arm_leg3
+                * (t530 + parameters[46] * t479 + parameters[47] * t508
+                    + parameters[49] * t535);
+        let minus_garm_vx_leg3 = c_armcross_leg3 * t426;
+        let t553 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t505
+            + parameters[36] * t497 + parameters[37] * rate_dot_arm_leg3
             - parameters[38] * minus_rate_arm_leg3
             - ::overact::math::signed(parameters[39], minus_rate_arm_leg3)
             + parameters[40];
-        let t570 = c_rod_leg3 * t430
-            * (parameters[48] * t535 - parameters[47] * (t492 + t461)
-                + parameters[49] * t478 + parameters[50] * t542);
-        let t580 = t430 * s_rod_leg3
-            * (parameters[47] * t495 - parameters[48] * (t491 + t461)
-                - parameters[49] * t479 - parameters[50] * t522);
-        let t590 = t570 - t580
-            - t448
-                * (parameters[48] * t526 - parameters[47] * t486 - parameters[49] * t462
-                    - parameters[50] * t516);
-        let t591 = t560 + t590;
-        let t594 = garm_vx_leg1 * t153 - minus_gcross_vx_leg1 * t191
-            + gcross_vx_leg2 * t341 - minus_garm_vx_leg2 * t385 - t404
-            + gcross_vx_leg3 * t546 - minus_garm_vx_leg3 * t591;
-        let t597 = 1.0 / s_cross_leg4;
-        let t598 = 3.8461538461538463 * t597;
-        let t601 = 1.0 / c_rod_leg4;
-        let t602 = s_rod_leg4 * t601;
-        let garm_vx_leg4 = t598 * t602;
-        let t604 = 0.26 * c_cross_leg4;
-        let t605 = twist[0] + t215;
-        let t606 = t602 * t605;
+        let t563 = c_rod_leg3 * t425
+            * (parameters[48] * t528 - parameters[47] * (t484 + t456)
+                + parameters[49] * t473 + parameters[50] * t535);
+        let t573 = t425 * s_rod_leg3
+            * (parameters[47] * t487 - parameters[48] * (t522 + t456)
+                - parameters[49] * t474 - parameters[50] * t514);
+        let t583 = t563 - t573
+            - t443
+                * (parameters[48] * t518 - parameters[47] * t481 - parameters[49] * t457
+                    - parameters[50] * t508);
+        let t584 = t553 + t583;
+        let t587 = garm_vx_leg1 * t151 - minus_gcross_vx_leg1 * t189
+            + gcross_vx_leg2 * t336 - minus_garm_vx_leg2 * t380 - t399
+            + gcross_vx_leg3 * t539 - minus_garm_vx_leg3 * t584;
+        let t590 = 1.0 / s_cross_leg4;
+        let t591 = 3.8461538461538463 * t590;
+        let t594 = 1.0 / c_rod_leg4;
+        let t595 = s_rod_leg4 * t594;
+        let garm_vx_leg4 = t591 * t595;
+        let t597 = 0.26 * c_cross_leg4;
+        let t598 = twist[0] + t212;
+        let t599 = t595 * t598;
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t615 = twist[1] - t211;
-        let t618 = c_armcross_leg4 * t615 + s_armcross_leg4 * twist[2];
-        let rate_arm_leg4 = t598 * (t606 - t618);
-        let t621 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.7241379310344827 * t601;
-        let rate_rod_leg4 = grod_vx_leg4 * t605;
-        let t626 = rate_rod_leg4 * rate_rod_leg4;
-        let t627 = c_cross_leg4 * t597;
-        let t633 = t604 * garm_vx_leg4;
-        let t635 = t627 * t618 + s_armcross_leg4 * t615 - c_armcross_leg4 * twist[2]
-            - t633 * t605;
-        let rate_cross_leg4 = grod_vx_leg4 * t635;
-        let t637 = rate_cross_leg4 * rate_cross_leg4;
-        let t642 = acceleration[1] - t231 + t233;
-        let t646 = t604 * t621 + 0.58 * c_rod_leg4 * (t626 + t637)
-            - (c_armcross_leg4 * t642 + s_armcross_leg4 * acceleration[2]);
-        let t650 = acceleration[0] + t208 + t212 + t606 * rate_rod_leg4;
-        let rate_dot_arm_leg4 = t598 * (t646 + t602 * t650);
-        let t655 = 9.81 * c_arm_leg4;
-        let t658 = 9.81 * s_arm_leg4;
-        let t667 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t655
-            + parameters[53] * t658 + parameters[54] * rate_dot_arm_leg4
+        let t608 = twist[1] - t209;
+        let t611 = c_armcross_leg4 * t608 + s_armcross_leg4 * twist[2];
+        let rate_arm_leg4 = t591 * (t599 - t611);
+        let t614 = rate_arm_leg4 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.7241379310344827 * t594;
+        let rate_rod_leg4 = grod_vx_leg4 * t598;
+        let t619 = rate_rod_leg4 * rate_rod_leg4;
+        let t620 = c_cross_leg4 * t590;
+        let t626 = t597 * garm_vx_leg4;
+        let t628 = t620 * t611 + s_armcross_leg4 * t608 - c_armcross_leg4 * twist[2]
+            - t626 * t598;
+        let rate_cross_leg4 = grod_vx_leg4 * t628;
+        let t630 = rate_cross_leg4 * rate_cross_leg4;
+        let t635 = acceleration[1] - t228 + t230;
+        let t639 = t597 * t614 + 0.58 * c_rod_leg4 * (t619 + t630)
+            - (c_armcross_leg4 * t635 + s_armcross_leg4 * acceleration[2]);
+        let t643 = acceleration[0] + t206 + t210 + t599 * rate_rod_leg4;
+        let rate_dot_arm_leg4 = t591 * (t639 + t595 * t643);
+        let t648 = 9.81 * c_arm_leg4;
+        let t651 = 9.81 * s_arm_leg4;
+        let t660 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t648
+            + parameters[53] * t651 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t668 = 0.26 * s_cross_leg4;
-        let t670 = t602 * t635;
-        let t672 = 2.972651605231867 * (t670 * t670);
-        let t673 = t637 - t672;
-        let t674 = t602 * t673;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t650;
-        let t676 = t674 - rate_dot_rod_leg4;
-        let t685 = t606 * rate_cross_leg4;
-        let t692 = s_armcross_leg4 * t642 - c_armcross_leg4 * acceleration[2]
-            - (t668 * t621 - t685 - t685) - t627 * t646 - t633 * t650;
-        let t693 = 1.7241379310344827 * t692;
-        let t697 = 0.26 * rate_dot_arm_leg4 - t655;
-        let t700 = t658 + 0.26 * t621;
-        let t702 = s_cross_leg4 * t697 - c_cross_leg4 * t700;
-        let t703 = c_rod_leg4 * t702;
-        let t706 = c_rod_leg4 * t668
-            * (parameters[65] * t676 - parameters[64] * (t673 + t626)
-                + parameters[66] * t693 + parameters[67] * t703);
-        let t708 = t674 + rate_dot_rod_leg4;
-        let t713 = t602 * t693;
-        let t716 = s_rod_leg4 * t702;
-        let t719 = t668 * s_rod_leg4
-            * (parameters[64] * t708 - parameters[65] * (t672 + t626)
-                - parameters[66] * t713 - parameters[67] * t716);
-        let t721 = 1.7241379310344827 * t685;
-        let t722 = t693 - t721;
-        let t723 = t721 - t722;
-        let t726 = rate_rod_leg4 * (1.7241379310344827 * t635);
-        let t727 = t713 + t726;
-        let t728 = t726 + t727;
-        let t735 = s_cross_leg4 * t700 + c_cross_leg4 * t697;
-        let t739 = t706 - t719
-            - t604
-                * (parameters[64] * t723 + parameters[65] * t728 - parameters[66] * t637
-                    - parameters[67] * t735);
-        let t740 = t667 + t739;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * t633;
-        let t752 = parameters[58] * t727 - parameters[59] * t723 + parameters[60] * t708
-            - parameters[61] * t726 + parameters[62] * (t673 - t626);
-        let t769 = parameters[58] * t721 + parameters[59] * t728
-            + parameters[60] * (t626 - t672) + parameters[61] * t722
-            - parameters[62] * t676;
-        let t777 = s_rod_leg4
-            * (t752 + parameters[63] * t726 - parameters[65] * t735
-                + parameters[66] * t716)
+        let t661 = 0.26 * s_cross_leg4;
+        let t663 = 1.7241379310344827 * t628;
+        let t664 = t663 * t663;
+        let t665 = t595 * t664;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t643;
+        let t667 = t665 - rate_dot_rod_leg4;
+        let t676 = t599 * rate_cross_leg4;
+        let t683 = s_armcross_leg4 * t635 - c_armcross_leg4 * acceleration[2]
+            - (t661 * t614 - t676 - t676) - t620 * t639 - t626 * t643;
+        let t684 = 1.7241379310344827 * t683;
+        let t688 = 0.26 * rate_dot_arm_leg4 - t648;
+        let t691 = t651 + 0.26 * t614;
+        let t693 = s_cross_leg4 * t688 - c_cross_leg4 * t691;
+        let t694 = c_rod_leg4 * t693;
+        let t697 = c_rod_leg4 * t661
+            * (parameters[65] * t667 - parameters[64] * (t664 + t619)
+                + parameters[66] * t684 + parameters[67] * t694);
+        let t699 = t665 + rate_dot_rod_leg4;
+        let t701 = t595 * t665;
+        let t705 = t595 * t684;
+        let t708 = s_rod_leg4 * t693;
+        let t711 = t661 * s_rod_leg4
+            * (parameters[64] * t699 - parameters[65] * (t701 + t619)
+                - parameters[66] * t705 - parameters[67] * t708);
+        let t713 = 1.7241379310344827 * t676;
+        let t714 = t684 - t713;
+        let t715 = t713 - t714;
+        let t717 = rate_rod_leg4 * t663;
+        let t718 = t705 + t717;
+        let t719 = t717 + t718;
+        let t726 = s_cross_leg4 * t691 + c_cross_leg4 * t688;
+        let t730 = t697 - t711
+            - t597
+                * (parameters[64] * t715 + parameters[65] * t719 - parameters[66] * t630
+                    - parameters[67] * t726);
+        let t731 = t660 + t730;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t626;
+        let t743 = parameters[58] * t718 - parameters[59] * t715 + parameters[60] * t699
+            - parameters[61] * t717 + parameters[62] * (t664 - t619);
+        let t760 = parameters[58] * t713 + parameters[59] * t719
+            + parameters[60] * (t619 - t701) + parameters[61] * t714
+            - parameters[62] * t667;
+        let t768 = s_rod_leg4
+            * (t743 + parameters[63] * t717 - parameters[65] * t726
+                + parameters[66] * t708)
             + c_rod_leg4
-                * (t769 - parameters[63] * t721 + parameters[64] * t735
-                    + parameters[66] * t703);
-        let t789 = parameters[59] * (t672 - t673) - parameters[58] * t674
-            + parameters[60] * t713 + parameters[61] * t674 + parameters[62] * t693;
-        let t796 = grod_vx_leg4
-            * (t789 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t716
-                - parameters[65] * t703);
-        let t799 = twist[3] * twist[3];
-        let t802 = s_phi * t799 - c_phi * acceleration[3];
-        let t806 = c_phi * t799 + s_phi * acceleration[3];
-        let t816 = parameters[70] * t802 - parameters[69] * t806
-            + acceleration[0] * parameters[71] - parameters[73] * t806
-            + parameters[74] * t802 + acceleration[0] * parameters[75];
-        let t817 = t594 + garm_vx_leg4 * t740 - minus_gcross_vx_leg4 * t777 + t796
-            + t816;
-        let t824 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+                * (t760 - parameters[63] * t713 + parameters[64] * t726
+                    + parameters[66] * t694);
+        let t780 = parameters[59] * (t701 - t664) - parameters[58] * t665
+            + parameters[60] * t705 + parameters[61] * t665 + parameters[62] * t684;
+        let t787 = grod_vx_leg4
+            * (t780 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t708
+                - parameters[65] * t694);
+        let t790 = twist[3] * twist[3];
+        let t793 = s_phi * t790 - c_phi * acceleration[3];
+        let t797 = c_phi * t790 + s_phi * acceleration[3];
+        let t807 = parameters[70] * t793 - parameters[69] * t797
+            + acceleration[0] * parameters[71] - parameters[73] * t797
+            + parameters[74] * t793 + acceleration[0] * parameters[75];
+        let t808 = t587 + garm_vx_leg4 * t731 - minus_gcross_vx_leg4 * t768 + t787
+            + t807;
+        let t815 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t824, 19.50747081825307, "actuators")?;
-        let t825 = 1.0 / t824;
+        ::overact::guard::platform(t815, 19.50747081825307, "actuators")?;
+        let t816 = 1.0 / t815;
         let garm_vy_leg1 = t11 * t38;
-        let garm_vy_leg2 = c_armcross_leg2 * t202;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t598;
-        let t836 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        let garm_vy_leg2 = c_armcross_leg2 * t200;
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t591;
+        let t827 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vx_leg3
             - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t837 = t836 * t825;
-        let t846 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+        let t828 = t827 * t816;
+        let t837 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t836 * t837;
-        ::overact::guard::platform(t846, 16.505615552607477, "actuators")?;
-        let t847 = 1.0 / t846;
+            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t827 * t828;
+        ::overact::guard::platform(t837, 16.505615552607477, "actuators")?;
+        let t838 = 1.0 / t837;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t29 * garm_vy_leg1);
-        let t862 = parameters[8] * (t87 - t88) - parameters[7] * t89
-            - parameters[9] * t126 + parameters[10] * t89 - parameters[11] * t107;
-        let t869 = grod_vy_leg1
-            * (t862 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t129
-                - parameters[14] * t116);
-        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t201 * c_arm_leg2);
-        let gcross_vy_leg3 = minus_grod_vy_leg3 * t450;
-        let t890 = parameters[42] * (t491 - t492) - parameters[41] * t493
-            + parameters[43] * t479 + parameters[44] * t493 + parameters[45] * t478;
-        let t897 = minus_grod_vy_leg3
-            * (t890 - parameters[46] * minus_rate_dot_rod_leg3 - parameters[47] * t522
-                - parameters[48] * t542);
-        let t899 = garm_vy_leg1 * t153 - minus_gcross_vy_leg1 * t191 + t869
-            + garm_vy_leg2 * t385 - minus_gcross_vy_leg2 * t341 + gcross_vy_leg3 * t546
-            - minus_garm_vy_leg3 * t591 - t897;
-        let gcross_vy_leg4 = grod_vx_leg4 * (t597 * c_arm_leg4);
-        let t916 = acceleration[1] * parameters[71]
-            - (parameters[69] * t802 + parameters[70] * t806) - parameters[73] * t802
-            - parameters[74] * t806 + acceleration[1] * parameters[75];
-        let t919 = t899 + gcross_vy_leg4 * t777 - minus_garm_vy_leg4 * t740 + t916
-            - t817 * t837;
-        let minus_garm_vz_leg3 = s_armcross_leg3 * t431;
+        let t853 = parameters[8] * (t121 - t86) - parameters[7] * t87
+            - parameters[9] * t125 + parameters[10] * t87 - parameters[11] * t105;
+        let t860 = grod_vy_leg1
+            * (t853 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t128
+                - parameters[14] * t114);
+        let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t199 * c_arm_leg2);
+        let gcross_vy_leg3 = minus_grod_vy_leg3 * t445;
+        let t881 = parameters[42] * (t522 - t484) - parameters[41] * t485
+            + parameters[43] * t474 + parameters[44] * t485 + parameters[45] * t473;
+        let t888 = minus_grod_vy_leg3
+            * (t881 - parameters[46] * minus_rate_dot_rod_leg3 - parameters[47] * t514
+                - parameters[48] * t535);
+        let t890 = garm_vy_leg1 * t151 - minus_gcross_vy_leg1 * t189 + t860
+            + garm_vy_leg2 * t380 - minus_gcross_vy_leg2 * t336 + gcross_vy_leg3 * t539
+            - minus_garm_vy_leg3 * t584 - t888;
+        let gcross_vy_leg4 = grod_vx_leg4 * (t590 * c_arm_leg4);
+        let t907 = acceleration[1] * parameters[71]
+            - (parameters[69] * t793 + parameters[70] * t797) - parameters[73] * t793
+            - parameters[74] * t797 + acceleration[1] * parameters[75];
+        let t910 = t890 + gcross_vy_leg4 * t768 - minus_garm_vy_leg4 * t731 + t907
+            - t808 * t828;
+        let minus_garm_vz_leg3 = s_armcross_leg3 * t426;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
-        let minus_garm_vz_leg2 = s_armcross_leg2 * t202;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t598;
-        let t938 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg2 = s_armcross_leg2 * t200;
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t591;
+        let t929 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 + minus_garm_vx_leg3 * minus_garm_vz_leg3
             - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t939 = t938 * t825;
-        let t941 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t930 = t929 * t816;
+        let t932 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t836 * t939;
-        let t942 = t941 * t847;
-        let t953 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t827 * t930;
+        let t933 = t932 * t838;
+        let t944 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t938 * t939 - t941 * t942;
-        ::overact::guard::platform(t953, 31.11733818453752, "actuators")?;
-        let t954 = 1.0 / t953;
-        let gcross_vz_leg2 = minus_grod_vx_leg2 * (t201 * s_arm_leg2);
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t929 * t930 - t932 * t933;
+        ::overact::guard::platform(t944, 31.11733818453752, "actuators")?;
+        let t945 = 1.0 / t944;
+        let gcross_vz_leg2 = minus_grod_vx_leg2 * (t199 * s_arm_leg2);
         let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
-        let gcross_vz_leg3 = minus_grod_vy_leg3 * (t413 * s_arm_leg3);
-        let t971 = gcross_vz_leg2 * t341 - minus_garm_vz_leg2 * t385
-            - (minus_garm_vz_leg1 * t153 - minus_minus_gcross_vz_leg1 * t191)
-            + gcross_vz_leg3 * t546 - minus_garm_vz_leg3 * t591;
-        let gcross_vz_leg4 = grod_vx_leg4 * (t597 * s_arm_leg4);
-        let t978 = acceleration[2] + 9.81;
-        let t984 = t971 + gcross_vz_leg4 * t777 - minus_garm_vz_leg4 * t740
-            + parameters[71] * t978 + parameters[75] * t978 - t817 * t939;
-        let t986 = t984 - t942 * t919;
+        let gcross_vz_leg3 = minus_grod_vy_leg3 * (t408 * s_arm_leg3);
+        let t962 = gcross_vz_leg2 * t336 - minus_garm_vz_leg2 * t380
+            - (minus_garm_vz_leg1 * t151 - minus_minus_gcross_vz_leg1 * t189)
+            + gcross_vz_leg3 * t539 - minus_garm_vz_leg3 * t584;
+        let gcross_vz_leg4 = grod_vx_leg4 * (t590 * s_arm_leg4);
+        let t969 = acceleration[2] + 9.81;
+        let t975 = t962 + gcross_vz_leg4 * t768 - minus_garm_vz_leg4 * t731
+            + parameters[71] * t969 + parameters[75] * t969 - t808 * t930;
+        let t977 = t975 - t933 * t910;
         let garm_wz_leg1 = garm_vy_leg1 * t22 - t17 * garm_vx_leg1;
-        let garm_wz_leg2 = t210 * garm_vy_leg2 + minus_garm_vx_leg2 * t207;
+        let garm_wz_leg2 = t208 * garm_vy_leg2 + minus_garm_vx_leg2 * t205;
         let garm_wz_leg3 = t22 * minus_garm_vy_leg3 - t17 * minus_garm_vx_leg3;
-        let garm_wz_leg4 = t210 * minus_garm_vy_leg4 + t207 * garm_vx_leg4;
-        let t1013 = garm_vx_leg1 * garm_wz_leg1 - minus_garm_vx_leg2 * garm_wz_leg2
+        let garm_wz_leg4 = t208 * minus_garm_vy_leg4 + t205 * garm_vx_leg4;
+        let t1004 = garm_vx_leg1 * garm_wz_leg1 - minus_garm_vx_leg2 * garm_wz_leg2
             - minus_garm_vx_leg3 * garm_wz_leg3 + garm_vx_leg4 * garm_wz_leg4;
-        let t1014 = t1013 * t825;
-        let t1025 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
+        let t1005 = t1004 * t816;
+        let t1016 = garm_vy_leg1 * garm_wz_leg1 + garm_vy_leg2 * garm_wz_leg2
             - minus_garm_vy_leg3 * garm_wz_leg3 - minus_garm_vy_leg4 * garm_wz_leg4
-            - t836 * t1014;
-        let t1026 = t1025 * t847;
-        let t1028 = minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
+            - t827 * t1005;
+        let t1017 = t1016 * t838;
+        let t1019 = minus_garm_vz_leg1 * garm_wz_leg1 + minus_garm_vz_leg2 * garm_wz_leg2
             + minus_garm_vz_leg3 * garm_wz_leg3 + minus_garm_vz_leg4 * garm_wz_leg4
-            + t938 * t1014 + t941 * t1026;
-        let t1029 = t1028 * t954;
+            + t929 * t1005 + t932 * t1017;
+        let t1020 = t1019 * t945;
         let gcross_wz_leg1 = t17 * minus_gcross_vx_leg1 - minus_gcross_vy_leg1 * t22;
-        let minus_gcross_wz_leg2 = t210 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t207;
-        let t1046 = garm_wz_leg1 * t153 + gcross_wz_leg1 * t191 + t22 * t869
-            + garm_wz_leg2 * t385 - minus_gcross_wz_leg2 * t341 + t207 * t404;
+        let minus_gcross_wz_leg2 = t208 * minus_gcross_vy_leg2 + gcross_vx_leg2 * t205;
+        let t1037 = garm_wz_leg1 * t151 + gcross_wz_leg1 * t189 + t22 * t860
+            + garm_wz_leg2 * t380 - minus_gcross_wz_leg2 * t336 + t205 * t399;
         let gcross_wz_leg3 = t17 * gcross_vx_leg3 - t22 * gcross_vy_leg3;
-        let minus_gcross_wz_leg4 = t210 * gcross_vy_leg4 + t207 * minus_gcross_vx_leg4;
-        let t1064 = t1046 + garm_wz_leg3 * t591 + gcross_wz_leg3 * t546 + t22 * t897
-            + garm_wz_leg4 * t740 - minus_gcross_wz_leg4 * t777 + t207 * t796;
-        let t1068 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        let t1073 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        let t1081 = acceleration[3] * parameters[68] + parameters[69] * t1068
-            - parameters[70] * t1073 + acceleration[3] * parameters[72]
-            + parameters[73] * t1068 - parameters[74] * t1073;
-        let t1099 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
-            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t1013 * t1014
-            - t1025 * t1026;
-        let t1101 = t1099 - t1028 * t1029;
-        ::overact::guard::platform(t1101, 0.351065482163043, "actuators")?;
-        let t1102 = (t1064 + t1081 - t817 * t1014 - t1026 * t919 + t1029 * t986) / t1101;
-        let t1104 = t954 * t986 + t1029 * t1102;
-        let t1108 = t847 * t919 - t942 * t1104 - t1026 * t1102;
-        let t1114 = t817 * t825 - t837 * t1108 - t939 * t1104 - t1014 * t1102;
+        let minus_gcross_wz_leg4 = t208 * gcross_vy_leg4 + t205 * minus_gcross_vx_leg4;
+        let t1055 = t1037 + garm_wz_leg3 * t584 + gcross_wz_leg3 * t539 + t22 * t888
+            + garm_wz_leg4 * t731 - minus_gcross_wz_leg4 * t768 + t205 * t787;
+        let t1059 = c_phi * acceleration[1] - s_phi * acceleration[0];
+        let t1064 = s_phi * acceleration[1] + c_phi * acceleration[0];
+        let t1072 = acceleration[3] * parameters[68] + parameters[69] * t1059
+            - parameters[70] * t1064 + acceleration[3] * parameters[72]
+            + parameters[73] * t1059 - parameters[74] * t1064;
+        let t1090 = garm_wz_leg1 * garm_wz_leg1 + garm_wz_leg2 * garm_wz_leg2
+            + garm_wz_leg3 * garm_wz_leg3 + garm_wz_leg4 * garm_wz_leg4 - t1004 * t1005
+            - t1016 * t1017;
+        let t1092 = t1090 - t1019 * t1020;
+        ::overact::guard::platform(t1092, 0.351065482163043, "actuators")?;
+        let t1093 = (t1055 + t1072 - t808 * t1005 - t1017 * t910 + t1020 * t977) / t1092;
+        let t1095 = t945 * t977 + t1020 * t1093;
+        let t1099 = t838 * t910 - t933 * t1095 - t1017 * t1093;
+        let t1105 = t808 * t816 - t828 * t1099 - t930 * t1095 - t1005 * t1093;
         Ok([
-            garm_vx_leg1 * t1114 + garm_vy_leg1 * t1108 - minus_garm_vz_leg1 * t1104
-                + garm_wz_leg1 * t1102,
-            garm_vy_leg2 * t1108 - minus_garm_vx_leg2 * t1114
-                - minus_garm_vz_leg2 * t1104 + garm_wz_leg2 * t1102,
-            garm_wz_leg3 * t1102
-                - (minus_garm_vx_leg3 * t1114 + minus_garm_vy_leg3 * t1108
-                    + minus_garm_vz_leg3 * t1104),
-            garm_vx_leg4 * t1114 - minus_garm_vy_leg4 * t1108
-                - minus_garm_vz_leg4 * t1104 + garm_wz_leg4 * t1102,
+            garm_vx_leg1 * t1105 + garm_vy_leg1 * t1099 - minus_garm_vz_leg1 * t1095
+                + garm_wz_leg1 * t1093,
+            garm_vy_leg2 * t1099 - minus_garm_vx_leg2 * t1105
+                - minus_garm_vz_leg2 * t1095 + garm_wz_leg2 * t1093,
+            garm_wz_leg3 * t1093
+                - (minus_garm_vx_leg3 * t1105 + minus_garm_vy_leg3 * t1099
+                    + minus_garm_vz_leg3 * t1095),
+            garm_vx_leg4 * t1105 - minus_garm_vy_leg4 * t1099
+                - minus_garm_vz_leg4 * t1095 + garm_wz_leg4 * t1093,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -12878,8 +12909,7 @@ impl Schoenflies4 {
         ::overact::guard::reach(t444, "leg3")?;
         let t445 = ::overact::math::sqrt(t444);
         let minus_c_arm_leg3 = t435 * (t436 * t441 + t22 * t445);
-        let t450 = 2.972651605231867 * t438;
-        let t451 = 1.0 - t450;
+        let t451 = 1.0 - 2.972651605231867 * t438;
         ::overact::guard::reach(t451, "leg3")?;
         let c_rod_leg3 = ::overact::math::sqrt(t451);
         ::overact::guard::leg(c_rod_leg3, 0.988789721306184, "leg3")?;
@@ -12939,7 +12969,7 @@ impl Schoenflies4 {
         let t550 = c_rod_leg3 * t549;
         let t555 = t476 * t541;
         let t557 = t524 + minus_rate_dot_rod_leg3;
-        let t559 = t450 * t497;
+        let t559 = t476 * t524;
         let minus_s_rod_leg3 = 1.7241379310344827 * t437;
         let t565 = minus_s_rod_leg3 * t549;
         let t568 = t476 * t521

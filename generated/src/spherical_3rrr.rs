@@ -1189,6 +1189,7 @@ impl Spherical3Rrr {
         let t204 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
         let t207 = c_distal_leg2 * (t179 - minus_rate_dot_distal_leg2)
             + minus_s_distal_leg2 * (t204 - t185);
+        let t209 = c_proximal_leg2 * t173;
         let t221 = minus_s_distal_leg2 * (t179 + minus_rate_dot_distal_leg2)
             - c_distal_leg2 * (t186 - t204);
         let t230 = 9.81 * t125;
@@ -1280,8 +1281,8 @@ impl Spherical3Rrr {
                 -::overact::math::signed(minus_gproximal_wx_leg2, rate_proximal_leg2),
                 -minus_gproximal_wx_leg2, t181,
                 c_proximal_leg2 * t187 - minus_gproximal_wx_leg2 * t191,
-                minus_gproximal_wx_leg2 * t207 - c_proximal_leg2 * t173, -(t158 + t181),
-                -(minus_gproximal_wx_leg2 * t221 + minus_gproximal_wz_leg2 * t173),
+                minus_gproximal_wx_leg2 * t207 - t209, -(t158 + t181),
+                -(minus_gproximal_wx_leg2 * t221 + t132 * t209),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2),
                 minus_gproximal_wx_leg2 * t231 - t136 * t164, -(c_distal_leg2 * (t162 + t165)),
                 t163, -t272, -t272, -(minus_gproximal_wx_leg3 * rate_proximal_leg3),
@@ -1496,7 +1497,6 @@ impl Spherical3Rrr {
             - minus_s_proximal_leg3 * acceleration[0] - t226 * rate_proximal_leg3;
         let t280 = c_distal_leg3 * (t270 - t252)
             - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t253);
-        let t285 = minus_c_proximal_leg3 * t246;
         let t294 = c_distal_leg3 * (t253 + rate_dot_distal_leg3)
             - minus_s_distal_leg3 * (t263 - t270);
         let t303 = 9.81 * minus_s_distal_leg3;
@@ -1627,9 +1627,9 @@ impl Spherical3Rrr {
                 gproximal_wy_leg3,
                 t258,
                 minus_c_proximal_leg3 * t264 - gproximal_wy_leg3 * t261,
-                gproximal_wy_leg3 * t280 - t285,
+                gproximal_wy_leg3 * t280 - minus_c_proximal_leg3 * t246,
                 t239 - t258,
-                gproximal_wy_leg3 * t294 + t216 * t285,
+                gproximal_wy_leg3 * t294 + gproximal_wx_leg3 * t246,
                 minus_c_proximal_leg3 * rate_dot_distal_leg3,
                 t216 * t305,
                 t305,
@@ -1678,7 +1678,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 54.
     /// Columns: `PARAMETERS`.
     ///
-    /// 499 operations (199 additions, 285 multiplications, 15 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 389 intermediates.
+    /// 506 operations (200 additions, 287 multiplications, 19 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 396 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1701,384 +1701,383 @@ impl Spherical3Rrr {
         ::overact::guard::reach(t10, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t10);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t12 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t5 * t12;
-        let t14 = minus_s_distal_leg1 * t12;
-        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
-        let t16 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
-        let t17 = pose[2] + pose[2];
-        let t18 = pose[3] * t17;
-        let t19 = pose[0] * t0;
-        let t20 = t18 + t19;
-        let s_proximal_leg1 = t20 * t12;
-        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t14;
-        let t23 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
-        let t24 = 9.81 * c_proximal_leg1;
-        let t25 = minus_gproximal_wy_leg1 * t24;
-        let t26 = minus_gproximal_wz_leg1 * t24;
-        let t27 = 9.81 * s_proximal_leg1;
-        let t28 = minus_gproximal_wz_leg1 * t27;
-        let t29 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t30 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t35 = t6 + t7;
-        let t36 = pose[3] * t0;
-        let t37 = pose[0] * t17;
-        let minus_s_distal_leg3 = t36 - t37;
-        let t40 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t40, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t40);
+        let c_proximal_leg1 = t5 / c_distal_leg1;
+        let t13 = minus_s_distal_leg1 / c_distal_leg1;
+        let minus_gproximal_wy_leg1 = c_proximal_leg1 * t13;
+        let t15 = minus_gproximal_wy_leg1 * actuator_accelerations[0];
+        let t16 = pose[2] + pose[2];
+        let t17 = pose[3] * t16;
+        let t18 = pose[0] * t0;
+        let t19 = t17 + t18;
+        let s_proximal_leg1 = t19 / c_distal_leg1;
+        let minus_gproximal_wz_leg1 = s_proximal_leg1 * t13;
+        let t22 = minus_gproximal_wz_leg1 * actuator_accelerations[0];
+        let t23 = 9.81 * c_proximal_leg1;
+        let t24 = minus_gproximal_wy_leg1 * t23;
+        let t25 = minus_gproximal_wz_leg1 * t23;
+        let t26 = 9.81 * s_proximal_leg1;
+        let t27 = minus_gproximal_wz_leg1 * t26;
+        let t28 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t29 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t34 = t6 + t7;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t16;
+        let minus_s_distal_leg3 = t35 - t36;
+        let t39 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t39, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let s_proximal_leg3 = t35 / c_distal_leg3;
-        let t43 = minus_s_distal_leg3 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t43;
-        let t45 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t47 = t36 + t37;
-        let minus_s_distal_leg2 = t18 - t19;
-        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t50, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t50);
+        let s_proximal_leg3 = t34 / c_distal_leg3;
+        let t42 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t42;
+        let t44 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t46 = t35 + t36;
+        let minus_s_distal_leg2 = t17 - t18;
+        let t49 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t49, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t49);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t52 = 1.0 / c_distal_leg2;
-        let s_proximal_leg2 = t47 * t52;
-        let t54 = minus_s_distal_leg2 * t52;
-        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t54;
-        let t56 = minus_gproximal_wx_leg2 * actuator_velocities[1];
-        let t58 = pose[2] * t17;
-        let t60 = 1.0 - t58 - t4;
-        let c_proximal_leg3 = t60 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t43;
-        let t63 = minus_gproximal_wx_leg3 * actuator_velocities[2];
-        let t64 = actuator_velocities[0] - t56 - t63;
-        let t67 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
+        let t51 = 1.0 / c_distal_leg2;
+        let s_proximal_leg2 = t46 * t51;
+        let t53 = minus_s_distal_leg2 * t51;
+        let minus_gproximal_wx_leg2 = s_proximal_leg2 * t53;
+        let t55 = minus_gproximal_wx_leg2 * actuator_velocities[1];
+        let t57 = pose[2] * t16;
+        let t59 = 1.0 - t57 - t4;
+        let c_proximal_leg3 = t59 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t42;
+        let t62 = minus_gproximal_wx_leg3 * actuator_velocities[2];
+        let t63 = actuator_velocities[0] - t55 - t62;
+        let t66 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             - (minus_gproximal_wy_leg1 + minus_gproximal_wx_leg2);
-        let t71 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
+        let t70 = 1.0 + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        ::overact::guard::platform(t71, 1.0, "actuators")?;
-        let t72 = t67 / t71;
-        let t74 = actuator_velocities[1] - t29 - t45 - t64 * t72;
-        let t80 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t67 * t72;
-        ::overact::guard::platform(t80, 1.0, "actuators")?;
-        ::overact::guard::platform(t80, 1.0, "actuators")?;
-        let t83 = t2 - t58;
-        let c_proximal_leg2 = t83 / c_distal_leg2;
-        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t54;
-        let t90 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        ::overact::guard::platform(t70, 1.0, "actuators")?;
+        ::overact::guard::platform(t70, 1.0, "actuators")?;
+        let t71 = t66 / t70;
+        let t73 = actuator_velocities[1] - t28 - t44 - t63 * t71;
+        let t79 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t66 * t71;
+        ::overact::guard::platform(t79, 1.0, "actuators")?;
+        ::overact::guard::platform(t79, 1.0, "actuators")?;
+        let t82 = t2 - t57;
+        let c_proximal_leg2 = t82 * t51;
+        let minus_gproximal_wz_leg2 = c_proximal_leg2 * t53;
+        let t89 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t91 = t90 / t71;
-        let t93 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t67 * t91;
-        let t94 = t93 / t80;
-        let t95 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t109 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t90 * t91
-            - t93 * t94;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        ::overact::guard::platform(t109, 1.0, "actuators")?;
-        let t110 = (actuator_velocities[2] - (t30 + t95) - t64 * t91 - t94 * t74) / t109;
-        let t112 = t74 / t80 - t94 * t110;
+        let t90 = t89 / t70;
+        let t92 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t66 * t90;
+        let t93 = t92 / t79;
+        let t101 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t89 * t90
+            - t92 * t93;
+        ::overact::guard::platform(t101, 1.0, "actuators")?;
+        ::overact::guard::platform(t101, 1.0, "actuators")?;
+        let t102 = 1.0 / t101;
+        let t103 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t110 = t102
+            * (actuator_velocities[2] - (t29 + t103) - t63 * t90 - t93 * t73);
+        let t112 = t73 / t79 - t93 * t110;
         let minus_rate_distal_leg1 = s_proximal_leg1 * t112 - c_proximal_leg1 * t110;
         let t116 = c_distal_leg1 * actuator_velocities[0];
         let t117 = minus_rate_distal_leg1 * t116;
         let t118 = minus_s_distal_leg1 * actuator_accelerations[0];
         let t119 = t118 + t117;
-        let t121 = c_distal_leg1 * (t117 + t119);
-        let t122 = t14 * t121;
-        let t123 = t122 - actuator_accelerations[0];
-        let t125 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t126 = t116 * t125;
-        let t128 = minus_gproximal_wy_leg1 * t122 + s_proximal_leg1 * t126;
-        let t132 = c_proximal_leg1 * t126 - minus_gproximal_wz_leg1 * t122;
-        let t135 = t121 - t14 * t123;
+        let t120 = t117 + t119;
+        let t121 = minus_s_distal_leg1 * t120;
+        let t122 = t121 - actuator_accelerations[0];
+        let t124 = minus_s_distal_leg1 * actuator_velocities[0];
+        let t125 = t116 * t124;
+        let t127 = minus_gproximal_wy_leg1 * t121 + s_proximal_leg1 * t125;
+        let t131 = c_proximal_leg1 * t125 - minus_gproximal_wz_leg1 * t121;
+        let t135 = c_distal_leg1 * t120 - t13 * t122;
         let t137 = t116 * t116;
-        let t138 = t125 * t125;
+        let t138 = t124 * t124;
         let t139 = t137 - t138;
-        let t147 = c_proximal_leg1 * t112 + s_proximal_leg1 * t110;
-        let t148 = t14 * t147;
-        let t149 = actuator_velocities[0] + t148;
-        let t152 = t47 * t149 + t83 * t110;
-        let t153 = t52 * t152;
+        let t149 = t63 / t70 - t71 * t112 - t90 * t110;
+        let t152 = t46 * t149 + t82 * t110;
+        let t153 = t51 * t152;
         let minus_rate_distal_leg2 = s_proximal_leg2 * t110 - c_proximal_leg2 * t149;
         let t157 = t153 * minus_rate_distal_leg2;
-        let t159 = actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t54 * (t54 * t157 - t159) + t157;
+        let minus_rate_dot_proximal_leg2 = t53
+            * (t53 * t157 - actuator_velocities[1] * minus_rate_distal_leg2) + t157;
         let t163 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t165 = minus_rate_distal_leg1 * (actuator_velocities[0] - t148);
-        let minus_rate_dot_proximal_leg1 = t147 * minus_rate_distal_leg1 - t14 * t165;
-        let t169 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t166 = c_proximal_leg1 * t112 + s_proximal_leg1 * t110;
+        let t169 = minus_rate_distal_leg1 * (actuator_velocities[0] - t13 * t166);
+        let minus_rate_dot_proximal_leg1 = t166 * minus_rate_distal_leg1 - t13 * t169;
+        let t173 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
         let rate_distal_leg3 = c_proximal_leg3 * t112 - s_proximal_leg3 * t149;
-        let t178 = t60 * t149 + t35 * t112;
-        let t179 = t178 / c_distal_leg3;
-        let t180 = t179 * rate_distal_leg3;
-        let minus_rate_dot_proximal_leg3 = t43
-            * (actuator_velocities[2] * rate_distal_leg3 - t43 * t180) - t180;
-        let t185 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t191 = t169 - minus_gproximal_wx_leg2 * t163
-            - minus_gproximal_wx_leg3 * t185;
-        let t193 = t163 - minus_gproximal_wy_leg1 * t169 - minus_gproximal_wy_leg3 * t185
-            - t72 * t191;
-        let t203 = (t185
-            - (minus_gproximal_wz_leg1 * t169 + minus_gproximal_wz_leg2 * t163)
-            - t91 * t191 - t94 * t193) / t109;
-        let t205 = t193 / t80 - t94 * t203;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t147;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t205
-            - c_proximal_leg1 * t203 + minus_rate_dot_distal_leg1;
-        let t213 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t216 = c_distal_leg1 * (t126 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t213 - t137);
-        let t227 = minus_s_distal_leg1 * (t126 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t138 - t213);
-        let t236 = 9.81 * t5;
-        let t237 = t14 * t236;
-        let t245 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
-        let t246 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
-        let t247 = 9.81 * s_proximal_leg2;
-        let t248 = minus_gproximal_wx_leg2 * t247;
-        let t249 = minus_gproximal_wz_leg2 * t247;
-        let t250 = 9.81 * c_proximal_leg2;
-        let t251 = minus_gproximal_wz_leg2 * t250;
-        let t255 = c_distal_leg2 * actuator_velocities[1];
-        let t256 = t255 * t255;
-        let t257 = t54 * t256;
-        let t259 = c_distal_leg2 * actuator_accelerations[1];
-        let t260 = t159 + t159;
-        let t262 = minus_s_distal_leg2 * t260 - t259;
-        let t263 = c_distal_leg2 * t262;
-        let t264 = actuator_accelerations[1] + t263;
-        let t266 = c_proximal_leg2 * t257 - minus_gproximal_wx_leg2 * t264;
-        let t270 = minus_gproximal_wz_leg2 * t264 + s_proximal_leg2 * t257;
-        let t272 = t54 * t257;
-        let t273 = t256 - t272;
-        let t275 = minus_s_distal_leg2 * t262;
-        let t277 = t260 - t275 - t275;
-        let t286 = c_proximal_leg1 * t205 + s_proximal_leg1 * t203;
-        let t288 = t169 + t14 * t286;
+        let t182 = c_proximal_leg3 * t149 + s_proximal_leg3 * t112;
+        let t183 = t182 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t42
+            * (actuator_velocities[2] * rate_distal_leg3 - t42 * t183) - t183;
+        let t188 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t194 = t173 - minus_gproximal_wx_leg2 * t163
+            - minus_gproximal_wx_leg3 * t188;
+        let t196 = t163 - minus_gproximal_wy_leg1 * t173 - minus_gproximal_wy_leg3 * t188
+            - t71 * t194;
+        let t206 = t102
+            * (t188 - (minus_gproximal_wz_leg1 * t173 + minus_gproximal_wz_leg2 * t163)
+                - t90 * t194 - t93 * t196);
+        let t208 = t196 / t79 - t93 * t206;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t166;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t208
+            - c_proximal_leg1 * t206 + minus_rate_dot_distal_leg1;
+        let t216 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t219 = c_distal_leg1 * (t125 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t216 - t137);
+        let t230 = minus_s_distal_leg1 * (t125 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t138 - t216);
+        let t239 = 9.81 * minus_s_distal_leg1;
+        let t240 = c_proximal_leg1 * t239;
+        let t246 = 9.81 * t5;
+        let t249 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t250 = minus_gproximal_wz_leg2 * actuator_accelerations[1];
+        let t251 = 9.81 * s_proximal_leg2;
+        let t252 = minus_gproximal_wx_leg2 * t251;
+        let t253 = minus_gproximal_wz_leg2 * t251;
+        let t254 = 9.81 * c_proximal_leg2;
+        let t255 = minus_gproximal_wz_leg2 * t254;
+        let t259 = c_distal_leg2 * actuator_velocities[1];
+        let t260 = t259 * t259;
+        let t261 = t53 * t260;
+        let t263 = minus_rate_distal_leg2 * t259;
+        let t264 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t266 = t263 + t264 + t263;
+        let t267 = minus_s_distal_leg2 * t266;
+        let t269 = c_proximal_leg2 * t261 - minus_gproximal_wx_leg2 * t267;
+        let t271 = t267 - actuator_accelerations[1];
+        let t274 = minus_gproximal_wz_leg2 * t267 + s_proximal_leg2 * t261;
+        let t276 = t53 * t261;
+        let t277 = t260 - t276;
+        let t281 = c_distal_leg2 * t266 - t53 * t271;
+        let t292 = t194 / t70 - t71 * t208 - t90 * t206;
         let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t153;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t203
-            - c_proximal_leg2 * t288 + minus_rate_dot_distal_leg2;
-        let t295 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t298 = c_distal_leg2 * (t257 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t295 - t256);
-        let t309 = minus_s_distal_leg2 * (t257 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t272 - t295);
-        let t318 = minus_s_distal_leg2 * t247;
-        let t326 = 9.81 * t47;
-        let t327 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
-        let t328 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
-        let t332 = c_distal_leg3 * actuator_velocities[2];
-        let t333 = rate_distal_leg3 * t332;
-        let t334 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t337 = c_distal_leg3 * (t333 + t333 - t334);
-        let t338 = t43 * t337;
-        let t340 = t332 * t332;
-        let t341 = t43 * t340;
-        let t343 = minus_gproximal_wx_leg3 * t338 - s_proximal_leg3 * t341;
-        let t347 = minus_gproximal_wy_leg3 * t338 + c_proximal_leg3 * t341;
-        let t349 = actuator_accelerations[2] + t338;
-        let t351 = t43 * t349 - t337;
-        let t353 = t43 * t341;
-        let t354 = t340 - t353;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t179;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t205 - s_proximal_leg3 * t288
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t206
+            - c_proximal_leg2 * t292 + minus_rate_dot_distal_leg2;
+        let t299 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t302 = c_distal_leg2 * (t261 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t299 - t260);
+        let t313 = minus_s_distal_leg2 * (t261 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t276 - t299);
+        let t322 = 9.81 * t46;
+        let t323 = t53 * t322;
+        let t331 = minus_gproximal_wx_leg3 * actuator_accelerations[2];
+        let t332 = minus_gproximal_wy_leg3 * actuator_accelerations[2];
+        let t336 = c_distal_leg3 * actuator_velocities[2];
+        let t337 = rate_distal_leg3 * t336;
+        let t338 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t341 = c_distal_leg3 * (t337 + t337 - t338);
+        let t342 = t42 * t341;
+        let t344 = t336 * t336;
+        let t345 = t42 * t344;
+        let t347 = minus_gproximal_wx_leg3 * t342 - s_proximal_leg3 * t345;
+        let t351 = minus_gproximal_wy_leg3 * t342 + c_proximal_leg3 * t345;
+        let t353 = actuator_accelerations[2] + t342;
+        let t355 = t42 * t353 - t341;
+        let t357 = t42 * t345;
+        let t358 = t344 - t357;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t182;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t208 - s_proximal_leg3 * t292
             - minus_rate_dot_distal_leg3;
-        let t367 = rate_distal_leg3 * rate_distal_leg3;
-        let t370 = c_distal_leg3 * (t341 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t367 - t340);
-        let t382 = minus_s_distal_leg3 * (t341 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t353 - t367);
-        let t390 = 9.81 * t35;
-        let t392 = 9.81 * t60;
-        let t398 = t60 * t288 + t35 * t205 + minus_s_distal_leg3 * t203;
-        let t401 = t178 + minus_s_distal_leg3 * t110;
-        let t403 = minus_s_distal_leg2 * t112 + t152;
-        let t404 = t401 * t403;
-        let t405 = minus_s_distal_leg1 * t404;
-        let rate_wrist_leg1 = t12 * t147;
-        let t408 = t125 + rate_wrist_leg1;
-        let t409 = t408 * t401;
-        let t410 = t47 * t409;
-        let t413 = t5 * t404;
-        let t415 = minus_s_distal_leg2 * t409;
-        let t418 = t20 * t404;
-        let t420 = t83 * t409;
-        let rate_dot_wrist_leg1 = t12 * (t286 - t165);
-        let t424 = t119 + rate_dot_wrist_leg1;
-        let t425 = t424 - t404;
-        let t427 = t408 * t403;
-        let t428 = t398 + t427;
-        let t431 = t401 * t401;
-        let t432 = t408 * t408;
-        let t433 = t431 - t432;
-        let t450 = t47 * t288 + minus_s_distal_leg2 * t205 + t83 * t203;
-        let t451 = t450 + t409;
-        let t453 = t403 * t403;
-        let t454 = t453 - t431;
-        let t457 = t398 - t427;
-        let t471 = t60 * t427;
-        let t475 = t35 * t427;
-        let t479 = minus_s_distal_leg3 * t427;
-        let t482 = t432 - t453;
-        let t484 = t450 - t409;
-        let t487 = t424 + t404;
+        let t371 = rate_distal_leg3 * rate_distal_leg3;
+        let t374 = c_distal_leg3 * (t345 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t371 - t344);
+        let t386 = minus_s_distal_leg3 * (t345 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t357 - t371);
+        let t394 = 9.81 * t34;
+        let t396 = 9.81 * t59;
+        let t402 = t59 * t292 + t34 * t208 + minus_s_distal_leg3 * t206;
+        let t406 = c_distal_leg3 * t182 + minus_s_distal_leg3 * t110;
+        let t408 = minus_s_distal_leg2 * t112 + t152;
+        let t409 = t406 * t408;
+        let t410 = minus_s_distal_leg1 * t409;
+        let rate_wrist_leg1 = t166 / c_distal_leg1;
+        let t413 = t124 + rate_wrist_leg1;
+        let t414 = t413 * t406;
+        let t415 = t46 * t414;
+        let t418 = t5 * t409;
+        let t420 = minus_s_distal_leg2 * t414;
+        let t423 = t19 * t409;
+        let t425 = t82 * t414;
+        let rate_dot_wrist_leg1 = (c_proximal_leg1 * t208 + s_proximal_leg1 * t206
+            - t169) / c_distal_leg1;
+        let t432 = t119 + rate_dot_wrist_leg1;
+        let t433 = t432 - t409;
+        let t435 = t413 * t408;
+        let t436 = t402 + t435;
+        let t439 = t406 * t406;
+        let t440 = t413 * t413;
+        let t441 = t439 - t440;
+        let t458 = t46 * t292 + minus_s_distal_leg2 * t208 + t82 * t206;
+        let t459 = t458 + t414;
+        let t461 = t408 * t408;
+        let t462 = t461 - t439;
+        let t465 = t402 - t435;
+        let t479 = t59 * t435;
+        let t483 = t34 * t435;
+        let t487 = minus_s_distal_leg3 * t435;
+        let t490 = t440 - t461;
+        let t492 = t458 - t414;
+        let t495 = t432 + t409;
         Ok([
             [
-                actuator_accelerations[0], -t24, t27, actuator_accelerations[0],
-                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t123,
-                t135, -t216, t122, t227, 0.0, t237, -t236, -t27, -t245, -t248, -t249, -t245, -t56,
+                actuator_accelerations[0], -t23, t26, actuator_accelerations[0],
+                actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t122,
+                t135, -t219, t121, t230, 0.0, t240, -t246, -t26, -t249, -t252, -t253, -t249, -t55,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wx_leg2,
-                -(t245 + t266),
-                c_proximal_leg2 * t273 - minus_gproximal_wx_leg2 * t277,
-                minus_gproximal_wx_leg2 * t298 - c_proximal_leg2 * t259,
-                t266,
-                -(minus_gproximal_wx_leg2 * t309 + minus_gproximal_wz_leg2 * t259),
+                -(t249 + t269),
+                c_proximal_leg2 * t277 - minus_gproximal_wx_leg2 * t281,
+                minus_gproximal_wx_leg2 * t302 - t82 * actuator_accelerations[1],
+                t269,
+                -(minus_gproximal_wx_leg2 * t313 + c_proximal_leg2 * t264),
                 -(c_proximal_leg2 * minus_rate_dot_distal_leg2_2),
-                minus_gproximal_wx_leg2 * t318 - t83 * t250,
-                -(c_distal_leg2 * (t248 + t251)),
-                t249,
-                -t327,
-                -t327,
-                -t63,
+                minus_gproximal_wx_leg2 * t323 - t82 * t254,
+                -(c_distal_leg2 * (t252 + t255)),
+                t253,
+                -t331,
+                -t331,
+                -t62,
                 -::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wx_leg3,
-                -(t327 + t343),
-                -(minus_gproximal_wx_leg3 * t351 + s_proximal_leg3 * t354),
-                minus_gproximal_wx_leg3 * t370 + t35 * actuator_accelerations[2],
-                t343,
-                s_proximal_leg3 * t334 - minus_gproximal_wx_leg3 * t382,
+                -(t331 + t347),
+                -(minus_gproximal_wx_leg3 * t355 + s_proximal_leg3 * t358),
+                minus_gproximal_wx_leg3 * t374 + t34 * actuator_accelerations[2],
+                t347,
+                s_proximal_leg3 * t338 - minus_gproximal_wx_leg3 * t386,
                 -(s_proximal_leg3 * rate_dot_distal_leg3),
-                t43 * t390,
-                -t390,
-                t60 * t398 + t405 - t410,
-                t60 * t425 + minus_s_distal_leg1 * t428 + t47 * t433,
-                t60 * t451 + minus_s_distal_leg1 * t454 + t47 * t457,
-                minus_s_distal_leg1 * t424 - t471 + t410,
-                t60 * t482 + minus_s_distal_leg1 * t484 + t47 * t487,
-                t471 - t405 + t47 * t450,
-                t390,
-                t236,
+                t42 * t394,
+                -t394,
+                t59 * t402 + t410 - t415,
+                t59 * t433 + minus_s_distal_leg1 * t436 + t46 * t441,
+                t59 * t459 + minus_s_distal_leg1 * t462 + t46 * t465,
+                minus_s_distal_leg1 * t432 - t479 + t415,
+                t59 * t490 + minus_s_distal_leg1 * t492 + t46 * t495,
+                t479 - t410 + t46 * t458,
+                t394,
+                t246,
                 9.81 * minus_s_distal_leg2,
             ],
             [
-                -t16, t25, -t26, -t16, -t29,
+                -t15, t24, -t25, -t15, -t28,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wy_leg1,
-                t128 - t16,
+                t127 - t15,
                 -(minus_gproximal_wy_leg1 * t135 + s_proximal_leg1 * t139),
-                minus_gproximal_wy_leg1 * t216 + actuator_accelerations[0] * t20,
-                -t128,
-                s_proximal_leg1 * t118 - minus_gproximal_wy_leg1 * t227,
+                minus_gproximal_wy_leg1 * t219 + actuator_accelerations[0] * t19,
+                -t127,
+                s_proximal_leg1 * t118 - minus_gproximal_wy_leg1 * t230,
                 s_proximal_leg1 * minus_rate_dot_distal_leg1_2,
-                t20 * t27 - minus_gproximal_wy_leg1 * t237,
-                c_distal_leg1 * (t25 + t28),
-                t26,
+                t19 * t26 - minus_gproximal_wy_leg1 * t240,
+                c_distal_leg1 * (t24 + t27),
+                t25,
                 actuator_accelerations[1],
-                t247,
-                t250,
+                t251,
+                t254,
                 actuator_accelerations[1],
                 actuator_velocities[1],
                 ::overact::math::sign(actuator_velocities[1]),
                 1.0,
-                -t263,
-                t277,
-                -t298,
-                t264,
-                t309,
+                -t271,
+                t281,
+                -t302,
+                t267,
+                t313,
                 0.0,
-                -t318,
-                t326,
-                -t250,
-                -t328,
-                -t328,
-                -t45,
+                -t323,
+                t322,
+                -t254,
+                -t332,
+                -t332,
+                -t44,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     actuator_velocities[2],
                 ),
                 -minus_gproximal_wy_leg3,
-                -(t328 + t347),
-                c_proximal_leg3 * t354 - minus_gproximal_wy_leg3 * t351,
-                minus_gproximal_wy_leg3 * t370 - t60 * actuator_accelerations[2],
-                t347,
-                -(minus_gproximal_wy_leg3 * t382 + c_proximal_leg3 * t334),
+                -(t332 + t351),
+                c_proximal_leg3 * t358 - minus_gproximal_wy_leg3 * t355,
+                minus_gproximal_wy_leg3 * t374 - t59 * actuator_accelerations[2],
+                t351,
+                -(minus_gproximal_wy_leg3 * t386 + c_proximal_leg3 * t338),
                 c_proximal_leg3 * rate_dot_distal_leg3,
-                -(t43 * t392),
-                t392,
-                t35 * t398 + t413 - t415,
-                t35 * t425 + t5 * t428 + minus_s_distal_leg2 * t433,
-                t35 * t451 + t5 * t454 + minus_s_distal_leg2 * t457,
-                t5 * t424 - t475 + t415,
-                t35 * t482 + t5 * t484 + minus_s_distal_leg2 * t487,
-                t475 - t413 + minus_s_distal_leg2 * t450,
-                -t392,
-                -(9.81 * minus_s_distal_leg1),
-                -t326,
+                -(t42 * t396),
+                t396,
+                t34 * t402 + t418 - t420,
+                t34 * t433 + t5 * t436 + minus_s_distal_leg2 * t441,
+                t34 * t459 + t5 * t462 + minus_s_distal_leg2 * t465,
+                t5 * t432 - t483 + t420,
+                t34 * t490 + t5 * t492 + minus_s_distal_leg2 * t495,
+                t483 - t418 + minus_s_distal_leg2 * t458,
+                -t396,
+                -t239,
+                -t322,
             ],
             [
-                -t23, t26, -t28, -t23, -t30,
+                -t22, t25, -t27, -t22, -t29,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
                 ),
                 -minus_gproximal_wz_leg1,
-                -(t23 + t132),
+                -(t22 + t131),
                 c_proximal_leg1 * t139 - minus_gproximal_wz_leg1 * t135,
-                minus_gproximal_wz_leg1 * t216 - actuator_accelerations[0] * t5,
-                t132,
-                -(minus_gproximal_wz_leg1 * t227 + c_proximal_leg1 * t118),
+                minus_gproximal_wz_leg1 * t219 - actuator_accelerations[0] * t5,
+                t131,
+                -(minus_gproximal_wz_leg1 * t230 + c_proximal_leg1 * t118),
                 -(c_proximal_leg1 * minus_rate_dot_distal_leg1_2),
-                -(t24 * s_proximal_leg1 / c_distal_leg1),
+                -(c_proximal_leg1 * t26 / c_distal_leg1),
                 0.0,
-                t28,
-                -t246,
-                -t249,
-                -t251,
-                -t246,
-                -t95,
+                t27,
+                -t250,
+                -t253,
+                -t255,
+                -t250,
+                -t103,
                 -::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     actuator_velocities[1],
                 ),
                 -minus_gproximal_wz_leg2,
-                t270 - t246,
-                -(minus_gproximal_wz_leg2 * t277 + s_proximal_leg2 * t273),
-                minus_gproximal_wz_leg2 * t298 + s_proximal_leg2 * t259,
-                -t270,
-                minus_gproximal_wx_leg2 * t259 - minus_gproximal_wz_leg2 * t309,
+                t274 - t250,
+                -(minus_gproximal_wz_leg2 * t281 + s_proximal_leg2 * t277),
+                minus_gproximal_wz_leg2 * t302 + t46 * actuator_accelerations[1],
+                -t274,
+                s_proximal_leg2 * t264 - minus_gproximal_wz_leg2 * t313,
                 s_proximal_leg2 * minus_rate_dot_distal_leg2_2,
-                t250 * (s_proximal_leg2 * t52),
+                t254 * (s_proximal_leg2 / c_distal_leg2),
                 0.0,
-                t251,
+                t255,
                 actuator_accelerations[2],
                 actuator_accelerations[2],
                 actuator_velocities[2],
                 ::overact::math::sign(actuator_velocities[2]),
                 1.0,
-                t349,
-                t351,
-                -t370,
-                -t338,
-                t382,
+                t353,
+                t355,
+                -t374,
+                -t342,
+                t386,
                 0.0,
                 0.0,
                 0.0,
-                minus_s_distal_leg3 * t398 + t418 - t420,
-                minus_s_distal_leg3 * t425 + t20 * t428 + t83 * t433,
-                minus_s_distal_leg3 * t451 + t20 * t454 + t83 * t457,
-                t20 * t424 - t479 + t420,
-                minus_s_distal_leg3 * t482 + t20 * t484 + t83 * t487,
-                t479 - t418 + t83 * t450,
+                minus_s_distal_leg3 * t402 + t423 - t425,
+                minus_s_distal_leg3 * t433 + t19 * t436 + t82 * t441,
+                minus_s_distal_leg3 * t459 + t19 * t462 + t82 * t465,
+                t19 * t432 - t487 + t425,
+                minus_s_distal_leg3 * t490 + t19 * t492 + t82 * t495,
+                t487 - t423 + t82 * t458,
                 0.0,
                 0.0,
                 0.0,
@@ -3425,7 +3424,6 @@ impl Spherical3Rrr {
         let t376 = rate_distal_leg3 * rate_distal_leg3;
         let t379 = c_distal_leg3 * (t289 + rate_dot_distal_leg3)
             + minus_s_distal_leg3 * (t376 - t288);
-        let t384 = c_proximal_leg3 * t292;
         let t390 = minus_s_distal_leg1 * (t267 + minus_rate_dot_distal_leg1)
             - c_distal_leg1 * (t306 - t342);
         let t401 = minus_s_distal_leg2 * (t281 + minus_rate_dot_distal_leg2)
@@ -3479,9 +3477,9 @@ impl Spherical3Rrr {
                 -(minus_gproximal_wy_leg1 * t303 + s_proximal_leg1 * t307), t318,
                 c_proximal_leg3 * t329 + minus_gproximal_wy_leg3 * t326,
                 minus_gproximal_wy_leg1 * t345 + s_proximal_leg1 * t262, -t362,
-                minus_gproximal_wy_leg3 * t379 - t384,
+                minus_gproximal_wy_leg3 * t379 - c_proximal_leg3 * t292,
                 s_proximal_leg1 * t92 - minus_gproximal_wy_leg1 * t390, t401,
-                -(minus_gproximal_wy_leg3 * t413 + t218 * t384),
+                -(minus_gproximal_wy_leg3 * t413 + minus_gproximal_wx_leg3 * t292),
                 t56 * t242 - minus_gproximal_wy_leg1 * t419, -t425, -(t218 * t183),
             ],
             [
@@ -3686,13 +3684,13 @@ impl Spherical3Rrr {
         let t363 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
         let t366 = minus_s_distal_leg2 * (t286 + minus_rate_dot_distal_leg2)
             + c_distal_leg2 * (t363 - t285);
-        let t371 = minus_s_proximal_leg2 * t279;
         let t373 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = minus_c_proximal_leg3 * acceleration[1]
             - minus_s_proximal_leg3 * acceleration[0] - t225 * rate_proximal_leg3;
         let t383 = c_distal_leg3 * (t373 - t299)
             - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t300);
         let t385 = minus_s_proximal_leg3 * t293;
+        let t388 = minus_c_proximal_leg3 * t293;
         let t394 = minus_s_distal_leg1 * (t310 - t346)
             + c_distal_leg1 * (minus_rate_dot_distal_leg1 - t272);
         let t406 = minus_s_distal_leg2 * (t321 - t363)
@@ -3743,9 +3741,9 @@ impl Spherical3Rrr {
                 gproximal_wy_leg1 * t308 - minus_s_proximal_leg1 * t311, t319,
                 minus_c_proximal_leg3 * t333 - gproximal_wy_leg3 * t330,
                 gproximal_wy_leg1 * t349 + minus_s_proximal_leg1 * t265, t366,
-                gproximal_wy_leg3 * t383 - minus_c_proximal_leg3 * t293,
+                gproximal_wy_leg3 * t383 - t388,
                 -(gproximal_wy_leg1 * t394 + minus_s_distal_leg1 * t182), -t406,
-                gproximal_wy_leg3 * t416 + gproximal_wx_leg3 * t293,
+                gproximal_wy_leg3 * t416 + t215 * t388,
                 minus_s_proximal_leg1 * (minus_s_distal_leg1 * t245)
                     - gproximal_wy_leg1 * t423,
                 t430,
@@ -3766,9 +3764,9 @@ impl Spherical3Rrr {
                 gproximal_wz_leg1 * t308 + minus_c_proximal_leg1 * t311,
                 gproximal_wz_leg2 * t319 - minus_s_proximal_leg2 * t322, -t330,
                 gproximal_wz_leg1 * t349 - minus_c_proximal_leg1 * t265,
-                gproximal_wz_leg2 * t366 + t371, t383,
+                gproximal_wz_leg2 * t366 + minus_s_proximal_leg2 * t279, t383,
                 t265 * gproximal_wy_leg1 - gproximal_wz_leg1 * t394,
-                -(gproximal_wz_leg2 * t406 + t187 * t371), t416,
+                -(gproximal_wz_leg2 * t406 + gproximal_wx_leg2 * t279), t416,
                 -(minus_s_proximal_leg1 * t239 / minus_s_distal_leg1),
                 minus_c_proximal_leg2 * t242 / minus_s_distal_leg2, 0.0,
             ],
@@ -3785,7 +3783,7 @@ impl Spherical3Rrr {
     /// Output: 3 x 40.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 487 operations (186 additions, 288 multiplications, 13 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 394 intermediates.
+    /// 493 operations (187 additions, 287 multiplications, 19 divisions), 3 square roots, 0 trigonometric pairs, 9 signs, 400 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -3811,41 +3809,39 @@ impl Spherical3Rrr {
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t13 = 1.0 / c_distal_leg1;
         let t14 = minus_s_distal_leg1 * t13;
-        let t15 = pose[3] * t0;
-        let t16 = pose[0] * t6;
-        let t17 = t15 + t16;
-        let s_proximal_leg1 = t13 * t17;
-        let t20 = 1.0 - pose[1] * t6;
-        let t21 = t20 - t4;
-        let c_proximal_leg1 = t13 * t21;
+        let t16 = 1.0 - pose[1] * t6;
+        let t17 = t16 - t4;
+        let c_proximal_leg1 = t17 / c_distal_leg1;
         let minus_gproximal_wy_leg1 = c_proximal_leg1 * t14;
-        let t24 = minus_gproximal_wy_leg1 * actuator_velocities[0];
-        let t26 = pose[3] * t6;
-        let t27 = pose[0] * t0;
-        let minus_s_distal_leg3 = t26 - t27;
-        let t30 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
-        ::overact::guard::reach(t30, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t30);
+        let t20 = minus_gproximal_wy_leg1 * actuator_velocities[0];
+        let t22 = t7 + t8;
+        let t23 = pose[3] * t6;
+        let t24 = pose[0] * t0;
+        let minus_s_distal_leg3 = t23 - t24;
+        let t27 = 1.0 - minus_s_distal_leg3 * minus_s_distal_leg3;
+        ::overact::guard::reach(t27, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t27);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t32 = 1.0 / c_distal_leg3;
-        let t33 = t7 + t8;
-        let s_proximal_leg3 = t32 * t33;
-        let t35 = minus_s_distal_leg3 * t32;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t35;
-        let t37 = minus_gproximal_wy_leg3 * actuator_velocities[2];
-        let t39 = t26 + t27;
-        let minus_s_distal_leg2 = t15 - t16;
-        let t42 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t42, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t42);
+        let s_proximal_leg3 = t22 / c_distal_leg3;
+        let t30 = minus_s_distal_leg3 / c_distal_leg3;
+        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t30;
+        let t32 = minus_gproximal_wy_leg3 * actuator_velocities[2];
+        let t34 = t16 - t1;
+        let t35 = pose[3] * t0;
+        let t36 = pose[0] * t6;
+        let minus_s_distal_leg2 = t35 - t36;
+        let t39 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t39, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t39);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t44 = 1.0 / c_distal_leg2;
-        let s_proximal_leg2 = t39 * t44;
-        let t46 = minus_s_distal_leg2 * t44;
+        let t42 = t23 + t24;
+        let s_proximal_leg2 = t42 * t34 / (t34 * c_distal_leg2);
+        let t45 = 1.0 / c_distal_leg2;
+        let t46 = minus_s_distal_leg2 * t45;
         let minus_gproximal_wx_leg2 = s_proximal_leg2 * t46;
         let t48 = minus_gproximal_wx_leg2 * actuator_velocities[1];
         let c_proximal_leg3 = t5 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t35;
+        let minus_gproximal_wx_leg3 = c_proximal_leg3 * t30;
         let t52 = minus_gproximal_wx_leg3 * actuator_velocities[2];
         let t53 = actuator_velocities[0] - t48 - t52;
         let t56 = minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
@@ -3855,175 +3851,173 @@ impl Spherical3Rrr {
         ::overact::guard::platform(t60, 1.0, "actuators")?;
         ::overact::guard::platform(t60, 1.0, "actuators")?;
         let t61 = t56 / t60;
-        let t63 = actuator_velocities[1] - t24 - t37 - t53 * t61;
+        let t63 = actuator_velocities[1] - t20 - t32 - t53 * t61;
         let t69 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1 + 1.0
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3 - t56 * t61;
         ::overact::guard::platform(t69, 1.0, "actuators")?;
         ::overact::guard::platform(t69, 1.0, "actuators")?;
+        let t71 = t35 + t36;
+        let s_proximal_leg1 = t71 / c_distal_leg1;
         let minus_gproximal_wz_leg1 = s_proximal_leg1 * t14;
-        let t73 = t20 - t1;
-        let c_proximal_leg2 = t73 / c_distal_leg2;
+        let c_proximal_leg2 = t34 * t45;
         let minus_gproximal_wz_leg2 = c_proximal_leg2 * t46;
-        let t80 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
+        let t81 = minus_gproximal_wx_leg2 * minus_gproximal_wz_leg2
             - minus_gproximal_wz_leg1 - minus_gproximal_wx_leg3;
-        let t81 = t80 / t60;
-        let t83 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
-            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t56 * t81;
-        let t84 = t83 / t69;
-        let t85 = minus_gproximal_wz_leg1 * actuator_velocities[0];
-        let t86 = minus_gproximal_wz_leg2 * actuator_velocities[1];
-        let t100 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
-            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t80 * t81
-            - t83 * t84;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        ::overact::guard::platform(t100, 1.0, "actuators")?;
-        let t101 = (actuator_velocities[2] - (t85 + t86) - t53 * t81 - t84 * t63) / t100;
-        let t103 = t63 / t69 - t84 * t101;
-        let minus_rate_distal_leg1 = s_proximal_leg1 * t103 - c_proximal_leg1 * t101;
-        let t109 = c_proximal_leg1 * t103 + s_proximal_leg1 * t101;
-        let rate_wrist_leg1 = t13 * t109;
-        let t111 = minus_s_distal_leg1 * rate_wrist_leg1;
+        let t82 = t81 / t60;
+        let t84 = minus_gproximal_wy_leg1 * minus_gproximal_wz_leg1
+            - minus_gproximal_wz_leg2 - minus_gproximal_wy_leg3 - t56 * t82;
+        let t85 = t84 / t69;
+        let t86 = minus_gproximal_wz_leg1 * actuator_velocities[0];
+        let t87 = minus_gproximal_wz_leg2 * actuator_velocities[1];
+        let t101 = minus_gproximal_wz_leg1 * minus_gproximal_wz_leg1
+            + minus_gproximal_wz_leg2 * minus_gproximal_wz_leg2 + 1.0 - t81 * t82
+            - t84 * t85;
+        ::overact::guard::platform(t101, 1.0, "actuators")?;
+        ::overact::guard::platform(t101, 1.0, "actuators")?;
+        let t102 = (actuator_velocities[2] - (t86 + t87) - t53 * t82 - t85 * t63) / t101;
+        let t104 = t63 / t69 - t85 * t102;
+        let t107 = c_proximal_leg1 * t104 + s_proximal_leg1 * t102;
+        let minus_rate_distal_leg1 = s_proximal_leg1 * t104 - c_proximal_leg1 * t102;
+        let t111 = t107 * minus_rate_distal_leg1;
         let t113 = actuator_velocities[0] * minus_rate_distal_leg1;
-        let t114 = minus_rate_distal_leg1 * t111 - t113;
-        let minus_rate_dot_proximal_leg1 = t14 * t114 + t109 * minus_rate_distal_leg1;
-        let t118 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
-        let t119 = actuator_velocities[0] + t111;
-        let t122 = t39 * t119 + t73 * t101;
-        let t123 = t122 / c_distal_leg2;
-        let minus_rate_distal_leg2 = s_proximal_leg2 * t101 - c_proximal_leg2 * t119;
-        let t127 = t123 * minus_rate_distal_leg2;
-        let t129 = actuator_velocities[1] * minus_rate_distal_leg2;
-        let minus_rate_dot_proximal_leg2 = t46 * (t46 * t127 - t129) + t127;
-        let t133 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let rate_distal_leg3 = c_proximal_leg3 * t103 - s_proximal_leg3 * t119;
-        let t139 = actuator_velocities[2] * rate_distal_leg3;
-        let t142 = t5 * t119 + t33 * t103;
-        let t143 = t32 * t142;
-        let t144 = t143 * rate_distal_leg3;
-        let minus_rate_dot_proximal_leg3 = t35 * (t139 - t35 * t144) - t144;
-        let t149 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t155 = t118 - minus_gproximal_wx_leg2 * t133
-            - minus_gproximal_wx_leg3 * t149;
-        let t157 = t133 - minus_gproximal_wy_leg1 * t118 - minus_gproximal_wy_leg3 * t149
-            - t61 * t155;
-        let t167 = (t149
-            - (minus_gproximal_wz_leg1 * t118 + minus_gproximal_wz_leg2 * t133)
-            - t81 * t155 - t84 * t157) / t100;
-        let t169 = t157 / t69 - t84 * t167;
-        let t172 = c_proximal_leg1 * t169 + s_proximal_leg1 * t167;
-        let t174 = t118 + t14 * t172;
-        let t179 = t5 * t174 + t33 * t169 + minus_s_distal_leg3 * t167;
-        let t182 = t142 + minus_s_distal_leg3 * t101;
-        let t184 = minus_s_distal_leg2 * t103 + t122;
-        let t185 = t182 * t184;
-        let t186 = minus_s_distal_leg1 * t185;
-        let t188 = minus_s_distal_leg1 * actuator_velocities[0];
-        let t189 = t188 + rate_wrist_leg1;
-        let t190 = t189 * t182;
-        let t191 = t39 * t190;
-        let t194 = t21 * t185;
-        let t196 = minus_s_distal_leg2 * t190;
-        let t199 = t17 * t185;
-        let t201 = t73 * t190;
-        let t203 = minus_s_distal_leg1 * actuator_accelerations[0];
-        let t204 = c_distal_leg1 * actuator_velocities[0];
-        let rate_dot_wrist_leg1 = t13 * (t172 + t114);
-        let t209 = t203 + minus_rate_distal_leg1 * t204 + rate_dot_wrist_leg1;
-        let t210 = t209 - t185;
-        let t212 = t189 * t184;
-        let t213 = t179 + t212;
-        let t216 = t182 * t182;
-        let t217 = t189 * t189;
-        let t218 = t216 - t217;
-        let t235 = t39 * t174 + minus_s_distal_leg2 * t169 + t73 * t167;
-        let t236 = t235 + t190;
-        let t238 = t184 * t184;
-        let t239 = t238 - t216;
-        let t242 = t179 - t212;
-        let t256 = t5 * t212;
-        let t260 = t33 * t212;
-        let t264 = minus_s_distal_leg3 * t212;
-        let t267 = t217 - t238;
-        let t269 = t235 - t190;
-        let t272 = t209 + t185;
-        let t294 = 9.81 * t33;
-        let t295 = 9.81 * t5;
-        let t298 = 9.81 * minus_s_distal_leg2;
-        let t306 = 9.81 * c_proximal_leg1;
-        let t308 = minus_gproximal_wz_leg1 * t306;
-        let t309 = 9.81 * s_proximal_leg2;
-        let t311 = minus_gproximal_wz_leg2 * t309;
-        let t312 = 9.81 * s_proximal_leg1;
-        let t314 = 9.81 * c_proximal_leg2;
-        let t325 = minus_rate_distal_leg1 * t188;
-        let t326 = c_distal_leg1 * actuator_accelerations[0];
-        let t328 = t325 + t325 - t326;
-        let t329 = c_distal_leg1 * t328;
-        let t331 = t204 * t188;
-        let t337 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t338 = minus_rate_distal_leg2 * t337;
-        let t339 = c_distal_leg2 * actuator_accelerations[1];
-        let t341 = t338 + t338 - t339;
-        let t342 = c_distal_leg2 * t341;
-        let t344 = c_distal_leg2 * actuator_velocities[1];
-        let t345 = t344 * t337;
-        let t351 = c_distal_leg3 * actuator_velocities[2];
-        let t352 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t353 = t351 * t352;
-        let t355 = rate_distal_leg3 * t352;
-        let t356 = c_distal_leg3 * actuator_accelerations[2];
-        let t358 = t355 + t356 + t355;
-        let t359 = c_distal_leg3 * t358;
-        let t367 = 2.0 * (t113 - minus_s_distal_leg1 * t328);
-        let t369 = t204 * t204;
-        let t370 = t188 * t188;
-        let t371 = t369 - t370;
-        let t377 = t344 * t344;
-        let t378 = t337 * t337;
-        let t379 = t377 - t378;
-        let t383 = 2.0 * (t129 - minus_s_distal_leg2 * t341);
-        let t390 = t139 - minus_s_distal_leg3 * t358;
-        let t391 = t390 + t390;
-        let t393 = t351 * t351;
-        let t394 = t352 * t352;
-        let t395 = t393 - t394;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t109;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t169
-            - c_proximal_leg1 * t167 + minus_rate_dot_distal_leg1;
-        let t408 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t411 = c_distal_leg1 * (t331 - minus_rate_dot_distal_leg1_2)
-            + minus_s_distal_leg1 * (t408 - t369);
-        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t123;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t167
-            - c_proximal_leg2 * t174 + minus_rate_dot_distal_leg2;
-        let t425 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t428 = c_distal_leg2 * (t345 - minus_rate_dot_distal_leg2_2)
-            + minus_s_distal_leg2 * (t425 - t377);
-        let t433 = s_proximal_leg2 * t339;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t143;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t169 - s_proximal_leg3 * t174
+        let t114 = t14 * t111 - t113;
+        let minus_rate_dot_proximal_leg1 = t14 * t114 + t111;
+        let t117 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let t123 = t53 / t60 - t61 * t104 - t82 * t102;
+        let minus_rate_distal_leg2 = s_proximal_leg2 * t102 - c_proximal_leg2 * t123;
+        let t128 = s_proximal_leg2 * t123 + c_proximal_leg2 * t102;
+        let t131 = actuator_velocities[1] * minus_rate_distal_leg2;
+        let minus_rate_dot_proximal_leg2 = t46
+            * (minus_rate_distal_leg2 * (t46 * t128) - t131)
+            + t128 * minus_rate_distal_leg2;
+        let t136 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
+        let rate_distal_leg3 = c_proximal_leg3 * t104 - s_proximal_leg3 * t123;
+        let t142 = actuator_velocities[2] * rate_distal_leg3;
+        let t145 = t5 * t123 + t22 * t104;
+        let t146 = t145 / c_distal_leg3;
+        let t147 = t146 * rate_distal_leg3;
+        let minus_rate_dot_proximal_leg3 = t30 * (t142 - t30 * t147) - t147;
+        let t152 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t154 = t117 - minus_gproximal_wx_leg2 * t136
+            - minus_gproximal_wx_leg3 * t152;
+        let t161 = t136 - minus_gproximal_wy_leg1 * t117 - minus_gproximal_wy_leg3 * t152
+            - t61 * t154;
+        let t171 = (t152
+            - (minus_gproximal_wz_leg1 * t117 + minus_gproximal_wz_leg2 * t136)
+            - t82 * t154 - t85 * t161) / t101;
+        let t173 = t161 / t69 - t85 * t171;
+        let t177 = t154 / t60 - t61 * t173 - t82 * t171;
+        let t182 = t5 * t177 + t22 * t173 + minus_s_distal_leg3 * t171;
+        let t185 = t145 + minus_s_distal_leg3 * t102;
+        let t186 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t188 = t186 + t45 * t128;
+        let t189 = t185 * t188;
+        let t190 = minus_s_distal_leg1 * t189;
+        let t192 = minus_s_distal_leg1 * actuator_velocities[0];
+        let rate_wrist_leg1 = t13 * t107;
+        let t194 = t192 + rate_wrist_leg1;
+        let t195 = t194 * t185;
+        let t196 = t42 * t195;
+        let t199 = t17 * t189;
+        let t201 = minus_s_distal_leg2 * t195;
+        let t204 = t71 * t189;
+        let t206 = t34 * t195;
+        let t208 = minus_s_distal_leg1 * actuator_accelerations[0];
+        let t209 = c_distal_leg1 * actuator_velocities[0];
+        let rate_dot_wrist_leg1 = t13
+            * (c_proximal_leg1 * t173 + s_proximal_leg1 * t171 + t114);
+        let t217 = t208 + minus_rate_distal_leg1 * t209 + rate_dot_wrist_leg1;
+        let t218 = t217 - t189;
+        let t220 = t194 * t188;
+        let t221 = t182 + t220;
+        let t224 = t185 * t185;
+        let t225 = t194 * t194;
+        let t226 = t224 - t225;
+        let t243 = t42 * t177 + minus_s_distal_leg2 * t173 + t34 * t171;
+        let t244 = t243 + t195;
+        let t246 = t188 * t188;
+        let t247 = t246 - t224;
+        let t250 = t182 - t220;
+        let t264 = t5 * t220;
+        let t268 = t22 * t220;
+        let t272 = minus_s_distal_leg3 * t220;
+        let t275 = t225 - t246;
+        let t277 = t243 - t195;
+        let t280 = t217 + t189;
+        let t302 = 9.81 * t22;
+        let t303 = 9.81 * t5;
+        let t307 = 9.81 * t42;
+        let t310 = minus_gproximal_wx_leg2 * actuator_accelerations[1];
+        let t314 = 9.81 * c_proximal_leg1;
+        let t316 = minus_gproximal_wz_leg1 * t314;
+        let t317 = 9.81 * s_proximal_leg2;
+        let t319 = minus_gproximal_wz_leg2 * t317;
+        let t320 = 9.81 * s_proximal_leg1;
+        let t322 = 9.81 * c_proximal_leg2;
+        let t333 = minus_rate_distal_leg1 * t192;
+        let t334 = c_distal_leg1 * actuator_accelerations[0];
+        let t336 = t333 + t333 - t334;
+        let t337 = c_distal_leg1 * t336;
+        let t339 = t209 * t192;
+        let t345 = minus_rate_distal_leg2 * t186;
+        let t346 = c_distal_leg2 * actuator_accelerations[1];
+        let t348 = t345 + t345 - t346;
+        let t349 = c_distal_leg2 * t348;
+        let t351 = c_distal_leg2 * actuator_velocities[1];
+        let t352 = t351 * t186;
+        let t358 = c_distal_leg3 * actuator_velocities[2];
+        let t359 = t358 * t358;
+        let t360 = t30 * t359;
+        let t362 = minus_s_distal_leg3 * t142;
+        let t363 = c_distal_leg3 * actuator_accelerations[2];
+        let t365 = t362 + t363 + t362;
+        let t366 = c_distal_leg3 * t365;
+        let t374 = 2.0 * (t113 - minus_s_distal_leg1 * t336);
+        let t376 = t209 * t209;
+        let t377 = t192 * t192;
+        let t378 = t376 - t377;
+        let t384 = t351 * t351;
+        let t385 = t186 * t186;
+        let t386 = t384 - t385;
+        let t390 = 2.0 * (t131 - minus_s_distal_leg2 * t348);
+        let t398 = 2.0 * (t142 - minus_s_distal_leg3 * t365);
+        let t400 = t30 * t360;
+        let t401 = t359 - t400;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t107;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t173
+            - c_proximal_leg1 * t171 + minus_rate_dot_distal_leg1;
+        let t414 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t417 = c_distal_leg1 * (t339 - minus_rate_dot_distal_leg1_2)
+            + minus_s_distal_leg1 * (t414 - t376);
+        let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t128;
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t171
+            - c_proximal_leg2 * t177 + minus_rate_dot_distal_leg2;
+        let t431 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t434 = c_distal_leg2 * (t352 - minus_rate_dot_distal_leg2_2)
+            + minus_s_distal_leg2 * (t431 - t384);
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t146;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t173 - s_proximal_leg3 * t177
             - minus_rate_dot_distal_leg3;
-        let t442 = rate_distal_leg3 * rate_distal_leg3;
-        let t445 = c_distal_leg3 * (t353 + rate_dot_distal_leg3)
-            + minus_s_distal_leg3 * (t442 - t393);
-        let t456 = minus_s_distal_leg1 * (t331 + minus_rate_dot_distal_leg1_2)
-            - c_distal_leg1 * (t370 - t408);
-        let t467 = minus_s_distal_leg2 * (t345 + minus_rate_dot_distal_leg2_2)
-            - c_distal_leg2 * (t378 - t425);
-        let t479 = minus_s_distal_leg3 * (t353 - rate_dot_distal_leg3)
-            - c_distal_leg3 * (t394 - t442);
-        let t485 = minus_s_distal_leg1 * t306;
-        let t491 = s_proximal_leg2 * t298;
+        let t448 = rate_distal_leg3 * rate_distal_leg3;
+        let t451 = c_distal_leg3 * (t360 + rate_dot_distal_leg3)
+            + minus_s_distal_leg3 * (t448 - t359);
+        let t462 = minus_s_distal_leg1 * (t339 + minus_rate_dot_distal_leg1_2)
+            - c_distal_leg1 * (t377 - t414);
+        let t473 = minus_s_distal_leg2 * (t352 + minus_rate_dot_distal_leg2_2)
+            - c_distal_leg2 * (t385 - t431);
+        let t485 = minus_s_distal_leg3 * (t360 - rate_dot_distal_leg3)
+            - c_distal_leg3 * (t400 - t448);
+        let t491 = minus_s_distal_leg1 * t314;
+        let t497 = t46 * t307;
         Ok([
             [
-                t5 * t179 + t186 - t191, t5 * t210 + minus_s_distal_leg1 * t213 + t39 * t218,
-                t5 * t236 + minus_s_distal_leg1 * t239 + t39 * t242,
-                minus_s_distal_leg1 * t209 - t256 + t191,
-                t5 * t267 + minus_s_distal_leg1 * t269 + t39 * t272, t256 - t186 + t39 * t235, t294,
-                9.81 * t21, t298, actuator_accelerations[0],
-                -(minus_gproximal_wx_leg2 * actuator_accelerations[1]),
-                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t306,
-                -(minus_gproximal_wx_leg2 * t309), t312, -t311, actuator_velocities[0], -t48, -t52,
+                t5 * t182 + t190 - t196, t5 * t218 + minus_s_distal_leg1 * t221 + t42 * t226,
+                t5 * t244 + minus_s_distal_leg1 * t247 + t42 * t250,
+                minus_s_distal_leg1 * t217 - t264 + t196,
+                t5 * t275 + minus_s_distal_leg1 * t277 + t42 * t280, t264 - t190 + t42 * t243, t302,
+                9.81 * t17, 9.81 * minus_s_distal_leg2, actuator_accelerations[0], -t310,
+                -(minus_gproximal_wx_leg3 * actuator_accelerations[2]), -t314,
+                -(minus_gproximal_wx_leg2 * t317), t320, -t319, actuator_velocities[0], -t48, -t52,
                 ::overact::math::sign(actuator_velocities[0]),
                 -::overact::math::signed(
                     minus_gproximal_wx_leg2,
@@ -4036,31 +4030,31 @@ impl Spherical3Rrr {
                 1.0,
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
-                -t329,
-                minus_gproximal_wx_leg2 * t342 - c_proximal_leg2 * t345,
-                s_proximal_leg3 * t353 - minus_gproximal_wx_leg3 * t359,
-                t367,
-                c_proximal_leg2 * t379 - minus_gproximal_wx_leg2 * t383,
-                -(s_proximal_leg3 * t395 - minus_gproximal_wx_leg3 * t391),
-                -t411,
-                minus_gproximal_wx_leg2 * t428 - c_proximal_leg2 * t339,
-                minus_gproximal_wx_leg3 * t445 + s_proximal_leg3 * t356,
-                t456,
-                -(minus_gproximal_wx_leg2 * t467 + minus_gproximal_wz_leg2 * t339),
-                minus_gproximal_wy_leg3 * t356 - minus_gproximal_wx_leg3 * t479,
-                t485,
-                minus_gproximal_wx_leg2 * t491 - t73 * t314,
-                t35 * t294,
+                -t337,
+                minus_gproximal_wx_leg2 * t349 - c_proximal_leg2 * t352,
+                s_proximal_leg3 * t360 - minus_gproximal_wx_leg3 * t366,
+                t374,
+                c_proximal_leg2 * t386 - minus_gproximal_wx_leg2 * t390,
+                -(s_proximal_leg3 * t401 - minus_gproximal_wx_leg3 * t398),
+                -t417,
+                minus_gproximal_wx_leg2 * t434 - c_proximal_leg2 * t346,
+                minus_gproximal_wx_leg3 * t451 + s_proximal_leg3 * t363,
+                t462,
+                -(minus_gproximal_wx_leg2 * t473 + minus_gproximal_wz_leg2 * t346),
+                minus_gproximal_wy_leg3 * t363 - minus_gproximal_wx_leg3 * t485,
+                t491,
+                minus_gproximal_wx_leg2 * t497 - t34 * t322,
+                t30 * t302,
             ],
             [
-                t33 * t179 + t194 - t196, t33 * t210 + t21 * t213 + minus_s_distal_leg2 * t218,
-                t33 * t236 + t21 * t239 + minus_s_distal_leg2 * t242, t21 * t209 - t260 + t196,
-                t33 * t267 + t21 * t269 + minus_s_distal_leg2 * t272,
-                t260 - t194 + minus_s_distal_leg2 * t235, -t295, -(9.81 * minus_s_distal_leg1),
-                -(9.81 * t39), -(minus_gproximal_wy_leg1 * actuator_accelerations[0]),
+                t22 * t182 + t199 - t201, t22 * t218 + t17 * t221 + minus_s_distal_leg2 * t226,
+                t22 * t244 + t17 * t247 + minus_s_distal_leg2 * t250, t17 * t217 - t268 + t201,
+                t22 * t275 + t17 * t277 + minus_s_distal_leg2 * t280,
+                t268 - t199 + minus_s_distal_leg2 * t243, -t303, -(9.81 * minus_s_distal_leg1),
+                -t307, -(minus_gproximal_wy_leg1 * actuator_accelerations[0]),
                 actuator_accelerations[1], -(minus_gproximal_wy_leg3 * actuator_accelerations[2]),
-                minus_gproximal_wy_leg1 * t306, t309, -t308, t314, -t24, actuator_velocities[1],
-                -t37,
+                minus_gproximal_wy_leg1 * t314, t317, -t316, t322, -t20, actuator_velocities[1],
+                -t32,
                 -::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     actuator_velocities[0],
@@ -4073,31 +4067,31 @@ impl Spherical3Rrr {
                 -minus_gproximal_wy_leg1,
                 1.0,
                 -minus_gproximal_wy_leg3,
-                minus_gproximal_wy_leg1 * t329 + s_proximal_leg1 * t331,
-                -t342,
-                -(minus_gproximal_wy_leg3 * t359 + c_proximal_leg3 * t353),
-                -(minus_gproximal_wy_leg1 * t367 + s_proximal_leg1 * t371),
-                t383,
-                c_proximal_leg3 * t395 + minus_gproximal_wy_leg3 * t391,
-                minus_gproximal_wy_leg1 * t411 + s_proximal_leg1 * t326,
-                -t428,
-                minus_gproximal_wy_leg3 * t445 - c_proximal_leg3 * t356,
-                s_proximal_leg1 * t203 - minus_gproximal_wy_leg1 * t456,
-                t467,
-                -(minus_gproximal_wy_leg3 * t479 + minus_gproximal_wx_leg3 * t356),
-                t17 * t312 - minus_gproximal_wy_leg1 * t485,
-                -t491,
-                -(t35 * t295),
+                minus_gproximal_wy_leg1 * t337 + s_proximal_leg1 * t339,
+                -t349,
+                -(minus_gproximal_wy_leg3 * t366 + c_proximal_leg3 * t360),
+                -(minus_gproximal_wy_leg1 * t374 + s_proximal_leg1 * t378),
+                t390,
+                c_proximal_leg3 * t401 + minus_gproximal_wy_leg3 * t398,
+                minus_gproximal_wy_leg1 * t417 + s_proximal_leg1 * t334,
+                -t434,
+                minus_gproximal_wy_leg3 * t451 - c_proximal_leg3 * t363,
+                s_proximal_leg1 * t208 - minus_gproximal_wy_leg1 * t462,
+                t473,
+                -(minus_gproximal_wy_leg3 * t485 + minus_gproximal_wx_leg3 * t363),
+                t71 * t320 - minus_gproximal_wy_leg1 * t491,
+                -t497,
+                -(t30 * t303),
             ],
             [
-                minus_s_distal_leg3 * t179 + t199 - t201,
-                minus_s_distal_leg3 * t210 + t17 * t213 + t73 * t218,
-                minus_s_distal_leg3 * t236 + t17 * t239 + t73 * t242, t17 * t209 - t264 + t201,
-                minus_s_distal_leg3 * t267 + t17 * t269 + t73 * t272, t264 - t199 + t73 * t235, 0.0,
+                minus_s_distal_leg3 * t182 + t204 - t206,
+                minus_s_distal_leg3 * t218 + t71 * t221 + t34 * t226,
+                minus_s_distal_leg3 * t244 + t71 * t247 + t34 * t250, t71 * t217 - t272 + t206,
+                minus_s_distal_leg3 * t275 + t71 * t277 + t34 * t280, t272 - t204 + t34 * t243, 0.0,
                 0.0, 0.0, -(minus_gproximal_wz_leg1 * actuator_accelerations[0]),
                 -(minus_gproximal_wz_leg2 * actuator_accelerations[1]), actuator_accelerations[2],
-                t308, -t311, -(minus_gproximal_wz_leg1 * t312), -(minus_gproximal_wz_leg2 * t314),
-                -t85, -t86, actuator_velocities[2],
+                t316, -t319, -(minus_gproximal_wz_leg1 * t320), -(minus_gproximal_wz_leg2 * t322),
+                -t86, -t87, actuator_velocities[2],
                 -::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     actuator_velocities[0],
@@ -4110,20 +4104,20 @@ impl Spherical3Rrr {
                 -minus_gproximal_wz_leg1,
                 -minus_gproximal_wz_leg2,
                 1.0,
-                minus_gproximal_wz_leg1 * t329 - c_proximal_leg1 * t331,
-                minus_gproximal_wz_leg2 * t342 + s_proximal_leg2 * t345,
-                t359,
-                c_proximal_leg1 * t371 - minus_gproximal_wz_leg1 * t367,
-                -(minus_gproximal_wz_leg2 * t383 + s_proximal_leg2 * t379),
-                -t391,
-                minus_gproximal_wz_leg1 * t411 - c_proximal_leg1 * t326,
-                minus_gproximal_wz_leg2 * t428 + t433,
-                -t445,
-                -(minus_gproximal_wz_leg1 * t456 + c_proximal_leg1 * t203),
-                t46 * t433 - minus_gproximal_wz_leg2 * t467,
-                t479,
-                -(t306 * (t13 * s_proximal_leg1)),
-                t314 * (s_proximal_leg2 * t44),
+                minus_gproximal_wz_leg1 * t337 - c_proximal_leg1 * t339,
+                minus_gproximal_wz_leg2 * t349 + s_proximal_leg2 * t352,
+                t366,
+                c_proximal_leg1 * t378 - minus_gproximal_wz_leg1 * t374,
+                -(minus_gproximal_wz_leg2 * t390 + s_proximal_leg2 * t386),
+                -t398,
+                minus_gproximal_wz_leg1 * t417 - c_proximal_leg1 * t334,
+                minus_gproximal_wz_leg2 * t434 + s_proximal_leg2 * t346,
+                -t451,
+                -(minus_gproximal_wz_leg1 * t462 + c_proximal_leg1 * t208),
+                c_distal_leg2 * t310 - minus_gproximal_wz_leg2 * t473,
+                t485,
+                -(t314 * (s_proximal_leg1 / c_distal_leg1)),
+                t322 * (s_proximal_leg2 * t45),
                 0.0,
             ],
         ])
@@ -5788,7 +5782,7 @@ impl Spherical3Rrr {
     ///
     /// Output: 3.
     ///
-    /// 649 operations (286 additions, 357 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 652 intermediates.
+    /// 653 operations (287 additions, 360 multiplications, 6 divisions), 3 square roots, 0 trigonometric pairs, 3 signs, 656 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5908,211 +5902,210 @@ impl Spherical3Rrr {
         let t131 = minus_s_distal_leg1 * actuator_accelerations[0];
         let t132 = t131 + t130;
         let t136 = t129 * t124;
-        let t139 = c_proximal_leg1 * t120 + s_proximal_leg1 * t118;
-        let t140 = t60 * t139;
-        let t141 = actuator_velocities[0] + t140;
+        let t141 = t83 * t32 - t72 * t120 - t97 * t118;
         let t144 = s_proximal_leg2 * t141 + c_proximal_leg2 * t118;
         let minus_rate_distal_leg2 = s_proximal_leg2 * t118 - c_proximal_leg2 * t141;
         let t148 = t144 * minus_rate_distal_leg2;
         let minus_rate_dot_proximal_leg2 = t13
             * (t13 * t148 - actuator_velocities[1] * minus_rate_distal_leg2) + t148;
         let t154 = actuator_accelerations[1] + minus_rate_dot_proximal_leg2;
-        let t157 = minus_rate_distal_leg1 * t140
+        let t157 = c_proximal_leg1 * t120 + s_proximal_leg1 * t118;
+        let t161 = minus_rate_distal_leg1 * (t60 * t157)
             - actuator_velocities[0] * minus_rate_distal_leg1;
-        let minus_rate_dot_proximal_leg1 = t60 * t157 + t139 * minus_rate_distal_leg1;
-        let t161 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
+        let minus_rate_dot_proximal_leg1 = t60 * t161 + t157 * minus_rate_distal_leg1;
+        let t165 = actuator_accelerations[0] + minus_rate_dot_proximal_leg1;
         let rate_distal_leg3 = c_proximal_leg3 * t120 - s_proximal_leg3 * t141;
-        let t170 = t21 * t141 + t64 * t120;
-        let t171 = t26 * t170;
-        let t172 = t171 * rate_distal_leg3;
+        let t174 = t21 * t141 + t64 * t120;
+        let t175 = t26 * t174;
+        let t176 = t175 * rate_distal_leg3;
         let minus_rate_dot_proximal_leg3 = t28
-            * (actuator_velocities[2] * rate_distal_leg3 - t28 * t172) - t172;
-        let t177 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
-        let t183 = t161 - minus_gproximal_wx_leg2 * t154
-            - minus_gproximal_wx_leg3 * t177;
-        let t185 = t154 - minus_gproximal_wy_leg1 * t161 - minus_gproximal_wy_leg3 * t177
-            - t72 * t183;
-        let t195 = t109
-            * (t177 - (minus_gproximal_wz_leg1 * t161 + minus_gproximal_wz_leg2 * t154)
-                - t97 * t183 - t100 * t185);
-        let t197 = t75 * t185 - t100 * t195;
-        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t139;
-        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t197
-            - c_proximal_leg1 * t195 + minus_rate_dot_distal_leg1;
-        let t208 = t124 * t124;
-        let t209 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
-        let t212 = parameters[7] * t127 - parameters[8] * (t130 + t132)
+            * (actuator_velocities[2] * rate_distal_leg3 - t28 * t176) - t176;
+        let t181 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let t187 = t165 - minus_gproximal_wx_leg2 * t154
+            - minus_gproximal_wx_leg3 * t181;
+        let t189 = t154 - minus_gproximal_wy_leg1 * t165 - minus_gproximal_wy_leg3 * t181
+            - t72 * t187;
+        let t199 = t109
+            * (t181 - (minus_gproximal_wz_leg1 * t165 + minus_gproximal_wz_leg2 * t154)
+                - t97 * t187 - t100 * t189);
+        let t201 = t75 * t189 - t100 * t199;
+        let minus_rate_dot_distal_leg1 = actuator_velocities[0] * t157;
+        let minus_rate_dot_distal_leg1_2 = s_proximal_leg1 * t201
+            - c_proximal_leg1 * t199 + minus_rate_dot_distal_leg1;
+        let t212 = t124 * t124;
+        let t213 = minus_rate_distal_leg1 * minus_rate_distal_leg1;
+        let t216 = parameters[7] * t127 - parameters[8] * (t130 + t132)
             + parameters[9] * (t136 - minus_rate_dot_distal_leg1_2)
-            - t125 * parameters[10] + parameters[11] * (t208 - t209);
-        let t217 = 9.81 * t48;
-        let t225 = t129 * t129;
-        let t233 = t130 * parameters[7] + parameters[8] * (t125 + t127)
-            + parameters[9] * (t209 - t225) - parameters[10] * t132
+            - t125 * parameters[10] + parameters[11] * (t212 - t213);
+        let t221 = 9.81 * t48;
+        let t229 = t129 * t129;
+        let t237 = t130 * parameters[7] + parameters[8] * (t125 + t127)
+            + parameters[9] * (t213 - t229) - parameters[10] * t132
             - parameters[11] * (t136 + minus_rate_dot_distal_leg1_2);
-        let t238 = minus_s_distal_leg1 * t50;
-        let t242 = c_distal_leg1
-            * (t212 + t125 * parameters[12] + t45 * parameters[14]
-                + t217 * parameters[15])
+        let t242 = minus_s_distal_leg1 * t50;
+        let t246 = c_distal_leg1
+            * (t216 + t125 * parameters[12] + t45 * parameters[14]
+                + t221 * parameters[15])
             + minus_s_distal_leg1
-                * (t233 - t130 * parameters[12] - t45 * parameters[13]
-                    + t238 * parameters[15]);
-        let t243 = t59 - t242;
-        let t244 = c_distal_leg2 * actuator_velocities[1];
-        let t245 = t244 * t244;
-        let t246 = minus_s_distal_leg2 * actuator_velocities[1];
-        let t247 = t246 * t246;
-        let t250 = t244 * t246;
-        let t253 = c_distal_leg2 * actuator_accelerations[1];
-        let t258 = minus_s_distal_leg2 * actuator_accelerations[1];
-        let t260 = parameters[24] * (t245 - t247) - t250 * parameters[23]
-            - parameters[25] * t253 + t250 * parameters[26] - parameters[27] * t258;
-        let t266 = t32 * t183 - t72 * t197 - t97 * t195;
+                * (t237 - t130 * parameters[12] - t45 * parameters[13]
+                    + t242 * parameters[15]);
+        let t247 = t59 - t246;
+        let t248 = c_distal_leg2 * actuator_velocities[1];
+        let t249 = t248 * t248;
+        let t250 = minus_s_distal_leg2 * actuator_velocities[1];
+        let t251 = t250 * t250;
+        let t254 = t248 * t250;
+        let t257 = c_distal_leg2 * actuator_accelerations[1];
+        let t262 = minus_s_distal_leg2 * actuator_accelerations[1];
+        let t264 = parameters[24] * (t249 - t251) - t254 * parameters[23]
+            - parameters[25] * t257 + t254 * parameters[26] - parameters[27] * t262;
+        let t270 = t32 * t187 - t72 * t201 - t97 * t199;
         let minus_rate_dot_distal_leg2 = actuator_velocities[1] * t144;
-        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t195
-            - c_proximal_leg2 * t266 + minus_rate_dot_distal_leg2;
-        let t273 = 9.81 * t89;
-        let t276 = 9.81 * c_proximal_leg2;
-        let t277 = minus_s_distal_leg2 * t276;
-        let t279 = t260 - parameters[28] * minus_rate_dot_distal_leg2_2
-            - t273 * parameters[29] - t277 * parameters[30];
-        let t282 = 9.81 * s_proximal_leg2;
-        let t293 = actuator_accelerations[1] * parameters[16] + t282 * parameters[17]
-            + t276 * parameters[18] + actuator_accelerations[1] * parameters[19]
+        let minus_rate_dot_distal_leg2_2 = s_proximal_leg2 * t199
+            - c_proximal_leg2 * t270 + minus_rate_dot_distal_leg2;
+        let t277 = 9.81 * t89;
+        let t280 = 9.81 * c_proximal_leg2;
+        let t281 = minus_s_distal_leg2 * t280;
+        let t283 = t264 - parameters[28] * minus_rate_dot_distal_leg2_2
+            - t277 * parameters[29] - t281 * parameters[30];
+        let t286 = 9.81 * s_proximal_leg2;
+        let t297 = actuator_accelerations[1] * parameters[16] + t286 * parameters[17]
+            + t280 * parameters[18] + actuator_accelerations[1] * parameters[19]
             + actuator_velocities[1] * parameters[20]
             + ::overact::math::signed(parameters[21], actuator_velocities[1])
             + parameters[22];
-        let t294 = minus_rate_distal_leg2 * t246;
-        let t295 = t294 - t253;
-        let t297 = minus_rate_distal_leg2 * t244;
-        let t298 = t258 + t297;
-        let t307 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
-        let t310 = parameters[23] * t295 - parameters[24] * (t297 + t298)
-            + parameters[25] * (t250 - minus_rate_dot_distal_leg2_2)
-            - t294 * parameters[26] + parameters[27] * (t247 - t307);
-        let t329 = t297 * parameters[23] + parameters[24] * (t294 + t295)
-            + parameters[25] * (t307 - t245) - parameters[26] * t298
-            - parameters[27] * (t250 + minus_rate_dot_distal_leg2_2);
-        let t337 = c_distal_leg2
-            * (t310 + t294 * parameters[28] - t282 * parameters[30]
-                + t273 * parameters[31])
+        let t298 = minus_rate_distal_leg2 * t250;
+        let t299 = t298 - t257;
+        let t301 = minus_rate_distal_leg2 * t248;
+        let t302 = t262 + t301;
+        let t311 = minus_rate_distal_leg2 * minus_rate_distal_leg2;
+        let t314 = parameters[23] * t299 - parameters[24] * (t301 + t302)
+            + parameters[25] * (t254 - minus_rate_dot_distal_leg2_2)
+            - t298 * parameters[26] + parameters[27] * (t251 - t311);
+        let t333 = t301 * parameters[23] + parameters[24] * (t298 + t299)
+            + parameters[25] * (t311 - t249) - parameters[26] * t302
+            - parameters[27] * (t254 + minus_rate_dot_distal_leg2_2);
+        let t341 = c_distal_leg2
+            * (t314 + t298 * parameters[28] - t286 * parameters[30]
+                + t277 * parameters[31])
             + minus_s_distal_leg2
-                * (t329 - t297 * parameters[28] + t282 * parameters[29]
-                    + t277 * parameters[31]);
-        let t338 = t293 - t337;
-        let t350 = c_distal_leg3 * actuator_velocities[2];
-        let t351 = rate_distal_leg3 * t350;
-        let t352 = minus_s_distal_leg3 * actuator_accelerations[2];
-        let t353 = t351 - t352;
-        let t356 = c_distal_leg3 * actuator_accelerations[2];
-        let t357 = minus_s_distal_leg3 * actuator_velocities[2];
-        let t358 = rate_distal_leg3 * t357;
-        let t359 = t356 + t358;
-        let t362 = t350 * t357;
-        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t171;
-        let rate_dot_distal_leg3 = c_proximal_leg3 * t197 - s_proximal_leg3 * t266
+                * (t333 - t301 * parameters[28] + t286 * parameters[29]
+                    + t281 * parameters[31]);
+        let t342 = t297 - t341;
+        let t354 = c_distal_leg3 * actuator_velocities[2];
+        let t355 = rate_distal_leg3 * t354;
+        let t356 = minus_s_distal_leg3 * actuator_accelerations[2];
+        let t357 = t355 - t356;
+        let t360 = c_distal_leg3 * actuator_accelerations[2];
+        let t361 = minus_s_distal_leg3 * actuator_velocities[2];
+        let t362 = rate_distal_leg3 * t361;
+        let t363 = t360 + t362;
+        let t366 = t354 * t361;
+        let minus_rate_dot_distal_leg3 = actuator_velocities[2] * t175;
+        let rate_dot_distal_leg3 = c_proximal_leg3 * t201 - s_proximal_leg3 * t270
             - minus_rate_dot_distal_leg3;
-        let t373 = t357 * t357;
-        let t374 = rate_distal_leg3 * rate_distal_leg3;
-        let t377 = parameters[38] * (t351 + t353) - parameters[37] * t359
-            + parameters[39] * (t362 + rate_dot_distal_leg3) + t358 * parameters[40]
-            + parameters[41] * (t373 - t374);
-        let t381 = t350 * t350;
-        let t393 = parameters[39] * (t374 - t381)
-            - (t351 * parameters[37] + parameters[38] * (t358 + t359))
-            + parameters[40] * t353 - parameters[41] * (t362 - rate_dot_distal_leg3);
-        let t398 = actuator_accelerations[2] * parameters[32]
+        let t377 = t361 * t361;
+        let t378 = rate_distal_leg3 * rate_distal_leg3;
+        let t381 = parameters[38] * (t355 + t357) - parameters[37] * t363
+            + parameters[39] * (t366 + rate_dot_distal_leg3) + t362 * parameters[40]
+            + parameters[41] * (t377 - t378);
+        let t385 = t354 * t354;
+        let t397 = parameters[39] * (t378 - t385)
+            - (t355 * parameters[37] + parameters[38] * (t362 + t363))
+            + parameters[40] * t357 - parameters[41] * (t366 - rate_dot_distal_leg3);
+        let t402 = actuator_accelerations[2] * parameters[32]
             + actuator_accelerations[2] * parameters[33]
             + actuator_velocities[2] * parameters[34]
             + ::overact::math::signed(parameters[35], actuator_velocities[2])
             + parameters[36]
-            - (c_distal_leg3 * (t377 - t358 * parameters[42])
-                + minus_s_distal_leg3 * (t393 + t351 * parameters[42]));
-        let t409 = parameters[38] * (t381 - t373) - t362 * parameters[37]
-            - parameters[39] * t356 + t362 * parameters[40] - parameters[41] * t352;
-        let t417 = t409 + parameters[42] * rate_dot_distal_leg3
+            - (c_distal_leg3 * (t381 - t362 * parameters[42])
+                + minus_s_distal_leg3 * (t397 + t355 * parameters[42]));
+        let t413 = parameters[38] * (t385 - t377) - t366 * parameters[37]
+            - parameters[39] * t360 + t366 * parameters[40] - parameters[41] * t356;
+        let t421 = t413 + parameters[42] * rate_dot_distal_leg3
             - 9.81 * minus_s_distal_leg3 * parameters[43]
             + 9.81 * c_distal_leg3 * parameters[44];
-        let t425 = t21 * t266 + t64 * t197 + minus_s_distal_leg3 * t195;
-        let t428 = t170 + minus_s_distal_leg3 * t118;
-        let t433 = t4 * t141 + minus_s_distal_leg2 * t120 + t89 * t118;
-        let t434 = t428 * t433;
-        let t435 = minus_s_distal_leg1 * t434;
-        let rate_wrist_leg1 = t43 * t139;
-        let t438 = t124 + rate_wrist_leg1;
-        let t439 = t438 * t428;
-        let t440 = t4 * t439;
+        let t429 = t21 * t270 + t64 * t201 + minus_s_distal_leg3 * t199;
+        let t432 = t174 + minus_s_distal_leg3 * t118;
+        let t437 = t4 * t141 + minus_s_distal_leg2 * t120 + t89 * t118;
+        let t438 = t432 * t437;
+        let t439 = minus_s_distal_leg1 * t438;
+        let rate_wrist_leg1 = t43 * t157;
+        let t442 = t124 + rate_wrist_leg1;
+        let t443 = t442 * t432;
+        let t444 = t4 * t443;
         let rate_dot_wrist_leg1 = t43
-            * (c_proximal_leg1 * t197 + s_proximal_leg1 * t195 + t157);
-        let t448 = t132 + rate_dot_wrist_leg1;
-        let t449 = t448 - t434;
-        let t451 = t438 * t433;
-        let t452 = t425 + t451;
-        let t455 = t428 * t428;
-        let t456 = t438 * t438;
-        let t457 = t455 - t456;
-        let t461 = parameters[45] * (t21 * t425 + t435 - t440)
-            + parameters[46] * (t21 * t449 + minus_s_distal_leg1 * t452 + t4 * t457);
-        let t466 = t4 * t266 + minus_s_distal_leg2 * t197 + t89 * t195;
-        let t467 = t466 + t439;
-        let t469 = t433 * t433;
-        let t470 = t469 - t455;
-        let t473 = t425 - t451;
-        let t479 = t21 * t451;
-        let t483 = t461
-            + parameters[47] * (t21 * t467 + minus_s_distal_leg1 * t470 + t4 * t473)
-            + parameters[48] * (minus_s_distal_leg1 * t448 - t479 + t440);
-        let t484 = t456 - t469;
-        let t486 = t466 - t439;
-        let t489 = t448 + t434;
-        let t498 = t483
-            + parameters[49] * (t21 * t484 + minus_s_distal_leg1 * t486 + t4 * t489)
-            + parameters[50] * (t479 - t435 + t4 * t466);
-        let t508 = t243 + c_proximal_leg2 * t279 - minus_gproximal_wx_leg2 * t338
-            - (minus_gproximal_wx_leg3 * t398 + s_proximal_leg3 * t417) + t498
+            * (c_proximal_leg1 * t201 + s_proximal_leg1 * t199 + t161);
+        let t452 = t132 + rate_dot_wrist_leg1;
+        let t453 = t452 - t438;
+        let t455 = t442 * t437;
+        let t456 = t429 + t455;
+        let t459 = t432 * t432;
+        let t460 = t442 * t442;
+        let t461 = t459 - t460;
+        let t465 = parameters[45] * (t21 * t429 + t439 - t444)
+            + parameters[46] * (t21 * t453 + minus_s_distal_leg1 * t456 + t4 * t461);
+        let t470 = t4 * t270 + minus_s_distal_leg2 * t201 + t89 * t199;
+        let t471 = t470 + t443;
+        let t473 = t437 * t437;
+        let t474 = t473 - t459;
+        let t477 = t429 - t455;
+        let t483 = t21 * t455;
+        let t487 = t465
+            + parameters[47] * (t21 * t471 + minus_s_distal_leg1 * t474 + t4 * t477)
+            + parameters[48] * (minus_s_distal_leg1 * t452 - t483 + t444);
+        let t488 = t460 - t473;
+        let t490 = t470 - t443;
+        let t493 = t452 + t438;
+        let t502 = t487
+            + parameters[49] * (t21 * t488 + minus_s_distal_leg1 * t490 + t4 * t493)
+            + parameters[50] * (t483 - t439 + t4 * t470);
+        let t512 = t247 + c_proximal_leg2 * t283 - minus_gproximal_wx_leg2 * t342
+            - (minus_gproximal_wx_leg3 * t402 + s_proximal_leg3 * t421) + t502
             + parameters[51] * (9.81 * t64) + parameters[52] * (9.81 * t36)
             + parameters[53] * (9.81 * minus_s_distal_leg2);
-        let t520 = parameters[8] * (t225 - t208) - t136 * parameters[7]
+        let t524 = parameters[8] * (t229 - t212) - t136 * parameters[7]
             - parameters[9] * t126 + t136 * parameters[10] - parameters[11] * t131;
-        let t526 = t520 - parameters[12] * minus_rate_dot_distal_leg1_2
-            - t217 * parameters[13] - t238 * parameters[14];
-        let t535 = t36 * t434;
-        let t537 = minus_s_distal_leg2 * t439;
-        let t546 = parameters[45] * (t64 * t425 + t535 - t537)
-            + parameters[46] * (t64 * t449 + t36 * t452 + minus_s_distal_leg2 * t457);
-        let t555 = t64 * t451;
-        let t559 = t546
-            + parameters[47] * (t64 * t467 + t36 * t470 + minus_s_distal_leg2 * t473)
-            + parameters[48] * (t36 * t448 - t555 + t537);
-        let t571 = t559
-            + parameters[49] * (t64 * t484 + t36 * t486 + minus_s_distal_leg2 * t489)
-            + parameters[50] * (t555 - t535 + minus_s_distal_leg2 * t466);
-        let t581 = t338 - (minus_gproximal_wy_leg1 * t243 + s_proximal_leg1 * t526)
-            + c_proximal_leg3 * t417 - minus_gproximal_wy_leg3 * t398 + t571
+        let t530 = t524 - parameters[12] * minus_rate_dot_distal_leg1_2
+            - t221 * parameters[13] - t242 * parameters[14];
+        let t539 = t36 * t438;
+        let t541 = minus_s_distal_leg2 * t443;
+        let t550 = parameters[45] * (t64 * t429 + t539 - t541)
+            + parameters[46] * (t64 * t453 + t36 * t456 + minus_s_distal_leg2 * t461);
+        let t559 = t64 * t455;
+        let t563 = t550
+            + parameters[47] * (t64 * t471 + t36 * t474 + minus_s_distal_leg2 * t477)
+            + parameters[48] * (t36 * t452 - t559 + t541);
+        let t575 = t563
+            + parameters[49] * (t64 * t488 + t36 * t490 + minus_s_distal_leg2 * t493)
+            + parameters[50] * (t559 - t539 + minus_s_distal_leg2 * t470);
+        let t585 = t342 - (minus_gproximal_wy_leg1 * t247 + s_proximal_leg1 * t530)
+            + c_proximal_leg3 * t421 - minus_gproximal_wy_leg3 * t402 + t575
             - parameters[51] * (9.81 * t21)
             - parameters[52] * (9.81 * minus_s_distal_leg1)
             - parameters[53] * (9.81 * t4);
-        let t583 = t581 - t72 * t508;
-        let t594 = t48 * t434;
-        let t596 = t89 * t439;
-        let t605 = parameters[45] * (minus_s_distal_leg3 * t425 + t594 - t596)
-            + parameters[46] * (minus_s_distal_leg3 * t449 + t48 * t452 + t89 * t457);
-        let t614 = minus_s_distal_leg3 * t451;
-        let t618 = t605
-            + parameters[47] * (minus_s_distal_leg3 * t467 + t48 * t470 + t89 * t473)
-            + parameters[48] * (t48 * t448 - t614 + t596);
-        let t630 = t618
-            + parameters[49] * (minus_s_distal_leg3 * t484 + t48 * t486 + t89 * t489)
-            + parameters[50] * (t614 - t594 + t89 * t466);
-        let t633 = c_proximal_leg1 * t526 - minus_gproximal_wz_leg1 * t243
-            - (minus_gproximal_wz_leg2 * t338 + s_proximal_leg2 * t279) + t398 + t630
-            - t97 * t508;
-        let t636 = t109 * (t633 - t100 * t583);
-        let t638 = t75 * t583 - t100 * t636;
-        let t642 = t32 * t508 - t72 * t638 - t97 * t636;
+        let t587 = t585 - t72 * t512;
+        let t598 = t48 * t438;
+        let t600 = t89 * t443;
+        let t609 = parameters[45] * (minus_s_distal_leg3 * t429 + t598 - t600)
+            + parameters[46] * (minus_s_distal_leg3 * t453 + t48 * t456 + t89 * t461);
+        let t618 = minus_s_distal_leg3 * t455;
+        let t622 = t609
+            + parameters[47] * (minus_s_distal_leg3 * t471 + t48 * t474 + t89 * t477)
+            + parameters[48] * (t48 * t452 - t618 + t600);
+        let t634 = t622
+            + parameters[49] * (minus_s_distal_leg3 * t488 + t48 * t490 + t89 * t493)
+            + parameters[50] * (t618 - t598 + t89 * t470);
+        let t637 = c_proximal_leg1 * t530 - minus_gproximal_wz_leg1 * t247
+            - (minus_gproximal_wz_leg2 * t342 + s_proximal_leg2 * t283) + t402 + t634
+            - t97 * t512;
+        let t640 = t109 * (t637 - t100 * t587);
+        let t642 = t75 * t587 - t100 * t640;
+        let t646 = t32 * t512 - t72 * t642 - t97 * t640;
         Ok([
-            t642 - minus_gproximal_wy_leg1 * t638 - minus_gproximal_wz_leg1 * t636,
-            t638 - minus_gproximal_wx_leg2 * t642 - minus_gproximal_wz_leg2 * t636,
-            t636 - (minus_gproximal_wx_leg3 * t642 + minus_gproximal_wy_leg3 * t638),
+            t646 - minus_gproximal_wy_leg1 * t642 - minus_gproximal_wz_leg1 * t640,
+            t642 - minus_gproximal_wx_leg2 * t646 - minus_gproximal_wz_leg2 * t640,
+            t640 - (minus_gproximal_wx_leg3 * t646 + minus_gproximal_wy_leg3 * t642),
         ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.

@@ -1652,7 +1652,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 715 operations (272 additions, 424 multiplications, 19 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 547 intermediates.
+    /// 725 operations (275 additions, 443 multiplications, 7 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 557 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1672,8 +1672,7 @@ impl Spherical4Rrr {
         let t8 = pose[0] * t0;
         let t9 = t7 + t8;
         let t11 = t7 - t8;
-        let t12 = pose[1] * t6;
-        let t13 = t2 - t12;
+        let t13 = t2 - pose[1] * t6;
         let t14 = t11 - t13;
         let minus_s_distal_leg1 = 0.5 * (t5 - t9 + t14);
         let t18 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
@@ -1693,518 +1692,514 @@ impl Spherical4Rrr {
         let t33 = t31 - t32;
         let t34 = t30 - t33;
         let s_proximal_leg1 = t20 * (0.7071067811865475 * t34);
+        let t37 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t40 = t23 + c_distal_leg1;
+        let t41 = 0.7071067811865475 * t40;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t42 = minus_s_distal_leg1 * t20;
-        let t44 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t47 = t23 + c_distal_leg1;
-        let t48 = 0.7071067811865475 * t47;
-        let t50 = t25 * twist[0] + t44 * twist[1] - t48 * twist[2];
-        let t51 = t42 * t50;
-        let t52 = rate_distal_leg1 * t51;
+        let t50 = minus_s_distal_leg1 * t20;
+        let t55 = t25 * twist[0] + t37 * twist[1] - t41 * twist[2];
+        let t56 = t50 * t55;
+        let t57 = rate_distal_leg1 * t56;
         let t62 = t5 * twist[0] + t30 * twist[1] + t11 * twist[2];
         let t67 = t9 * twist[0] + t33 * twist[1] + t13 * twist[2];
         let t68 = t62 - t67;
-        let rate_wrist_leg1 = t51 + 0.7071067811865475 * t68;
-        let t72 = t25 * acceleration[0] + t44 * acceleration[1] - t48 * acceleration[2]
-            - rate_distal_leg1 * rate_wrist_leg1;
-        let t73 = t72 - t52;
+        let rate_wrist_leg1 = t56 + 0.7071067811865475 * t68;
+        let t73 = t25 * acceleration[0] + t37 * acceleration[1] - t41 * acceleration[2]
+            - (t57 + rate_distal_leg1 * rate_wrist_leg1);
         let minus_rate_dot_proximal_leg1 = t20 * t73;
         let t75 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t44 * t20;
+        let minus_gproximal_wy_leg1 = t37 * t20;
         let t77 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let gproximal_wz_leg1 = t48 * t20;
+        let gproximal_wz_leg1 = t41 * t20;
         let t79 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
         let t80 = 6.936717523440031 * s_proximal_leg1;
-        let t81 = minus_gproximal_wx_leg1 * t80;
-        let t82 = minus_gproximal_wy_leg1 * t80;
-        let t83 = gproximal_wz_leg1 * t80;
         let t84 = 6.936717523440031 * c_proximal_leg1;
         let t85 = minus_gproximal_wx_leg1 * t84;
         let t86 = minus_gproximal_wy_leg1 * t84;
         let t87 = gproximal_wz_leg1 * t84;
-        let minus_rate_proximal_leg1 = t20 * t50;
-        let t95 = t52 + t72;
-        let t97 = t50 * t51;
-        let t98 = minus_gdistal_wx_leg1 * t97;
-        let t99 = t25 * t95 + t98;
-        let t102 = t44 * t95 - c_proximal_leg1 * t97;
-        let t104 = t48 * t95 + t98;
-        let t105 = t50 * rate_distal_leg1;
-        let t106 = t42 * t73;
-        let t111 = c_distal_leg1 * (t105 - (t106 - t105)) - minus_s_distal_leg1 * t95;
-        let t113 = t50 * t50;
-        let t114 = t51 * t51;
-        let t115 = t113 - t114;
-        let t116 = minus_gdistal_wx_leg1 * t115;
+        let minus_rate_proximal_leg1 = t20 * t55;
+        let t96 = t57 + t73 + t57;
+        let t97 = c_distal_leg1 * t96;
+        let t99 = t55 * t56;
+        let t100 = minus_gdistal_wx_leg1 * t99;
+        let t101 = minus_gproximal_wx_leg1 * t97 + t100;
+        let t104 = minus_gproximal_wy_leg1 * t97 - c_proximal_leg1 * t99;
+        let t106 = gproximal_wz_leg1 * t97 + t100;
+        let t107 = t55 * rate_distal_leg1;
+        let t108 = t50 * t73;
+        let t113 = c_distal_leg1 * (t107 - (t108 - t107)) - minus_s_distal_leg1 * t96;
+        let t115 = t55 * t55;
+        let t116 = t56 * t56;
+        let t117 = t115 - t116;
+        let t118 = minus_gdistal_wx_leg1 * t117;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t50 * rate_wrist_leg1;
-        let t132 = rate_distal_leg1 * rate_distal_leg1;
-        let t135 = c_distal_leg1 * (t97 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t132 - t113);
-        let t137 = minus_gdistal_wx_leg1 * t73;
-        let t151 = minus_s_distal_leg1 * (t97 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t114 - t132);
-        let t153 = minus_gdistal_wx_leg1 * t106;
-        let t160 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t163 = t14 * (-6.936717523440031);
-        let t164 = minus_gdistal_wx_leg1 * t163;
-        let t175 = t4 - t1;
-        let t176 = t13 - t175;
-        let t177 = t176 - t33;
-        let t178 = t31 + t32;
-        let t179 = t178 - t13;
-        let minus_s_distal_leg2 = 0.5 * (t177 + t179);
-        let t182 = t28 - t29;
-        let t183 = t182 - t9;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t55 * rate_wrist_leg1;
+        let t134 = rate_distal_leg1 * rate_distal_leg1;
+        let t137 = c_distal_leg1 * (t99 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t134 - t115);
+        let t139 = minus_gdistal_wx_leg1 * t73;
+        let t153 = minus_s_distal_leg1 * (t99 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t116 - t134);
+        let t155 = minus_gdistal_wx_leg1 * t108;
+        let t162 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t164 = 6.936717523440031 * t37;
+        let t166 = t14 * (-6.936717523440031);
+        let t167 = minus_gdistal_wx_leg1 * t166;
+        let t178 = t4 - t1;
+        let t179 = t13 - t178;
+        let t181 = t31 + t32;
+        let t182 = t181 - t13;
+        let minus_s_distal_leg2 = 0.5 * (t179 - t33 + t182);
         let t186 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
         ::overact::guard::reach(t186, "leg2")?;
         let c_distal_leg2 = ::overact::math::sqrt(t186);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let minus_s_proximal_leg2 = 0.7071067811865475 * t183 / c_distal_leg2;
-        let t189 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t189 / c_distal_leg2;
+        let t188 = 1.0 / c_distal_leg2;
+        let t189 = t28 - t29;
+        let t190 = t189 - t9;
+        let minus_s_proximal_leg2 = t188 * (0.7071067811865475 * t190);
+        let t193 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t193 * t188;
+        let c_proximal_leg2 = t188 * (minus_s_distal_leg2 - t182);
+        let t198 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t200 = 0.7071067811865475 * (t198 - c_distal_leg2);
+        let t203 = t198 + c_distal_leg2;
+        let t204 = 0.7071067811865475 * t203;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let c_proximal_leg2 = (t177 - minus_s_distal_leg2) / c_distal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t199 = minus_s_distal_leg2 / c_distal_leg2;
-        let t201 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t203 = 0.7071067811865475 * (t201 - c_distal_leg2);
-        let t206 = t201 + c_distal_leg2;
-        let t207 = 0.7071067811865475 * t206;
-        let t209 = t189 * twist[0] + t203 * twist[1] - t207 * twist[2];
-        let t210 = t199 * t209;
-        let t211 = rate_distal_leg2 * t210;
-        let t221 = t182 * twist[0] + t176 * twist[1] + t178 * twist[2];
-        let t222 = t67 - t221;
-        let rate_wrist_leg2 = t210 - 0.7071067811865475 * t222;
-        let t226 = t189 * acceleration[0] + t203 * acceleration[1]
-            - t207 * acceleration[2] - rate_distal_leg2 * rate_wrist_leg2;
-        let t227 = t226 - t211;
-        let minus_rate_dot_proximal_leg2 = t227 / c_distal_leg2;
-        let t229 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wy_leg2 = t203 / c_distal_leg2;
-        let t231 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wz_leg2 = t207 / c_distal_leg2;
-        let t233 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t234 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t235 = minus_gproximal_wx_leg2 * t234;
-        let t236 = minus_gproximal_wy_leg2 * t234;
-        let t238 = 6.936717523440031 * c_proximal_leg2;
-        let t239 = minus_gproximal_wx_leg2 * t238;
-        let t240 = minus_gproximal_wy_leg2 * t238;
-        let t241 = gproximal_wz_leg2 * t238;
-        let minus_rate_proximal_leg2 = t209 / c_distal_leg2;
-        let t249 = t211 + t226;
-        let t250 = minus_s_distal_leg2 * t249;
-        let t252 = t209 * t210;
-        let t254 = minus_s_proximal_leg2 * t250 + c_proximal_leg2 * t252;
-        let t256 = gdistal_wy_leg2 * t252;
-        let t257 = t203 * t249 - t256;
-        let t259 = t256 - t207 * t249;
-        let t260 = t209 * rate_distal_leg2;
-        let t261 = t199 * t227;
-        let t265 = c_distal_leg2 * (t260 - (t261 - t260)) - t250;
-        let t267 = t209 * t209;
-        let t268 = t210 * t210;
-        let t269 = t267 - t268;
-        let t272 = gdistal_wy_leg2 * t269;
+        let t213 = minus_s_distal_leg2 * t188;
+        let t218 = t193 * twist[0] + t200 * twist[1] - t204 * twist[2];
+        let t219 = t213 * t218;
+        let t220 = rate_distal_leg2 * t219;
+        let t225 = t189 * twist[0] + t179 * twist[1] + t181 * twist[2];
+        let t226 = t67 - t225;
+        let rate_wrist_leg2 = t219 - 0.7071067811865475 * t226;
+        let t231 = t193 * acceleration[0] + t200 * acceleration[1]
+            - t204 * acceleration[2] - (t220 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t188 * t231;
+        let t233 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wy_leg2 = t200 * t188;
+        let t235 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wz_leg2 = t204 * t188;
+        let t237 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t238 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t242 = 6.936717523440031 * c_proximal_leg2;
+        let t243 = minus_gproximal_wx_leg2 * t242;
+        let t244 = minus_gproximal_wy_leg2 * t242;
+        let t245 = gproximal_wz_leg2 * t242;
+        let minus_rate_proximal_leg2 = t188 * t218;
+        let t254 = t220 + t231 + t220;
+        let t255 = c_distal_leg2 * t254;
+        let t257 = t218 * t219;
+        let t259 = minus_gproximal_wx_leg2 * t255 + c_proximal_leg2 * t257;
+        let t261 = gdistal_wy_leg2 * t257;
+        let t262 = minus_gproximal_wy_leg2 * t255 - t261;
+        let t264 = t261 - gproximal_wz_leg2 * t255;
+        let t265 = t218 * rate_distal_leg2;
+        let t266 = t213 * t231;
+        let t271 = c_distal_leg2 * (t265 - (t266 - t265)) - minus_s_distal_leg2 * t254;
+        let t273 = t218 * t218;
+        let t274 = t219 * t219;
+        let t275 = t273 - t274;
+        let t278 = gdistal_wy_leg2 * t275;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t209 * rate_wrist_leg2;
-        let t286 = rate_distal_leg2 * rate_distal_leg2;
-        let t289 = c_distal_leg2 * (t252 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t286 - t267);
-        let t294 = gdistal_wy_leg2 * t227;
-        let t305 = minus_s_distal_leg2 * (t252 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t268 - t286);
-        let t309 = gdistal_wy_leg2 * t261;
-        let t315 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t322 = minus_s_distal_leg2 * t236 - 0.7071067811865475 * t179 * t234;
-        let t323 = 9.81 * t189;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t12 - t4);
-        let t331 = t11 + t13;
-        let t334 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t334, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t334);
+            + t218 * rate_wrist_leg2;
+        let t292 = rate_distal_leg2 * rate_distal_leg2;
+        let t295 = c_distal_leg2 * (t257 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t292 - t273);
+        let t300 = gdistal_wy_leg2 * t231;
+        let t311 = minus_s_distal_leg2 * (t257 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t274 - t292);
+        let t315 = gdistal_wy_leg2 * t266;
+        let t321 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t322 = 6.936717523440031 * t193;
+        let t329 = minus_gproximal_wy_leg2 * t322 - 0.7071067811865475 * t182 * t238;
+        let t330 = 6.936717523440031 * t190;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t13);
+        let t339 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t339, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t339);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let c_proximal_leg3 = (t331 - s_distal_leg3) / c_distal_leg3;
-        let t337 = s_distal_leg3 * c_proximal_leg3;
-        let t339 = 0.7071067811865475 * (t337 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t339 / c_distal_leg3;
-        let t341 = t30 + t33;
-        let s_proximal_leg3 = 0.7071067811865475 * t341 / c_distal_leg3;
+        let t341 = 1.0 / c_distal_leg3;
+        let t342 = t11 + t13;
+        let c_proximal_leg3 = t341 * (t342 - s_distal_leg3);
+        let t345 = s_distal_leg3 * c_proximal_leg3;
+        let t347 = 0.7071067811865475 * (t345 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t347 * t341;
+        let t351 = 0.7071067811865475 * (t30 + t33);
+        let s_proximal_leg3 = t351 / c_distal_leg3;
+        let t353 = s_distal_leg3 * s_proximal_leg3;
+        let t356 = t345 - c_distal_leg3;
+        let t357 = 0.7071067811865475 * t356;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t350 = s_distal_leg3 / c_distal_leg3;
-        let t352 = s_distal_leg3 * s_proximal_leg3;
-        let t355 = t337 - c_distal_leg3;
-        let t356 = 0.7071067811865475 * t355;
-        let t358 = t339 * twist[0] + t352 * twist[1] + t356 * twist[2];
-        let t359 = t350 * t358;
-        let t360 = rate_distal_leg3 * t359;
-        let t366 = t62 + t67;
-        let minus_rate_wrist_leg3 = t359 + 0.7071067811865475 * t366;
-        let t370 = t339 * acceleration[0] + t352 * acceleration[1]
-            + t356 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t371 = t360 + t370;
-        let minus_rate_dot_proximal_leg3 = t371 / c_distal_leg3;
-        let t373 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t350;
-        let t375 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t356 / c_distal_leg3;
-        let t377 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t378 = 6.936717523440031 * s_proximal_leg3;
-        let t379 = minus_gproximal_wx_leg3 * t378;
-        let t381 = minus_gproximal_wz_leg3 * t378;
-        let t382 = 6.936717523440031 * c_proximal_leg3;
-        let t383 = minus_gproximal_wx_leg3 * t382;
-        let t384 = minus_gproximal_wy_leg3 * t382;
-        let t385 = minus_gproximal_wz_leg3 * t382;
-        let minus_rate_proximal_leg3 = t358 / c_distal_leg3;
-        let t393 = t358 * t359;
-        let t394 = gdistal_wx_leg3 * t393;
-        let t395 = t370 - t360;
-        let t397 = t394 + t339 * t395;
-        let t400 = c_proximal_leg3 * t393 - t352 * t395;
-        let t402 = t394 + t356 * t395;
-        let t403 = t358 * t358;
-        let t404 = t359 * t359;
-        let t405 = t403 - t404;
-        let t406 = gdistal_wx_leg3 * t405;
-        let t407 = t358 * rate_distal_leg3;
-        let t408 = t350 * t371;
-        let t413 = c_distal_leg3 * (t407 + t408 + t407) + s_distal_leg3 * t395;
-        let t421 = gdistal_wx_leg3 * t371;
-        let t422 = rate_distal_leg3 * rate_distal_leg3;
+        let t366 = s_distal_leg3 * t341;
+        let t371 = t347 * twist[0] + t353 * twist[1] + t357 * twist[2];
+        let t372 = t366 * t371;
+        let t373 = rate_distal_leg3 * t372;
+        let t374 = t62 + t67;
+        let minus_rate_wrist_leg3 = t372 + 0.7071067811865475 * t374;
+        let t379 = t347 * acceleration[0] + t353 * acceleration[1]
+            + t357 * acceleration[2] + t373 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t341 * t379;
+        let t381 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t353 * t341;
+        let t383 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t357 * t341;
+        let t385 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t386 = 6.936717523440031 * s_proximal_leg3;
+        let t390 = 6.936717523440031 * c_proximal_leg3;
+        let t391 = minus_gproximal_wx_leg3 * t390;
+        let t392 = minus_gproximal_wy_leg3 * t390;
+        let t393 = minus_gproximal_wz_leg3 * t390;
+        let minus_rate_proximal_leg3 = t341 * t371;
+        let t401 = t371 * t372;
+        let t402 = gdistal_wx_leg3 * t401;
+        let t404 = t379 - t373 - t373;
+        let t406 = t402 + t347 * t404;
+        let t407 = s_distal_leg3 * t404;
+        let t410 = c_proximal_leg3 * t401 - s_proximal_leg3 * t407;
+        let t412 = t402 + t357 * t404;
+        let t413 = t371 * t371;
+        let t414 = t372 * t372;
+        let t415 = t413 - t414;
+        let t416 = gdistal_wx_leg3 * t415;
+        let t417 = t371 * rate_distal_leg3;
+        let t418 = t366 * t379;
+        let t422 = c_distal_leg3 * (t417 + t418 + t417) + t407;
+        let t430 = gdistal_wx_leg3 * t379;
+        let t431 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t358 * minus_rate_wrist_leg3;
-        let t434 = s_distal_leg3 * (t422 - t403)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t393);
-        let t449 = s_distal_leg3 * (t393 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t404 - t422);
-        let t451 = gdistal_wx_leg3 * t408;
-        let t458 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t461 = 6.936717523440031 * t331;
-        let t462 = gdistal_wx_leg3 * t461;
-        let t464 = t352 * t378;
-        let s_distal_leg4 = minus_s_distal_leg2 + t175;
-        let t474 = t182 + t9;
-        let t477 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t477, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t477);
+            - t371 * minus_rate_wrist_leg3;
+        let t443 = s_distal_leg3 * (t431 - t413)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t401);
+        let t458 = s_distal_leg3 * (t401 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t414 - t431);
+        let t460 = gdistal_wx_leg3 * t418;
+        let t467 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t469 = 6.936717523440031 * t353;
+        let t471 = 6.936717523440031 * t342;
+        let t472 = gdistal_wx_leg3 * t471;
+        let s_distal_leg4 = minus_s_distal_leg2 + t178;
+        let t484 = t189 + t9;
+        let t487 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t487, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t487);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let minus_s_proximal_leg4 = 0.7071067811865475 * t474 / c_distal_leg4;
-        let t480 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t481 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t480 * t481;
-        let t483 = t178 + t13;
-        let c_proximal_leg4 = (t483 - s_distal_leg4) / c_distal_leg4;
+        let minus_s_proximal_leg4 = 0.7071067811865475 * t484 / c_distal_leg4;
+        let t490 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t491 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t490 * t491;
+        let t493 = t181 + t13;
+        let c_proximal_leg4 = (t493 - s_distal_leg4) / c_distal_leg4;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t492 = s_distal_leg4 * t481;
-        let t494 = s_distal_leg4 * c_proximal_leg4;
-        let t496 = 0.7071067811865475 * (t494 + c_distal_leg4);
-        let t499 = t494 - c_distal_leg4;
-        let t500 = 0.7071067811865475 * t499;
-        let t502 = t480 * twist[0] + t496 * twist[1] + t500 * twist[2];
-        let t503 = t492 * t502;
-        let t504 = rate_distal_leg4 * t503;
-        let t510 = t221 + t67;
-        let minus_rate_wrist_leg4 = t503 + 0.7071067811865475 * t510;
-        let t514 = t480 * acceleration[0] + t496 * acceleration[1]
-            + t500 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let t515 = t504 + t514;
-        let minus_rate_dot_proximal_leg4 = t481 * t515;
-        let t517 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t496 * t481;
-        let t519 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t500 * t481;
-        let t521 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t522 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t523 = minus_gproximal_wx_leg4 * t522;
-        let t524 = minus_gproximal_wy_leg4 * t522;
-        let t526 = 6.936717523440031 * c_proximal_leg4;
-        let t527 = minus_gproximal_wx_leg4 * t526;
-        let t528 = minus_gproximal_wy_leg4 * t526;
-        let t529 = minus_gproximal_wz_leg4 * t526;
-        let minus_rate_proximal_leg4 = t481 * t502;
-        let t537 = t502 * t503;
-        let t539 = t514 - t504;
-        let t540 = s_distal_leg4 * t539;
-        let t542 = c_proximal_leg4 * t537 + minus_s_proximal_leg4 * t540;
-        let t544 = minus_gdistal_wy_leg4 * t537;
-        let t545 = t544 - t496 * t539;
-        let t547 = t544 - t500 * t539;
-        let t548 = t502 * t502;
-        let t549 = t503 * t503;
-        let t550 = t548 - t549;
-        let t552 = t502 * rate_distal_leg4;
-        let t553 = t492 * t515;
-        let t557 = c_distal_leg4 * (t552 + t553 + t552) + t540;
-        let t561 = minus_gdistal_wy_leg4 * t550;
-        let t566 = rate_distal_leg4 * rate_distal_leg4;
+        let t502 = s_distal_leg4 * t491;
+        let t504 = s_distal_leg4 * c_proximal_leg4;
+        let t506 = 0.7071067811865475 * (t504 + c_distal_leg4);
+        let t509 = t504 - c_distal_leg4;
+        let t510 = 0.7071067811865475 * t509;
+        let t512 = t490 * twist[0] + t506 * twist[1] + t510 * twist[2];
+        let t513 = t502 * t512;
+        let t514 = rate_distal_leg4 * t513;
+        let t520 = t225 + t67;
+        let minus_rate_wrist_leg4 = t513 + 0.7071067811865475 * t520;
+        let t524 = t490 * acceleration[0] + t506 * acceleration[1]
+            + t510 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t525 = t514 + t524;
+        let minus_rate_dot_proximal_leg4 = t491 * t525;
+        let t527 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t506 * t491;
+        let t529 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t510 * t491;
+        let t531 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t532 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t534 = minus_gproximal_wy_leg4 * t532;
+        let t536 = 6.936717523440031 * c_proximal_leg4;
+        let t537 = minus_gproximal_wx_leg4 * t536;
+        let t538 = minus_gproximal_wy_leg4 * t536;
+        let t539 = minus_gproximal_wz_leg4 * t536;
+        let minus_rate_proximal_leg4 = t491 * t512;
+        let t547 = t512 * t513;
+        let t549 = t524 - t514;
+        let t551 = c_proximal_leg4 * t547 + t490 * t549;
+        let t553 = minus_gdistal_wy_leg4 * t547;
+        let t554 = t553 - t506 * t549;
+        let t556 = t553 - t510 * t549;
+        let t557 = t512 * t512;
+        let t558 = t513 * t513;
+        let t559 = t557 - t558;
+        let t561 = t512 * rate_distal_leg4;
+        let t562 = t502 * t525;
+        let t567 = c_distal_leg4 * (t561 + t562 + t561) + s_distal_leg4 * t549;
+        let t571 = minus_gdistal_wy_leg4 * t559;
+        let t576 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t502 * minus_rate_wrist_leg4;
-        let t578 = s_distal_leg4 * (t566 - t548)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t537);
-        let t582 = minus_gdistal_wy_leg4 * t515;
-        let t593 = s_distal_leg4 * (t537 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t549 - t566);
-        let t597 = minus_gdistal_wy_leg4 * t553;
-        let t603 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t610 = t522 * (0.7071067811865475 * t483) + s_distal_leg4 * t524;
-        let t611 = 9.81 * t480;
-        let t621 = t5 * acceleration[0] + t30 * acceleration[1] + t11 * acceleration[2];
-        let t623 = t62 * t67;
-        let t624 = t182 * t623;
-        let t626 = t62 * t221;
-        let t627 = t9 * t626;
-        let t630 = t176 * t623;
-        let t632 = t33 * t626;
-        let t635 = t178 * t623;
-        let t637 = t13 * t626;
-        let t643 = t182 * acceleration[0] + t176 * acceleration[1]
-            + t178 * acceleration[2];
-        let t644 = t643 - t623;
-        let t646 = t221 * t67;
-        let t647 = t621 + t646;
-        let t650 = t366 * t68;
-        let t651 = t510 * t222;
-        let t652 = t650 + t651;
-        let t669 = t9 * acceleration[0] + t33 * acceleration[1] + t13 * acceleration[2];
-        let t670 = t669 + t626;
-        let t674 = t621 - t646;
-        let t688 = t5 * t646;
-        let t692 = t30 * t646;
-        let t696 = t11 * t646;
-        let t700 = t669 - t626;
-        let t703 = t643 + t623;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t512 * minus_rate_wrist_leg4;
+        let t588 = s_distal_leg4 * (t576 - t557)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t547);
+        let t592 = minus_gdistal_wy_leg4 * t525;
+        let t603 = s_distal_leg4 * (t547 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t558 - t576);
+        let t607 = minus_gdistal_wy_leg4 * t562;
+        let t613 = minus_gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t615 = t490 * t532;
+        let t621 = t532 * (0.7071067811865475 * t493) + s_distal_leg4 * t534;
+        let t631 = t5 * acceleration[0] + t30 * acceleration[1] + t11 * acceleration[2];
+        let t633 = t62 * t67;
+        let t634 = t189 * t633;
+        let t636 = t62 * t225;
+        let t637 = t9 * t636;
+        let t640 = t179 * t633;
+        let t642 = t33 * t636;
+        let t645 = t181 * t633;
+        let t647 = t13 * t636;
+        let t653 = t189 * acceleration[0] + t179 * acceleration[1]
+            + t181 * acceleration[2];
+        let t654 = t653 - t633;
+        let t656 = t225 * t67;
+        let t657 = t631 + t656;
+        let t660 = t374 * t68;
+        let t661 = t520 * t226;
+        let t662 = t660 + t661;
+        let t679 = t9 * acceleration[0] + t33 * acceleration[1] + t13 * acceleration[2];
+        let t680 = t679 + t636;
+        let t684 = t631 - t656;
+        let t698 = t5 * t656;
+        let t702 = t30 * t656;
+        let t706 = t11 * t656;
+        let t710 = t679 - t636;
+        let t713 = t653 + t633;
         Ok([
             [
-                t75, t81, t85, t75, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                t75, minus_gproximal_wx_leg1 * t80, t85, t75,
+                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t99,
-                -(minus_gproximal_wx_leg1 * t111 + t116),
-                minus_gproximal_wx_leg1 * t135 - t137,
-                t75 - t99,
-                -(minus_gproximal_wx_leg1 * t151 + t153),
-                -t160,
-                -(minus_s_distal_leg1 * t81 + t164),
+                t101,
+                -(minus_gproximal_wx_leg1 * t113 + t118),
+                minus_gproximal_wx_leg1 * t137 - t139,
+                t75 - t101,
+                -(minus_gproximal_wx_leg1 * t153 + t155),
+                -t162,
+                -(minus_gproximal_wx_leg1 * t164 + t167),
                 t34 * (-6.936717523440031),
                 -t85,
-                t229,
-                -t235,
-                t239,
-                t229,
+                t233,
+                -(minus_gproximal_wx_leg2 * t238),
+                t243,
+                t233,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t254,
-                -(minus_gproximal_wx_leg2 * t265 + c_proximal_leg2 * t269),
-                minus_gproximal_wx_leg2 * t289 - c_proximal_leg2 * t227,
-                t229 - t254,
-                -(minus_gproximal_wx_leg2 * t305 + c_proximal_leg2 * t261),
+                t259,
+                -(minus_gproximal_wx_leg2 * t271 + c_proximal_leg2 * t275),
+                minus_gproximal_wx_leg2 * t295 - c_proximal_leg2 * t231,
+                t233 - t259,
+                -(minus_gproximal_wx_leg2 * t311 + c_proximal_leg2 * t266),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_s_distal_leg2 * t235 + t179 * t238,
-                -(gdistal_wy_leg2 * t323 + t206 * t238),
-                -t239,
-                t373,
-                t379,
-                t383,
-                t373,
+                minus_gproximal_wx_leg2 * t322 + t182 * t242,
+                -(minus_s_proximal_leg2 * t322 + t203 * t242),
+                -t243,
+                t381,
+                minus_gproximal_wx_leg3 * t386,
+                t391,
+                t381,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t397,
-                t406 - minus_gproximal_wx_leg3 * t413,
-                t421 - minus_gproximal_wx_leg3 * t434,
-                t373 - t397,
-                -(minus_gproximal_wx_leg3 * t449 + t451),
-                t458,
-                s_distal_leg3 * t379 + t462,
-                6.936717523440031 * t341,
-                -t383,
-                t517,
-                -t523,
+                t406,
+                t416 - minus_gproximal_wx_leg3 * t422,
+                t430 - minus_gproximal_wx_leg3 * t443,
+                t381 - t406,
+                -(minus_gproximal_wx_leg3 * t458 + t460),
+                t467,
+                minus_gproximal_wx_leg3 * t469 + t472,
+                9.81 * t351,
+                -t391,
                 t527,
-                t517,
+                -(minus_gproximal_wx_leg4 * t532),
+                t537,
+                t527,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t542,
-                c_proximal_leg4 * t550 - minus_gproximal_wx_leg4 * t557,
-                c_proximal_leg4 * t515 - minus_gproximal_wx_leg4 * t578,
-                t517 - t542,
-                -(minus_gproximal_wx_leg4 * t593 + c_proximal_leg4 * t553),
+                t551,
+                c_proximal_leg4 * t559 - minus_gproximal_wx_leg4 * t567,
+                c_proximal_leg4 * t525 - minus_gproximal_wx_leg4 * t588,
+                t527 - t551,
+                -(minus_gproximal_wx_leg4 * t603 + c_proximal_leg4 * t562),
                 c_proximal_leg4 * rate_dot_distal_leg4,
-                t483 * t526 - s_distal_leg4 * t523,
-                -(minus_gdistal_wy_leg4 * t611 + t499 * t526),
-                -t527,
-                t5 * t621 + t624 - t627,
-                t5 * t644 + t182 * t647 + t9 * t652,
-                t5 * t670 - t182 * t650 + t9 * t674,
-                t182 * t643 - t688 + t627,
-                t182 * t700 - t5 * t651 + t9 * t703,
-                t688 - t624 + t9 * t669,
+                t493 * t536 - t502 * t615,
+                -(t615 + t509 * t536),
+                -t537,
+                t5 * t631 + t634 - t637,
+                t5 * t654 + t189 * t657 + t9 * t662,
+                t5 * t680 - t189 * t660 + t9 * t684,
+                t189 * t653 - t698 + t637,
+                t189 * t710 - t5 * t661 + t9 * t713,
+                t698 - t634 + t9 * t679,
                 9.81 * t30,
-                9.81 * t176,
+                9.81 * t179,
                 9.81 * t33,
             ],
             [
-                t77, t82, t86, t77, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t77, minus_gproximal_wy_leg1 * t80, t86, t77,
+                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t102,
-                c_proximal_leg1 * t115 - minus_gproximal_wy_leg1 * t111,
-                minus_gproximal_wy_leg1 * t135 + c_proximal_leg1 * t73,
-                t77 - t102,
-                c_proximal_leg1 * t106 - minus_gproximal_wy_leg1 * t151,
+                t104,
+                c_proximal_leg1 * t117 - minus_gproximal_wy_leg1 * t113,
+                minus_gproximal_wy_leg1 * t137 + c_proximal_leg1 * t73,
+                t77 - t104,
+                c_proximal_leg1 * t108 - minus_gproximal_wy_leg1 * t153,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * t163 - minus_s_distal_leg1 * t82,
-                t44 * t80 + t47 * t84,
+                c_proximal_leg1 * t166 - minus_gproximal_wy_leg1 * t164,
+                s_proximal_leg1 * t164 + t40 * t84,
                 -t86,
-                t231,
-                -t236,
-                t240,
-                t231,
+                t235,
+                -(minus_gproximal_wy_leg2 * t238),
+                t244,
+                t235,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t257,
-                t272 - minus_gproximal_wy_leg2 * t265,
-                minus_gproximal_wy_leg2 * t289 + t294,
-                t231 - t257,
-                t309 - minus_gproximal_wy_leg2 * t305,
-                t315,
-                t322,
-                6.936717523440031 * t183,
-                -t240,
-                t375,
-                minus_gproximal_wy_leg3 * t378,
-                t384,
-                t375,
+                t262,
+                t278 - minus_gproximal_wy_leg2 * t271,
+                minus_gproximal_wy_leg2 * t295 + t300,
+                t235 - t262,
+                t315 - minus_gproximal_wy_leg2 * t311,
+                t321,
+                t329,
+                t330,
+                -t244,
+                t383,
+                minus_gproximal_wy_leg3 * t386,
+                t392,
+                t383,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t400,
-                -(minus_gproximal_wy_leg3 * t413 + c_proximal_leg3 * t405),
-                -(minus_gproximal_wy_leg3 * t434 + c_proximal_leg3 * t371),
-                t375 + t400,
-                c_proximal_leg3 * t408 - minus_gproximal_wy_leg3 * t449,
+                -t410,
+                -(minus_gproximal_wy_leg3 * t422 + c_proximal_leg3 * t415),
+                -(minus_gproximal_wy_leg3 * t443 + c_proximal_leg3 * t379),
+                t383 + t410,
+                c_proximal_leg3 * t418 - minus_gproximal_wy_leg3 * t458,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                t350 * t464 - c_proximal_leg3 * t461,
-                t464 + t355 * t382,
-                -t384,
-                t519,
-                -t524,
-                t528,
-                t519,
+                minus_gproximal_wy_leg3 * t469 - c_proximal_leg3 * t471,
+                t353 * t386 + t356 * t390,
+                -t392,
+                t529,
+                -t534,
+                t538,
+                t529,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                -t545,
-                -(minus_gproximal_wy_leg4 * t557 + t561),
-                -(minus_gproximal_wy_leg4 * t578 + t582),
-                t519 + t545,
-                t597 - minus_gproximal_wy_leg4 * t593,
-                -t603,
-                -t610,
-                -(6.936717523440031 * t474),
-                -t528,
-                t30 * t621 + t630 - t632,
-                t30 * t644 + t176 * t647 + t33 * t652,
-                t30 * t670 - t176 * t650 + t33 * t674,
-                t176 * t643 - t692 + t632,
-                t176 * t700 - t30 * t651 + t33 * t703,
-                t692 - t630 + t33 * t669,
+                -t554,
+                -(minus_gproximal_wy_leg4 * t567 + t571),
+                -(minus_gproximal_wy_leg4 * t588 + t592),
+                t529 + t554,
+                t607 - minus_gproximal_wy_leg4 * t603,
+                -t613,
+                -t621,
+                -(6.936717523440031 * t484),
+                -t538,
+                t30 * t631 + t640 - t642,
+                t30 * t654 + t179 * t657 + t33 * t662,
+                t30 * t680 - t179 * t660 + t33 * t684,
+                t179 * t653 - t702 + t642,
+                t179 * t710 - t30 * t661 + t33 * t713,
+                t702 - t640 + t33 * t679,
                 -(9.81 * t5),
-                -(9.81 * t182),
+                -(9.81 * t189),
                 -(9.81 * t9),
             ],
             [
-                -t79, -t83, -t87, -t79, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -t79, -(gproximal_wz_leg1 * t80), -t87, -t79,
+                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t104, gproximal_wz_leg1 * t111 + t116,
-                t137 - gproximal_wz_leg1 * t135, t104 - t79, gproximal_wz_leg1 * t151 + t153, t160,
-                minus_s_distal_leg1 * t83 + t164, 0.0, t87, -t233, gproximal_wz_leg2 * t234, -t241,
-                -t233, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -t106, gproximal_wz_leg1 * t113 + t118,
+                t139 - gproximal_wz_leg1 * t137, t106 - t79, gproximal_wz_leg1 * t153 + t155, t162,
+                gproximal_wz_leg1 * t164 + t167, 0.0, t87, -t237, gproximal_wz_leg2 * t238, -t245,
+                -t237, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t259, gproximal_wz_leg2 * t265 - t272,
-                -(gproximal_wz_leg2 * t289 + t294), -(t233 + t259), gproximal_wz_leg2 * t305 - t309,
-                -t315, -(t322 + t323), 0.0, t241, t377, t381, t385, t377,
-                minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
+                gproximal_wz_leg2, t264, gproximal_wz_leg2 * t271 - t278,
+                -(gproximal_wz_leg2 * t295 + t300), -(t237 + t264), gproximal_wz_leg2 * t311 - t315,
+                -t321, -(t329 + t213 * t330), 0.0, t245, t385, minus_gproximal_wz_leg3 * t386, t393,
+                t385, minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t402,
-                t406 - minus_gproximal_wz_leg3 * t413,
-                t421 - minus_gproximal_wz_leg3 * t434,
-                t377 - t402,
-                -(minus_gproximal_wz_leg3 * t449 + t451),
-                t458,
-                s_distal_leg3 * t381 + t462,
+                t412,
+                t416 - minus_gproximal_wz_leg3 * t422,
+                t430 - minus_gproximal_wz_leg3 * t443,
+                t385 - t412,
+                -(minus_gproximal_wz_leg3 * t458 + t460),
+                t467,
+                minus_gproximal_wz_leg3 * t469 + t472,
                 0.0,
-                -t385,
-                t521,
-                -(minus_gproximal_wz_leg4 * t522),
-                t529,
-                t521,
+                -t393,
+                t531,
+                -(minus_gproximal_wz_leg4 * t532),
+                t539,
+                t531,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                -t547,
-                -(minus_gproximal_wz_leg4 * t557 + t561),
-                -(minus_gproximal_wz_leg4 * t578 + t582),
-                t521 + t547,
-                t597 - minus_gproximal_wz_leg4 * t593,
-                -t603,
-                t611 - t610,
+                -t556,
+                -(minus_gproximal_wz_leg4 * t567 + t571),
+                -(minus_gproximal_wz_leg4 * t588 + t592),
+                t531 + t556,
+                t607 - minus_gproximal_wz_leg4 * t603,
+                -t613,
+                9.81 * t490 - t621,
                 0.0,
-                -t529,
-                t11 * t621 + t635 - t637,
-                t11 * t644 + t178 * t647 + t13 * t652,
-                t11 * t670 - t178 * t650 + t13 * t674,
-                t178 * t643 - t696 + t637,
-                t178 * t700 - t11 * t651 + t13 * t703,
-                t696 - t635 + t13 * t669,
+                -t539,
+                t11 * t631 + t645 - t647,
+                t11 * t654 + t181 * t657 + t13 * t662,
+                t11 * t680 - t181 * t660 + t13 * t684,
+                t181 * t653 - t706 + t647,
+                t181 * t710 - t11 * t661 + t13 * t713,
+                t706 - t645 + t13 * t679,
                 0.0,
                 0.0,
                 0.0,
@@ -2222,7 +2217,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 697 operations (259 additions, 424 multiplications, 14 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 541 intermediates.
+    /// 694 operations (259 additions, 415 multiplications, 20 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 538 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2232,535 +2227,533 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 73]; 3], ::overact::Error> {
-        let [(c_distal_leg1, minus_s_distal_leg1),
-        (minus_s_proximal_leg1, minus_c_proximal_leg1),
+        let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
+        (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
         (c_distal_leg2, minus_s_distal_leg2), (c_distal_leg3, minus_s_distal_leg3),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
         (minus_s_proximal_leg4, minus_c_proximal_leg4),
         (c_distal_leg4, minus_s_distal_leg4)] = ::overact::math::sin_cos_all([
-            joints[1], joints[0], joints[3], joints[4], joints[7], joints[6], joints[9], joints[10],
+            joints[0], joints[1], joints[3], joints[4], joints[7], joints[6], joints[9], joints[10],
         ]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
         ::overact::guard::leg(minus_s_distal_leg3, 1.0, "leg3")?;
         ::overact::guard::leg(minus_s_distal_leg4, 1.0, "leg4")?;
-        let t2 = 1.0 / minus_s_distal_leg1;
-        let t3 = c_distal_leg1 * t2;
+        let t4 = 0.7071067811865476 * c_distal_leg1;
+        let t5 = minus_c_proximal_leg1 * t4;
         let t6 = 0.7071067811865476 * minus_s_distal_leg1;
-        let t7 = minus_c_proximal_leg1 * t6;
-        let t8 = t3 * t7;
-        let t9 = t8 + t6;
-        let gproximal_wx_leg1 = t9 * t2;
+        let t7 = t5 + t6;
+        let gproximal_wx_leg1 = t7 / minus_s_distal_leg1;
         let minus_gdistal_wx_leg1 = 0.7071067811865476 * minus_s_proximal_leg1;
         let rate_distal_leg1 = minus_c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t17 = t8 - t6;
-        let t20 = minus_s_proximal_leg1 * c_distal_leg1;
-        let t23 = t17 * twist[2] - (t9 * twist[0] + t20 * twist[1]);
-        let t24 = t3 * t23;
-        let t25 = rate_distal_leg1 * t24;
-        let t31 = 0.7071067811865476 * c_distal_leg1;
-        let t32 = t31 - t7;
-        let t34 = minus_s_proximal_leg1 * minus_s_distal_leg1;
-        let t37 = t7 + t31;
-        let minus_rate_wrist_leg1 = t24 + t32 * twist[0] - t34 * twist[1]
-            + t37 * twist[2];
-        let t42 = t17 * acceleration[2] - (t9 * acceleration[0] + t20 * acceleration[1])
+        let t15 = c_distal_leg1 / minus_s_distal_leg1;
+        let t16 = t5 - t6;
+        let t19 = minus_s_proximal_leg1 * c_distal_leg1;
+        let t22 = t16 * twist[2] - (t7 * twist[0] + t19 * twist[1]);
+        let t23 = t15 * t22;
+        let t24 = rate_distal_leg1 * t23;
+        let t30 = minus_c_proximal_leg1 * t6;
+        let t31 = t4 - t30;
+        let t33 = minus_s_proximal_leg1 * minus_s_distal_leg1;
+        let t36 = t30 + t4;
+        let minus_rate_wrist_leg1 = t23 + t31 * twist[0] - t33 * twist[1]
+            + t36 * twist[2];
+        let t41 = t16 * acceleration[2] - (t7 * acceleration[0] + t19 * acceleration[1])
             + rate_distal_leg1 * minus_rate_wrist_leg1;
-        let t43 = t25 + t42;
-        let minus_rate_dot_proximal_leg1 = t2 * t43;
-        let t45 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let gproximal_wy_leg1 = t20 * t2;
-        let t47 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let minus_gproximal_wz_leg1 = t17 * t2;
-        let t49 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t50 = 6.9367175234400325 * minus_s_proximal_leg1;
-        let t51 = gproximal_wx_leg1 * t50;
-        let t52 = gproximal_wy_leg1 * t50;
-        let t53 = minus_gproximal_wz_leg1 * t50;
-        let t54 = 6.9367175234400325 * minus_c_proximal_leg1;
-        let t55 = gproximal_wx_leg1 * t54;
-        let t56 = gproximal_wy_leg1 * t54;
-        let t57 = minus_gproximal_wz_leg1 * t54;
-        let minus_rate_proximal_leg1 = t2 * t23;
-        let t65 = t42 - t25;
-        let t67 = t23 * t24;
-        let t68 = minus_gdistal_wx_leg1 * t67;
-        let t69 = t9 * t65 + t68;
-        let t72 = minus_c_proximal_leg1 * t67 - t20 * t65;
-        let t74 = t68 + t17 * t65;
-        let t75 = t23 * rate_distal_leg1;
-        let t76 = t3 * t43;
-        let t81 = minus_s_distal_leg1 * (t75 + t76 + t75) + c_distal_leg1 * t65;
+        let t42 = t24 + t41;
+        let minus_rate_dot_proximal_leg1 = t42 / minus_s_distal_leg1;
+        let t44 = gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let gproximal_wy_leg1 = minus_s_proximal_leg1 * t15;
+        let t46 = gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let minus_gproximal_wz_leg1 = t16 / minus_s_distal_leg1;
+        let t48 = minus_gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t49 = 6.9367175234400325 * minus_s_proximal_leg1;
+        let t50 = gproximal_wx_leg1 * t49;
+        let t51 = gproximal_wy_leg1 * t49;
+        let t52 = minus_gproximal_wz_leg1 * t49;
+        let t53 = 6.9367175234400325 * minus_c_proximal_leg1;
+        let t54 = gproximal_wx_leg1 * t53;
+        let t55 = gproximal_wy_leg1 * t53;
+        let t56 = minus_gproximal_wz_leg1 * t53;
+        let minus_rate_proximal_leg1 = t22 / minus_s_distal_leg1;
+        let t64 = t41 - t24;
+        let t66 = t22 * t23;
+        let t67 = minus_gdistal_wx_leg1 * t66;
+        let t68 = t7 * t64 + t67;
+        let t69 = c_distal_leg1 * t64;
+        let t72 = minus_c_proximal_leg1 * t66 - minus_s_proximal_leg1 * t69;
+        let t74 = t67 + t16 * t64;
+        let t75 = t22 * rate_distal_leg1;
+        let t76 = t15 * t42;
+        let t80 = minus_s_distal_leg1 * (t75 + t76 + t75) + t69;
+        let t82 = t22 * t22;
         let t83 = t23 * t23;
-        let t84 = t24 * t24;
-        let t85 = t83 - t84;
-        let t86 = minus_gdistal_wx_leg1 * t85;
-        let t93 = rate_distal_leg1 * rate_distal_leg1;
+        let t84 = t82 - t83;
+        let t85 = minus_gdistal_wx_leg1 * t84;
+        let t92 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] - t23 * minus_rate_wrist_leg1;
-        let t105 = c_distal_leg1 * (t93 - t83)
-            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t67);
-        let t107 = minus_gdistal_wx_leg1 * t43;
-        let t121 = c_distal_leg1 * (t67 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t84 - t93);
-        let t123 = minus_gdistal_wx_leg1 * t76;
-        let t130 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t133 = 9.81 * t37;
-        let t134 = minus_gdistal_wx_leg1 * t133;
-        let t147 = minus_s_proximal_leg2 * c_distal_leg2;
-        let t148 = 1.0 / minus_s_distal_leg2;
-        let minus_gproximal_wx_leg2 = t147 * t148;
+            + minus_gdistal_wx_leg1 * acceleration[2] - t22 * minus_rate_wrist_leg1;
+        let t104 = c_distal_leg1 * (t92 - t82)
+            - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t66);
+        let t106 = minus_gdistal_wx_leg1 * t42;
+        let t120 = c_distal_leg1 * (t66 + rate_dot_distal_leg1)
+            - minus_s_distal_leg1 * (t83 - t92);
+        let t122 = minus_gdistal_wx_leg1 * t76;
+        let t129 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t132 = t36 * t49;
+        let t146 = minus_s_proximal_leg2 * c_distal_leg2;
+        let minus_gproximal_wx_leg2 = t146 / minus_s_distal_leg2;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t156 = c_distal_leg2 * t148;
-        let t158 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t159 = minus_c_proximal_leg2 * t158;
-        let t160 = t156 * t159;
-        let t161 = t160 + t158;
-        let t164 = t160 - t158;
-        let t166 = t147 * twist[0] - t161 * twist[1] + t164 * twist[2];
-        let t167 = t156 * t166;
-        let t168 = rate_distal_leg2 * t167;
-        let t174 = minus_s_proximal_leg2 * minus_s_distal_leg2;
-        let t176 = 0.7071067811865476 * c_distal_leg2;
-        let t177 = t176 - t159;
-        let t180 = t159 + t176;
-        let minus_rate_wrist_leg2 = t167 + t174 * twist[0] + t177 * twist[1]
-            + t180 * twist[2];
-        let t185 = t147 * acceleration[0] - t161 * acceleration[1]
-            + t164 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let t186 = t168 + t185;
-        let minus_rate_dot_proximal_leg2 = t148 * t186;
-        let t188 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let gproximal_wy_leg2 = t161 * t148;
-        let t190 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let minus_gproximal_wz_leg2 = t164 * t148;
-        let t192 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t193 = 6.9367175234400325 * minus_s_proximal_leg2;
-        let t194 = minus_gproximal_wx_leg2 * t193;
-        let t195 = gproximal_wy_leg2 * t193;
-        let t196 = minus_gproximal_wz_leg2 * t193;
-        let t197 = 6.9367175234400325 * minus_c_proximal_leg2;
-        let t198 = minus_gproximal_wx_leg2 * t197;
-        let t199 = gproximal_wy_leg2 * t197;
-        let t200 = minus_gproximal_wz_leg2 * t197;
-        let minus_rate_proximal_leg2 = t148 * t166;
-        let t208 = t185 - t168;
-        let t210 = t166 * t167;
-        let t212 = minus_c_proximal_leg2 * t210 - t147 * t208;
-        let t214 = minus_gdistal_wy_leg2 * t210;
-        let t215 = t161 * t208 + t214;
-        let t217 = t214 + t164 * t208;
-        let t218 = t166 * rate_distal_leg2;
-        let t219 = t156 * t186;
-        let t224 = minus_s_distal_leg2 * (t218 + t219 + t218) + c_distal_leg2 * t208;
-        let t226 = t166 * t166;
-        let t227 = t167 * t167;
-        let t228 = t226 - t227;
-        let t232 = minus_gdistal_wy_leg2 * t228;
-        let t236 = rate_distal_leg2 * rate_distal_leg2;
+        let t155 = 0.7071067811865476 * c_distal_leg2;
+        let t156 = minus_c_proximal_leg2 * t155;
+        let t157 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t158 = t156 + t157;
+        let t161 = t156 - t157;
+        let t163 = t146 * twist[0] - t158 * twist[1] + t161 * twist[2];
+        let minus_rate_proximal_leg2 = t163 / minus_s_distal_leg2;
+        let t165 = c_distal_leg2 * minus_rate_proximal_leg2;
+        let t166 = rate_distal_leg2 * t165;
+        let t172 = minus_s_proximal_leg2 * minus_s_distal_leg2;
+        let t174 = minus_c_proximal_leg2 * t157;
+        let t175 = t155 - t174;
+        let t178 = t174 + t155;
+        let minus_rate_wrist_leg2 = t165 + t172 * twist[0] + t175 * twist[1]
+            + t178 * twist[2];
+        let t183 = t146 * acceleration[0] - t158 * acceleration[1]
+            + t161 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let t184 = t166 + t183;
+        let minus_rate_dot_proximal_leg2 = t184 / minus_s_distal_leg2;
+        let t186 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let gproximal_wy_leg2 = t158 / minus_s_distal_leg2;
+        let t188 = gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let minus_gproximal_wz_leg2 = t161 / minus_s_distal_leg2;
+        let t190 = minus_gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t191 = 6.9367175234400325 * minus_s_proximal_leg2;
+        let t192 = minus_gproximal_wx_leg2 * t191;
+        let t193 = gproximal_wy_leg2 * t191;
+        let t194 = minus_gproximal_wz_leg2 * t191;
+        let t195 = 6.9367175234400325 * minus_c_proximal_leg2;
+        let t196 = minus_gproximal_wx_leg2 * t195;
+        let t197 = gproximal_wy_leg2 * t195;
+        let t198 = minus_gproximal_wz_leg2 * t195;
+        let t205 = t183 - t166;
+        let t206 = c_distal_leg2 * t205;
+        let t208 = t163 * t165;
+        let t210 = minus_c_proximal_leg2 * t208 - minus_s_proximal_leg2 * t206;
+        let t212 = minus_gdistal_wy_leg2 * t208;
+        let t213 = t158 * t205 + t212;
+        let t215 = t212 + t161 * t205;
+        let t216 = t163 * rate_distal_leg2;
+        let t217 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t221 = minus_s_distal_leg2 * (t216 + t217 + t216) + t206;
+        let t223 = t163 * t163;
+        let t224 = t165 * t165;
+        let t225 = t223 - t224;
+        let t229 = minus_gdistal_wy_leg2 * t225;
+        let t233 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t166 * minus_rate_wrist_leg2;
-        let t248 = c_distal_leg2 * (t236 - t226)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t210);
-        let t253 = minus_gdistal_wy_leg2 * t186;
-        let t265 = c_distal_leg2 * (t210 + rate_dot_distal_leg2)
-            - minus_s_distal_leg2 * (t227 - t236);
-        let t269 = minus_gdistal_wy_leg2 * t219;
-        let t274 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t276 = 9.81 * t180;
-        let t280 = minus_gdistal_wy_leg2 * t276;
-        let t288 = c_distal_leg3 / minus_s_distal_leg3;
-        let t291 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t292 = minus_c_proximal_leg3 * t291;
-        let t293 = t288 * t292;
-        let t294 = t293 + t291;
-        let minus_gproximal_wx_leg3 = t294 / minus_s_distal_leg3;
+            - t163 * minus_rate_wrist_leg2;
+        let t245 = c_distal_leg2 * (t233 - t223)
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t208);
+        let t250 = minus_gdistal_wy_leg2 * t184;
+        let t262 = c_distal_leg2 * (t208 + rate_dot_distal_leg2)
+            - minus_s_distal_leg2 * (t224 - t233);
+        let t266 = minus_gdistal_wy_leg2 * t217;
+        let t271 = minus_gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t273 = 9.81 * t178;
+        let t277 = minus_gdistal_wy_leg2 * t273;
+        let t285 = c_distal_leg3 / minus_s_distal_leg3;
+        let t288 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t289 = minus_c_proximal_leg3 * t288;
+        let t290 = t285 * t289;
+        let t291 = t290 + t288;
+        let minus_gproximal_wx_leg3 = t291 / minus_s_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
-        let t303 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t306 = t293 - t291;
-        let t308 = t294 * twist[0] + t303 * twist[1] + t306 * twist[2];
-        let t309 = t288 * t308;
-        let t310 = rate_distal_leg3 * t309;
-        let t316 = 0.7071067811865476 * c_distal_leg3;
-        let t317 = t292 - t316;
-        let t319 = minus_s_proximal_leg3 * minus_s_distal_leg3;
-        let t322 = t292 + t316;
-        let minus_rate_wrist_leg3 = t309 + t317 * twist[0] + t319 * twist[1]
-            + t322 * twist[2];
-        let t327 = t294 * acceleration[0] + t303 * acceleration[1]
-            + t306 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t328 = t310 + t327;
-        let minus_rate_dot_proximal_leg3 = t328 / minus_s_distal_leg3;
-        let t330 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t303 / minus_s_distal_leg3;
-        let t332 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
-        let minus_gproximal_wz_leg3 = t306 / minus_s_distal_leg3;
-        let t334 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
-        let t335 = 6.9367175234400325 * minus_s_proximal_leg3;
-        let t336 = minus_gproximal_wx_leg3 * t335;
-        let t337 = minus_gproximal_wy_leg3 * t335;
-        let t338 = minus_gproximal_wz_leg3 * t335;
-        let t339 = 6.9367175234400325 * minus_c_proximal_leg3;
-        let t340 = minus_gproximal_wx_leg3 * t339;
-        let t341 = minus_gproximal_wy_leg3 * t339;
-        let t342 = minus_gproximal_wz_leg3 * t339;
-        let minus_rate_proximal_leg3 = t308 / minus_s_distal_leg3;
-        let t350 = t308 * t309;
-        let t351 = gdistal_wx_leg3 * t350;
-        let t352 = t327 - t310;
-        let t354 = t351 + t294 * t352;
-        let t357 = minus_c_proximal_leg3 * t350 - t303 * t352;
-        let t359 = t351 + t306 * t352;
-        let t360 = t308 * t308;
-        let t361 = t309 * t309;
-        let t362 = t360 - t361;
-        let t363 = gdistal_wx_leg3 * t362;
-        let t364 = t308 * rate_distal_leg3;
-        let t365 = t288 * t328;
-        let t370 = minus_s_distal_leg3 * (t364 + t365 + t364) + c_distal_leg3 * t352;
-        let t378 = gdistal_wx_leg3 * t328;
-        let t379 = rate_distal_leg3 * rate_distal_leg3;
+        let t300 = minus_s_proximal_leg3 * c_distal_leg3;
+        let t303 = t290 - t288;
+        let t305 = t291 * twist[0] + t300 * twist[1] + t303 * twist[2];
+        let t306 = t285 * t305;
+        let t307 = rate_distal_leg3 * t306;
+        let t313 = 0.7071067811865476 * c_distal_leg3;
+        let t314 = t289 - t313;
+        let t316 = minus_s_proximal_leg3 * minus_s_distal_leg3;
+        let t319 = t289 + t313;
+        let minus_rate_wrist_leg3 = t306 + t314 * twist[0] + t316 * twist[1]
+            + t319 * twist[2];
+        let t324 = t291 * acceleration[0] + t300 * acceleration[1]
+            + t303 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t325 = t307 + t324;
+        let minus_rate_dot_proximal_leg3 = t325 / minus_s_distal_leg3;
+        let t327 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wy_leg3 = minus_s_proximal_leg3 * t285;
+        let t329 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3;
+        let minus_gproximal_wz_leg3 = t303 / minus_s_distal_leg3;
+        let t331 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3;
+        let t332 = 6.9367175234400325 * minus_s_proximal_leg3;
+        let t333 = minus_gproximal_wx_leg3 * t332;
+        let t334 = minus_gproximal_wy_leg3 * t332;
+        let t335 = minus_gproximal_wz_leg3 * t332;
+        let t336 = 6.9367175234400325 * minus_c_proximal_leg3;
+        let t337 = minus_gproximal_wx_leg3 * t336;
+        let t338 = minus_gproximal_wy_leg3 * t336;
+        let t339 = minus_gproximal_wz_leg3 * t336;
+        let minus_rate_proximal_leg3 = t305 / minus_s_distal_leg3;
+        let t347 = t305 * t306;
+        let t348 = gdistal_wx_leg3 * t347;
+        let t349 = t324 - t307;
+        let t351 = t348 + t291 * t349;
+        let t352 = c_distal_leg3 * t349;
+        let t355 = minus_c_proximal_leg3 * t347 - minus_s_proximal_leg3 * t352;
+        let t357 = t348 + t303 * t349;
+        let t358 = t305 * t305;
+        let t359 = t306 * t306;
+        let t360 = t358 - t359;
+        let t361 = gdistal_wx_leg3 * t360;
+        let t362 = t305 * rate_distal_leg3;
+        let t363 = t285 * t325;
+        let t367 = minus_s_distal_leg3 * (t362 + t363 + t362) + t352;
+        let t375 = gdistal_wx_leg3 * t325;
+        let t376 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t308 * minus_rate_wrist_leg3;
-        let t391 = c_distal_leg3 * (t379 - t360)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t350);
-        let t406 = c_distal_leg3 * (t350 + rate_dot_distal_leg3)
-            - minus_s_distal_leg3 * (t361 - t379);
-        let t408 = gdistal_wx_leg3 * t365;
-        let t415 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t418 = 9.81 * t322;
-        let t419 = gdistal_wx_leg3 * t418;
-        let t432 = minus_s_proximal_leg4 * c_distal_leg4;
-        let gproximal_wx_leg4 = t432 / minus_s_distal_leg4;
+            - t305 * minus_rate_wrist_leg3;
+        let t388 = c_distal_leg3 * (t376 - t358)
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t347);
+        let t403 = c_distal_leg3 * (t347 + rate_dot_distal_leg3)
+            - minus_s_distal_leg3 * (t359 - t376);
+        let t405 = gdistal_wx_leg3 * t363;
+        let t412 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t415 = t319 * t332;
+        let t429 = c_distal_leg4 / minus_s_distal_leg4;
+        let gproximal_wx_leg4 = minus_s_proximal_leg4 * t429;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
         let rate_distal_leg4 = minus_c_proximal_leg4 * twist[0]
             + gdistal_wy_leg4 * twist[1] + gdistal_wy_leg4 * twist[2];
-        let t440 = c_distal_leg4 / minus_s_distal_leg4;
-        let t441 = 0.7071067811865476 * c_distal_leg4;
-        let t442 = minus_c_proximal_leg4 * t441;
-        let t443 = 0.7071067811865476 * minus_s_distal_leg4;
-        let t444 = t442 + t443;
-        let t448 = t442 - t443;
-        let t450 = t444 * twist[1] - t432 * twist[0] + t448 * twist[2];
-        let t451 = t440 * t450;
-        let t452 = rate_distal_leg4 * t451;
-        let t458 = minus_c_proximal_leg4 * t443;
-        let t459 = t458 - t441;
-        let t461 = minus_s_proximal_leg4 * minus_s_distal_leg4;
-        let t464 = t458 + t441;
-        let minus_rate_wrist_leg4 = t451 + t459 * twist[1] - t461 * twist[0]
-            + t464 * twist[2];
-        let t469 = t444 * acceleration[1] - t432 * acceleration[0]
-            + t448 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let t470 = t452 + t469;
-        let minus_rate_dot_proximal_leg4 = t470 / minus_s_distal_leg4;
-        let t472 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wy_leg4 = t444 / minus_s_distal_leg4;
-        let t474 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let minus_gproximal_wz_leg4 = t448 / minus_s_distal_leg4;
-        let t476 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t477 = 6.9367175234400325 * minus_s_proximal_leg4;
-        let t478 = gproximal_wx_leg4 * t477;
-        let t479 = minus_gproximal_wy_leg4 * t477;
-        let t480 = minus_gproximal_wz_leg4 * t477;
-        let t481 = 6.9367175234400325 * minus_c_proximal_leg4;
-        let t482 = gproximal_wx_leg4 * t481;
-        let t483 = minus_gproximal_wy_leg4 * t481;
-        let t484 = minus_gproximal_wz_leg4 * t481;
-        let minus_rate_proximal_leg4 = t450 / minus_s_distal_leg4;
-        let t492 = t469 - t452;
-        let t493 = c_distal_leg4 * t492;
-        let t495 = t450 * t451;
-        let t497 = minus_c_proximal_leg4 * t495 - minus_s_proximal_leg4 * t493;
-        let t498 = gdistal_wy_leg4 * t495;
-        let t500 = t498 + t444 * t492;
-        let t502 = t498 + t448 * t492;
-        let t503 = t450 * rate_distal_leg4;
-        let t504 = t440 * t470;
-        let t508 = minus_s_distal_leg4 * (t503 + t504 + t503) + t493;
-        let t510 = t450 * t450;
-        let t511 = t451 * t451;
-        let t512 = t510 - t511;
-        let t515 = gdistal_wy_leg4 * t512;
-        let t520 = rate_distal_leg4 * rate_distal_leg4;
+        let t437 = 0.7071067811865476 * minus_s_distal_leg4;
+        let t438 = minus_c_proximal_leg4 * t437;
+        let t439 = t429 * t438;
+        let t440 = t439 + t437;
+        let t442 = minus_s_proximal_leg4 * c_distal_leg4;
+        let t445 = t439 - t437;
+        let t447 = t440 * twist[1] - t442 * twist[0] + t445 * twist[2];
+        let t448 = t429 * t447;
+        let t449 = rate_distal_leg4 * t448;
+        let t455 = 0.7071067811865476 * c_distal_leg4;
+        let t456 = t438 - t455;
+        let t458 = minus_s_proximal_leg4 * minus_s_distal_leg4;
+        let t461 = t438 + t455;
+        let minus_rate_wrist_leg4 = t448 + t456 * twist[1] - t458 * twist[0]
+            + t461 * twist[2];
+        let t466 = t440 * acceleration[1] - t442 * acceleration[0]
+            + t445 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t467 = t449 + t466;
+        let minus_rate_dot_proximal_leg4 = t467 / minus_s_distal_leg4;
+        let t469 = gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wy_leg4 = t440 / minus_s_distal_leg4;
+        let t471 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let minus_gproximal_wz_leg4 = t445 / minus_s_distal_leg4;
+        let t473 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t474 = 6.9367175234400325 * minus_s_proximal_leg4;
+        let t475 = gproximal_wx_leg4 * t474;
+        let t476 = minus_gproximal_wy_leg4 * t474;
+        let t477 = minus_gproximal_wz_leg4 * t474;
+        let t478 = 6.9367175234400325 * minus_c_proximal_leg4;
+        let t479 = gproximal_wx_leg4 * t478;
+        let t480 = minus_gproximal_wy_leg4 * t478;
+        let t481 = minus_gproximal_wz_leg4 * t478;
+        let minus_rate_proximal_leg4 = t447 / minus_s_distal_leg4;
+        let t489 = t466 - t449;
+        let t490 = c_distal_leg4 * t489;
+        let t492 = t447 * t448;
+        let t494 = minus_c_proximal_leg4 * t492 - minus_s_proximal_leg4 * t490;
+        let t495 = gdistal_wy_leg4 * t492;
+        let t497 = t495 + t440 * t489;
+        let t499 = t495 + t445 * t489;
+        let t500 = t447 * rate_distal_leg4;
+        let t501 = t429 * t467;
+        let t505 = minus_s_distal_leg4 * (t500 + t501 + t500) + t490;
+        let t507 = t447 * t447;
+        let t508 = t448 * t448;
+        let t509 = t507 - t508;
+        let t512 = gdistal_wy_leg4 * t509;
+        let t517 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
-            - t450 * minus_rate_wrist_leg4;
-        let t532 = c_distal_leg4 * (t520 - t510)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t495);
-        let t536 = gdistal_wy_leg4 * t470;
-        let t548 = c_distal_leg4 * (t495 + rate_dot_distal_leg4)
-            - minus_s_distal_leg4 * (t511 - t520);
-        let t553 = gdistal_wy_leg4 * t504;
-        let t558 = gdistal_wy_leg4 * rate_dot_distal_leg4;
-        let t564 = t464 * t477;
-        let t570 = pose[2] + pose[2];
-        let t571 = pose[2] * t570;
-        let t573 = pose[3] + pose[3];
-        let t574 = pose[3] * t573;
-        let t575 = 1.0 - t571 - t574;
-        let t577 = pose[1] + pose[1];
-        let t578 = pose[2] * t577;
-        let t579 = pose[0] * t573;
-        let t580 = t578 + t579;
-        let t583 = pose[3] * t577;
-        let t584 = pose[0] * t570;
-        let t585 = t583 - t584;
-        let t587 = t575 * acceleration[0] + t580 * acceleration[1]
-            + t585 * acceleration[2];
-        let t589 = t578 - t579;
-        let t594 = t575 * twist[0] + t580 * twist[1] + t585 * twist[2];
-        let t595 = t583 + t584;
-        let t597 = pose[3] * t570;
-        let t598 = pose[0] * t577;
-        let t599 = t597 - t598;
-        let t603 = 1.0 - pose[1] * t577;
-        let t604 = t603 - t571;
-        let t606 = t595 * twist[0] + t599 * twist[1] + t604 * twist[2];
-        let t607 = t594 * t606;
-        let t608 = t589 * t607;
-        let t611 = t603 - t574;
-        let t614 = t597 + t598;
-        let t616 = t589 * twist[0] + t611 * twist[1] + t614 * twist[2];
-        let t617 = t594 * t616;
-        let t618 = t595 * t617;
-        let t621 = t611 * t607;
-        let t623 = t599 * t617;
-        let t626 = t614 * t607;
-        let t628 = t604 * t617;
-        let t634 = t589 * acceleration[0] + t611 * acceleration[1]
-            + t614 * acceleration[2];
-        let t635 = t634 - t607;
-        let t637 = t616 * t606;
-        let t638 = t587 + t637;
-        let t641 = t594 * t594;
-        let t642 = t616 * t616;
-        let t643 = t641 - t642;
-        let t660 = t595 * acceleration[0] + t599 * acceleration[1]
-            + t604 * acceleration[2];
-        let t661 = t660 + t617;
-        let t663 = t606 * t606;
-        let t664 = t663 - t641;
-        let t667 = t587 - t637;
-        let t681 = t575 * t637;
-        let t685 = t580 * t637;
-        let t689 = t585 * t637;
-        let t692 = t642 - t663;
-        let t694 = t660 - t617;
-        let t697 = t634 + t607;
+            - t447 * minus_rate_wrist_leg4;
+        let t529 = c_distal_leg4 * (t517 - t507)
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t492);
+        let t533 = gdistal_wy_leg4 * t467;
+        let t545 = c_distal_leg4 * (t492 + rate_dot_distal_leg4)
+            - minus_s_distal_leg4 * (t508 - t517);
+        let t550 = gdistal_wy_leg4 * t501;
+        let t555 = gdistal_wy_leg4 * rate_dot_distal_leg4;
+        let t561 = t461 * t474;
+        let t567 = pose[2] + pose[2];
+        let t568 = pose[2] * t567;
+        let t570 = pose[3] + pose[3];
+        let t571 = pose[3] * t570;
+        let t572 = 1.0 - t568 - t571;
+        let t574 = pose[1] + pose[1];
+        let t575 = pose[2] * t574;
+        let t576 = pose[0] * t570;
+        let t577 = t575 + t576;
+        let t580 = pose[3] * t574;
+        let t581 = pose[0] * t567;
+        let t582 = t580 - t581;
+        let t584 = t572 * acceleration[0] + t577 * acceleration[1]
+            + t582 * acceleration[2];
+        let t586 = t575 - t576;
+        let t591 = t572 * twist[0] + t577 * twist[1] + t582 * twist[2];
+        let t592 = t580 + t581;
+        let t594 = pose[3] * t567;
+        let t595 = pose[0] * t574;
+        let t596 = t594 - t595;
+        let t600 = 1.0 - pose[1] * t574;
+        let t601 = t600 - t568;
+        let t603 = t592 * twist[0] + t596 * twist[1] + t601 * twist[2];
+        let t604 = t591 * t603;
+        let t605 = t586 * t604;
+        let t608 = t600 - t571;
+        let t611 = t594 + t595;
+        let t613 = t586 * twist[0] + t608 * twist[1] + t611 * twist[2];
+        let t614 = t591 * t613;
+        let t615 = t592 * t614;
+        let t618 = t608 * t604;
+        let t620 = t596 * t614;
+        let t623 = t611 * t604;
+        let t625 = t601 * t614;
+        let t631 = t586 * acceleration[0] + t608 * acceleration[1]
+            + t611 * acceleration[2];
+        let t632 = t631 - t604;
+        let t634 = t613 * t603;
+        let t635 = t584 + t634;
+        let t638 = t591 * t591;
+        let t639 = t613 * t613;
+        let t640 = t638 - t639;
+        let t657 = t592 * acceleration[0] + t596 * acceleration[1]
+            + t601 * acceleration[2];
+        let t658 = t657 + t614;
+        let t660 = t603 * t603;
+        let t661 = t660 - t638;
+        let t664 = t584 - t634;
+        let t678 = t572 * t634;
+        let t682 = t577 * t634;
+        let t686 = t582 * t634;
+        let t689 = t639 - t660;
+        let t691 = t657 - t614;
+        let t694 = t631 + t604;
         Ok([
             [
-                -t45, -t51, -t55, -t45, -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
+                -t44, -t50, -t54, -t44, -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
-                gproximal_wx_leg1, -t69, gproximal_wx_leg1 * t81 - t86,
-                gproximal_wx_leg1 * t105 - t107, -(t45 - t69), gproximal_wx_leg1 * t121 + t123,
-                -t130, -(c_distal_leg1 * t51 + t134), -(9.81 * t34), t55, t188, t194, t198, t188,
+                gproximal_wx_leg1, -t68, gproximal_wx_leg1 * t80 - t85,
+                gproximal_wx_leg1 * t104 - t106, -(t44 - t68), gproximal_wx_leg1 * t120 + t122,
+                -t129, -(c_distal_leg1 * t50 + t132), -(9.81 * t33), t54, t186, t192, t196, t186,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                -t212,
-                -(minus_gproximal_wx_leg2 * t224 + minus_c_proximal_leg2 * t228),
-                -(minus_gproximal_wx_leg2 * t248 + minus_c_proximal_leg2 * t186),
-                t188 + t212,
-                minus_c_proximal_leg2 * t219 - minus_gproximal_wx_leg2 * t265,
+                -t210,
+                -(minus_gproximal_wx_leg2 * t221 + minus_c_proximal_leg2 * t225),
+                -(minus_gproximal_wx_leg2 * t245 + minus_c_proximal_leg2 * t184),
+                t186 + t210,
+                minus_c_proximal_leg2 * t217 - minus_gproximal_wx_leg2 * t262,
                 -(minus_c_proximal_leg2 * rate_dot_distal_leg2),
-                c_distal_leg2 * t194 - minus_c_proximal_leg2 * t276,
-                9.81 * t177,
-                -t198,
-                t330,
-                t336,
-                t340,
-                t330,
+                c_distal_leg2 * t192 - minus_c_proximal_leg2 * t273,
+                9.81 * t175,
+                -t196,
+                t327,
+                t333,
+                t337,
+                t327,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t354,
-                t363 - minus_gproximal_wx_leg3 * t370,
-                t378 - minus_gproximal_wx_leg3 * t391,
-                t330 - t354,
-                -(minus_gproximal_wx_leg3 * t406 + t408),
-                t415,
-                c_distal_leg3 * t336 + t419,
-                9.81 * t319,
-                -t340,
-                -t472,
-                -t478,
-                -t482,
-                -t472,
+                t351,
+                t361 - minus_gproximal_wx_leg3 * t367,
+                t375 - minus_gproximal_wx_leg3 * t388,
+                t327 - t351,
+                -(minus_gproximal_wx_leg3 * t403 + t405),
+                t412,
+                c_distal_leg3 * t333 + t415,
+                9.81 * t316,
+                -t337,
+                -t469,
+                -t475,
+                -t479,
+                -t469,
                 -(gproximal_wx_leg4 * minus_rate_proximal_leg4),
                 -::overact::math::signed(gproximal_wx_leg4, minus_rate_proximal_leg4),
                 gproximal_wx_leg4,
-                t497,
-                gproximal_wx_leg4 * t508 + minus_c_proximal_leg4 * t512,
-                gproximal_wx_leg4 * t532 + minus_c_proximal_leg4 * t470,
-                -(t472 + t497),
-                gproximal_wx_leg4 * t548 - minus_c_proximal_leg4 * t504,
+                t494,
+                gproximal_wx_leg4 * t505 + minus_c_proximal_leg4 * t509,
+                gproximal_wx_leg4 * t529 + minus_c_proximal_leg4 * t467,
+                -(t469 + t494),
+                gproximal_wx_leg4 * t545 - minus_c_proximal_leg4 * t501,
                 minus_c_proximal_leg4 * rate_dot_distal_leg4,
-                minus_c_proximal_leg4 * (9.81 * t464) - c_distal_leg4 * t478,
-                9.81 * t459,
-                t482,
-                t575 * t587 + t608 - t618,
-                t575 * t635 + t589 * t638 + t595 * t643,
-                t575 * t661 + t589 * t664 + t595 * t667,
-                t589 * t634 - t681 + t618,
-                t575 * t692 + t589 * t694 + t595 * t697,
-                t681 - t608 + t595 * t660,
-                9.81 * t580,
-                9.81 * t611,
-                9.81 * t599,
+                minus_c_proximal_leg4 * (9.81 * t461) - c_distal_leg4 * t475,
+                9.81 * t456,
+                t479,
+                t572 * t584 + t605 - t615,
+                t572 * t632 + t586 * t635 + t592 * t640,
+                t572 * t658 + t586 * t661 + t592 * t664,
+                t586 * t631 - t678 + t615,
+                t572 * t689 + t586 * t691 + t592 * t694,
+                t678 - t605 + t592 * t657,
+                9.81 * t577,
+                9.81 * t608,
+                9.81 * t596,
             ],
             [
-                -t47, -t52, -t56, -t47, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
+                -t46, -t51, -t55, -t46, -(gproximal_wy_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wy_leg1, minus_rate_proximal_leg1),
-                gproximal_wy_leg1, t72, gproximal_wy_leg1 * t81 + minus_c_proximal_leg1 * t85,
-                gproximal_wy_leg1 * t105 + minus_c_proximal_leg1 * t43, -(t47 + t72),
-                gproximal_wy_leg1 * t121 - minus_c_proximal_leg1 * t76,
+                gproximal_wy_leg1, t72, gproximal_wy_leg1 * t80 + minus_c_proximal_leg1 * t84,
+                gproximal_wy_leg1 * t104 + minus_c_proximal_leg1 * t42, -(t46 + t72),
+                gproximal_wy_leg1 * t120 - minus_c_proximal_leg1 * t76,
                 minus_c_proximal_leg1 * rate_dot_distal_leg1,
-                minus_c_proximal_leg1 * t133 - c_distal_leg1 * t52, -(9.81 * t32), t56, -t190,
-                -t195, -t199, -t190, -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
+                minus_c_proximal_leg1 * (9.81 * t36) - c_distal_leg1 * t51, -(9.81 * t31), t55,
+                -t188, -t193, -t197, -t188, -(gproximal_wy_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wy_leg2, minus_rate_proximal_leg2),
-                gproximal_wy_leg2, -t215, gproximal_wy_leg2 * t224 - t232,
-                gproximal_wy_leg2 * t248 - t253, -(t190 - t215), gproximal_wy_leg2 * t265 + t269,
-                -t274, -(c_distal_leg2 * t195 + t280), -(9.81 * t174), t199, t332, t337, t341, t332,
+                gproximal_wy_leg2, -t213, gproximal_wy_leg2 * t221 - t229,
+                gproximal_wy_leg2 * t245 - t250, -(t188 - t213), gproximal_wy_leg2 * t262 + t266,
+                -t271, -(c_distal_leg2 * t193 + t277), -(9.81 * t172), t197, t329, t334, t338, t329,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t357,
-                -(minus_gproximal_wy_leg3 * t370 + minus_c_proximal_leg3 * t362),
-                -(minus_gproximal_wy_leg3 * t391 + minus_c_proximal_leg3 * t328),
-                t332 + t357,
-                minus_c_proximal_leg3 * t365 - minus_gproximal_wy_leg3 * t406,
+                -t355,
+                -(minus_gproximal_wy_leg3 * t367 + minus_c_proximal_leg3 * t360),
+                -(minus_gproximal_wy_leg3 * t388 + minus_c_proximal_leg3 * t325),
+                t329 + t355,
+                minus_c_proximal_leg3 * t363 - minus_gproximal_wy_leg3 * t403,
                 -(minus_c_proximal_leg3 * rate_dot_distal_leg3),
-                c_distal_leg3 * t337 - minus_c_proximal_leg3 * t418,
-                -(9.81 * t317),
-                -t341,
-                t474,
-                t479,
-                t483,
-                t474,
+                c_distal_leg3 * t334 - minus_c_proximal_leg3 * (9.81 * t319),
+                -(9.81 * t314),
+                -t338,
+                t471,
+                t476,
+                t480,
+                t471,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t500,
-                t515 - minus_gproximal_wy_leg4 * t508,
-                t536 - minus_gproximal_wy_leg4 * t532,
-                t474 - t500,
-                -(minus_gproximal_wy_leg4 * t548 + t553),
-                t558,
-                c_distal_leg4 * t479 + t564,
-                9.81 * t461,
-                -t483,
-                t580 * t587 + t621 - t623,
-                t580 * t635 + t611 * t638 + t599 * t643,
-                t580 * t661 + t611 * t664 + t599 * t667,
-                t611 * t634 - t685 + t623,
-                t580 * t692 + t611 * t694 + t599 * t697,
-                t685 - t621 + t599 * t660,
-                -(9.81 * t575),
-                -(9.81 * t589),
-                -(9.81 * t595),
+                t497,
+                t512 - minus_gproximal_wy_leg4 * t505,
+                t533 - minus_gproximal_wy_leg4 * t529,
+                t471 - t497,
+                -(minus_gproximal_wy_leg4 * t545 + t550),
+                t555,
+                c_distal_leg4 * t476 + t561,
+                9.81 * t458,
+                -t480,
+                t577 * t584 + t618 - t620,
+                t577 * t632 + t608 * t635 + t596 * t640,
+                t577 * t658 + t608 * t661 + t596 * t664,
+                t608 * t631 - t682 + t620,
+                t577 * t689 + t608 * t691 + t596 * t694,
+                t682 - t618 + t596 * t657,
+                -(9.81 * t572),
+                -(9.81 * t586),
+                -(9.81 * t592),
             ],
             [
-                t49, t53, t57, t49, minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
+                t48, t52, t56, t48, minus_gproximal_wz_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wz_leg1,
                 t74,
-                t86 - minus_gproximal_wz_leg1 * t81,
-                t107 - minus_gproximal_wz_leg1 * t105,
-                t49 - t74,
-                -(minus_gproximal_wz_leg1 * t121 + t123),
-                t130,
-                c_distal_leg1 * t53 + t134,
+                t85 - minus_gproximal_wz_leg1 * t80,
+                t106 - minus_gproximal_wz_leg1 * t104,
+                t48 - t74,
+                -(minus_gproximal_wz_leg1 * t120 + t122),
+                t129,
+                c_distal_leg1 * t52 + t132,
                 0.0,
-                -t57,
-                t192,
-                t196,
-                t200,
-                t192,
+                -t56,
+                t190,
+                t194,
+                t198,
+                t190,
                 minus_gproximal_wz_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wz_leg2,
-                t217,
-                t232 - minus_gproximal_wz_leg2 * t224,
-                t253 - minus_gproximal_wz_leg2 * t248,
-                t192 - t217,
-                -(minus_gproximal_wz_leg2 * t265 + t269),
-                t274,
-                c_distal_leg2 * t196 + t280,
+                t215,
+                t229 - minus_gproximal_wz_leg2 * t221,
+                t250 - minus_gproximal_wz_leg2 * t245,
+                t190 - t215,
+                -(minus_gproximal_wz_leg2 * t262 + t266),
+                t271,
+                c_distal_leg2 * t194 + t277,
                 0.0,
-                -t200,
-                t334,
-                t338,
-                t342,
-                t334,
+                -t198,
+                t331,
+                t335,
+                t339,
+                t331,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t359,
-                t363 - minus_gproximal_wz_leg3 * t370,
-                t378 - minus_gproximal_wz_leg3 * t391,
-                t334 - t359,
-                -(minus_gproximal_wz_leg3 * t406 + t408),
-                t415,
-                c_distal_leg3 * t338 + t419,
+                t357,
+                t361 - minus_gproximal_wz_leg3 * t367,
+                t375 - minus_gproximal_wz_leg3 * t388,
+                t331 - t357,
+                -(minus_gproximal_wz_leg3 * t403 + t405),
+                t412,
+                c_distal_leg3 * t335 + t415,
                 0.0,
-                -t342,
-                t476,
-                t480,
-                t484,
-                t476,
+                -t339,
+                t473,
+                t477,
+                t481,
+                t473,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t502,
-                t515 - minus_gproximal_wz_leg4 * t508,
-                t536 - minus_gproximal_wz_leg4 * t532,
-                t476 - t502,
-                -(minus_gproximal_wz_leg4 * t548 + t553),
-                t558,
-                c_distal_leg4 * t480 + t564,
+                t499,
+                t512 - minus_gproximal_wz_leg4 * t505,
+                t533 - minus_gproximal_wz_leg4 * t529,
+                t473 - t499,
+                -(minus_gproximal_wz_leg4 * t545 + t550),
+                t555,
+                c_distal_leg4 * t477 + t561,
                 0.0,
-                -t484,
-                t585 * t587 + t626 - t628,
-                t585 * t635 + t614 * t638 + t604 * t643,
-                t585 * t661 + t614 * t664 + t604 * t667,
-                t614 * t634 - t689 + t628,
-                t585 * t692 + t614 * t694 + t604 * t697,
-                t689 - t626 + t604 * t660,
+                -t481,
+                t582 * t584 + t623 - t625,
+                t582 * t632 + t611 * t635 + t601 * t640,
+                t582 * t658 + t611 * t661 + t601 * t664,
+                t611 * t631 - t686 + t625,
+                t582 * t689 + t611 * t691 + t601 * t694,
+                t686 - t623 + t601 * t657,
                 0.0,
                 0.0,
                 0.0,
@@ -2778,7 +2771,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 73.
     /// Columns: `PARAMETERS`.
     ///
-    /// 850 operations (329 additions, 505 multiplications, 16 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 682 intermediates.
+    /// 858 operations (329 additions, 516 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 690 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2799,16 +2792,18 @@ impl Spherical4Rrr {
         let t7 = pose[3] * t6;
         let t8 = pose[0] * t0;
         let t9 = t7 + t8;
+        let t10 = t5 - t9;
         let t11 = t7 - t8;
-        let t13 = t2 - pose[1] * t6;
+        let t12 = pose[1] * t6;
+        let t13 = t2 - t12;
         let t14 = t11 - t13;
-        let minus_s_distal_leg1 = 0.5 * (t5 - t9 + t14);
+        let minus_s_distal_leg1 = 0.5 * (t10 + t14);
         let t18 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
         ::overact::guard::reach(t18, "leg1")?;
         let c_distal_leg1 = ::overact::math::sqrt(t18);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
         let t20 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t20 * (minus_s_distal_leg1 - t14);
+        let c_proximal_leg1 = t20 * (t10 - minus_s_distal_leg1);
         let t23 = minus_s_distal_leg1 * c_proximal_leg1;
         let t25 = 0.7071067811865475 * (t23 - c_distal_leg1);
         let minus_gproximal_wx_leg1 = t25 * t20;
@@ -2818,8 +2813,8 @@ impl Spherical4Rrr {
         let t30 = pose[3] * t0;
         let t31 = pose[0] * t6;
         let t32 = t30 - t31;
-        let t34 = 0.7071067811865475 * (t29 - t32);
-        let s_proximal_leg1 = t20 * t34;
+        let t33 = t29 - t32;
+        let s_proximal_leg1 = 0.7071067811865475 * t33 / c_distal_leg1;
         let t36 = minus_s_distal_leg1 * s_proximal_leg1;
         let minus_gproximal_wy_leg1 = t36 * t20;
         let t39 = t4 - t1;
@@ -2827,50 +2822,50 @@ impl Spherical4Rrr {
         let t42 = t30 + t31;
         let t43 = t42 - t13;
         let minus_s_distal_leg2 = 0.5 * (t40 - t32 + t43);
-        let t46 = t27 - t28;
-        let t47 = t46 - t9;
-        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t50, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t50);
+        let t47 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t47, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t47);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let minus_s_proximal_leg2 = 0.7071067811865475 * t47 / c_distal_leg2;
-        let t53 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let t54 = 1.0 / c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t53 * t54;
-        let c_proximal_leg2 = t54 * (minus_s_distal_leg2 - t43);
+        let t49 = 1.0 / c_distal_leg2;
+        let t50 = t27 - t28;
+        let t51 = t50 - t9;
+        let minus_s_proximal_leg2 = t49 * (0.7071067811865475 * t51);
+        let t54 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t54 * t49;
+        let c_proximal_leg2 = t49 * (minus_s_distal_leg2 - t43);
         let t58 = minus_s_distal_leg2 * c_proximal_leg2;
         let t60 = 0.7071067811865475 * (t58 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t60 * t54;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t5 - t13);
-        let t67 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t67, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t67);
+        let minus_gproximal_wy_leg2 = t60 * t49;
+        let s_distal_leg3 = minus_s_distal_leg1 - (t12 - t4);
+        let t66 = t11 + t13;
+        let t69 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t69, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t69);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t69 = 1.0 / c_distal_leg3;
-        let t70 = t11 + t13;
-        let c_proximal_leg3 = t69 * (t70 - s_distal_leg3);
-        let t73 = s_distal_leg3 * c_proximal_leg3;
-        let t75 = 0.7071067811865475 * (t73 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t75 * t69;
+        let c_proximal_leg3 = (t66 - s_distal_leg3) / c_distal_leg3;
+        let t72 = s_distal_leg3 * c_proximal_leg3;
+        let t74 = 0.7071067811865475 * (t72 + c_distal_leg3);
+        let t75 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t74 * t75;
         let t78 = 0.7071067811865475 * (t29 + t32);
-        let s_proximal_leg3 = t78 / c_distal_leg3;
+        let s_proximal_leg3 = t75 * t78;
         let t80 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t80 * t69;
+        let minus_gproximal_wy_leg3 = t80 * t75;
         let s_distal_leg4 = minus_s_distal_leg2 + t39;
-        let t86 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t86, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t86);
+        let t85 = t50 + t9;
+        let t88 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t88, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t88);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t88 = 1.0 / c_distal_leg4;
-        let t89 = t46 + t9;
-        let minus_s_proximal_leg4 = t88 * (0.7071067811865475 * t89);
-        let t92 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t92 * t88;
+        let minus_s_proximal_leg4 = 0.7071067811865475 * t85 / c_distal_leg4;
+        let t91 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t92 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t91 * t92;
         let t94 = t42 + t13;
-        let c_proximal_leg4 = (t94 - s_distal_leg4) / c_distal_leg4;
+        let c_proximal_leg4 = t92 * (t94 - s_distal_leg4);
         let t97 = s_distal_leg4 * c_proximal_leg4;
         let t99 = 0.7071067811865475 * (t97 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t99 * t88;
+        let minus_gproximal_wy_leg4 = t99 * t92;
         let t102 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
@@ -2881,523 +2876,523 @@ impl Spherical4Rrr {
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
         ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
         ::overact::guard::platform(t109, 0.9999999999999998, "actuators")?;
-        let t110 = t102 / t109;
+        let t110 = 1.0 / t109;
+        let t111 = t102 * t110;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t118 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t119 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t128 = t118 * t110
+        let t129 = t119 * t111
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t137 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        let t138 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t102 * t110;
-        ::overact::guard::platform(t137, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t137, 0.9999999999999998, "actuators")?;
-        let t139 = t73 - c_distal_leg3;
-        let t140 = 0.7071067811865475 * t139;
-        let minus_gproximal_wz_leg3 = t140 * t69;
-        let t143 = t23 + c_distal_leg1;
-        let t144 = 0.7071067811865475 * t143;
-        let gproximal_wz_leg1 = t144 * t20;
-        let t147 = t58 + c_distal_leg2;
-        let t148 = 0.7071067811865475 * t147;
-        let gproximal_wz_leg2 = t148 * t54;
-        let t153 = t97 - c_distal_leg4;
-        let t154 = 0.7071067811865475 * t153;
-        let minus_gproximal_wz_leg4 = t154 * t88;
-        let t164 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t102 * t111;
+        ::overact::guard::platform(t138, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t138, 0.9999999999999998, "actuators")?;
+        let t140 = t72 - c_distal_leg3;
+        let t141 = 0.7071067811865475 * t140;
+        let minus_gproximal_wz_leg3 = t141 * t75;
+        let t144 = t23 + c_distal_leg1;
+        let t145 = 0.7071067811865475 * t144;
+        let gproximal_wz_leg1 = t145 * t20;
+        let t148 = t58 + c_distal_leg2;
+        let t149 = 0.7071067811865475 * t148;
+        let gproximal_wz_leg2 = t149 * t49;
+        let t154 = t97 - c_distal_leg4;
+        let t155 = 0.7071067811865475 * t154;
+        let minus_gproximal_wz_leg4 = t155 * t92;
+        let t165 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t165 = t164 / t109;
-        let t167 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t166 = t165 * t110;
+        let t168 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t102 * t165;
-        let t168 = t167 / t137;
-        let t179 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t102 * t166;
+        let t169 = t168 / t138;
+        let t180 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t118 * t165
-            - t168 * t128;
-        let t190 = gproximal_wz_leg1 * gproximal_wz_leg1
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t119 * t166
+            - t169 * t129;
+        let t191 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t164 * t165
-            - t167 * t168;
-        ::overact::guard::platform(t190, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t190, 1.9999999999999996, "actuators")?;
-        let t191 = t179 / t190;
-        let t193 = t128 / t137 - t168 * t191;
-        let t197 = t118 / t109 + t110 * t193 + t165 * t191;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t197 + c_proximal_leg1 * t193
-            + minus_gdistal_wx_leg1 * t191;
-        let t207 = t36 * t193 - t25 * t197 - t144 * t191;
-        let minus_rate_proximal_leg1 = t20 * t207;
-        let t209 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
-        let t210 = rate_distal_leg1 * t209;
-        let t215 = t29 * t193 - t5 * t197 + t11 * t191;
-        let t220 = t32 * t193 - t9 * t197 + t13 * t191;
-        let t221 = t215 - t220;
-        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t221 + t209;
-        let t225 = t210 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t20 * t225;
-        let t227 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t165 * t166
+            - t168 * t169;
+        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
+        let t192 = t180 / t191;
+        let t194 = t129 / t138 - t169 * t192;
+        let t198 = t119 * t110 + t111 * t194 + t166 * t192;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t198 + c_proximal_leg1 * t194
+            + minus_gdistal_wx_leg1 * t192;
+        let t208 = t36 * t194 - t25 * t198 - t145 * t192;
+        let minus_rate_proximal_leg1 = t20 * t208;
+        let t210 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t211 = rate_distal_leg1 * t210;
+        let t216 = t29 * t194 - t5 * t198 + t11 * t192;
+        let t221 = t32 * t194 - t9 * t198 + t13 * t192;
+        let t222 = t216 - t221;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t222 + t210;
+        let t226 = t211 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t20 * t226;
+        let t228 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t197 + gdistal_wy_leg2 * t193
-            - gdistal_wy_leg2 * t191;
-        let t239 = t60 * t193 - t53 * t197 - t148 * t191;
-        let minus_rate_proximal_leg2 = t54 * t239;
-        let t241 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
-        let t242 = rate_distal_leg2 * t241;
-        let t247 = t40 * t193 - t46 * t197 + t42 * t191;
-        let t248 = t220 - t247;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * t248 - t241;
-        let t252 = t242 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t54 * t252;
-        let t254 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t198 + gdistal_wy_leg2 * t194
+            - gdistal_wy_leg2 * t192;
+        let t240 = t60 * t194 - t54 * t198 - t149 * t192;
+        let minus_rate_proximal_leg2 = t49 * t240;
+        let t242 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t243 = rate_distal_leg2 * t242;
+        let t248 = t40 * t194 - t50 * t198 + t42 * t192;
+        let t249 = t221 - t248;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * t249 - t242;
+        let t253 = t243 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t49 * t253;
+        let t255 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t191
-            - (gdistal_wx_leg3 * t197 + c_proximal_leg3 * t193);
-        let t267 = t80 * t193 - t75 * t197 + t140 * t191;
-        let minus_rate_proximal_leg3 = t69 * t267;
-        let t269 = s_distal_leg3 * minus_rate_proximal_leg3;
-        let t270 = rate_distal_leg3 * t269;
-        let t271 = t215 + t220;
-        let minus_rate_wrist_leg3 = t269 + 0.7071067811865475 * t271;
-        let t275 = t270 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t69 * t275;
-        let t277 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t192
+            - (gdistal_wx_leg3 * t198 + c_proximal_leg3 * t194);
+        let t268 = t80 * t194 - t74 * t198 + t141 * t192;
+        let minus_rate_proximal_leg3 = t75 * t268;
+        let t270 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t271 = rate_distal_leg3 * t270;
+        let t272 = t216 + t221;
+        let minus_rate_wrist_leg3 = t270 + 0.7071067811865475 * t272;
+        let t276 = t271 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t75 * t276;
+        let t278 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t197
-            + minus_gdistal_wy_leg4 * t193 + minus_gdistal_wy_leg4 * t191;
-        let t290 = t99 * t193 - t92 * t197 + t154 * t191;
-        let minus_rate_proximal_leg4 = t88 * t290;
-        let t292 = s_distal_leg4 * minus_rate_proximal_leg4;
-        let t293 = minus_rate_distal_leg4 * t292;
-        let t294 = t247 + t220;
-        let minus_rate_wrist_leg4 = t292 + 0.7071067811865475 * t294;
-        let t298 = t293 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t88 * t298;
-        let t300 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t302 = minus_gproximal_wx_leg1 * t227 + minus_gproximal_wx_leg2 * t254
-            + minus_gproximal_wx_leg3 * t277 + minus_gproximal_wx_leg4 * t300;
-        let t311 = t110 * t302
-            - (minus_gproximal_wy_leg1 * t227 + minus_gproximal_wy_leg2 * t254
-                + minus_gproximal_wy_leg3 * t277 + minus_gproximal_wy_leg4 * t300);
-        let t323 = gproximal_wz_leg1 * t227 + gproximal_wz_leg2 * t254
-            - minus_gproximal_wz_leg3 * t277 - minus_gproximal_wz_leg4 * t300
-            + t165 * t302 - t168 * t311;
-        let t324 = t323 / t190;
-        let t326 = t311 / t137 - t168 * t324;
-        let t332 = t302 / t109 + t110 * t326 + t165 * t324;
-        let t337 = t36 * t326 - t25 * t332 - t144 * t324 - t225;
-        let minus_rate_dot_proximal_leg1 = t20 * t337;
-        let t339 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
-        let t340 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
-        let t341 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
-        let t342 = 6.936717523440031 * s_proximal_leg1;
-        let t343 = minus_gproximal_wx_leg1 * t342;
-        let t344 = minus_gproximal_wy_leg1 * t342;
-        let t345 = gproximal_wz_leg1 * t342;
-        let t346 = 6.936717523440031 * c_proximal_leg1;
-        let t347 = minus_gproximal_wx_leg1 * t346;
-        let t348 = minus_gproximal_wy_leg1 * t346;
-        let t349 = gproximal_wz_leg1 * t346;
-        let t357 = t210 + t337 + t210;
-        let t359 = t207 * t209;
-        let t360 = minus_gdistal_wx_leg1 * t359;
-        let t361 = t25 * t357 + t360;
-        let t362 = minus_s_distal_leg1 * t357;
-        let t365 = s_proximal_leg1 * t362 - c_proximal_leg1 * t359;
-        let t367 = t144 * t357 + t360;
-        let t368 = t207 * rate_distal_leg1;
-        let t369 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t373 = c_distal_leg1 * (t368 - (t369 - t368)) - t362;
-        let t375 = t207 * t207;
-        let t376 = t209 * t209;
-        let t377 = t375 - t376;
-        let t378 = minus_gdistal_wx_leg1 * t377;
-        let minus_minus_rate_dot_distal_leg1 = t207 * minus_minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t332 + c_proximal_leg1 * t326
-            + minus_gdistal_wx_leg1 * t324 + minus_minus_rate_dot_distal_leg1;
-        let t394 = rate_distal_leg1 * rate_distal_leg1;
-        let t397 = c_distal_leg1 * (t359 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t394 - t375);
-        let t399 = minus_gdistal_wx_leg1 * t337;
-        let t413 = minus_s_distal_leg1 * (t359 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t376 - t394);
-        let t415 = minus_gdistal_wx_leg1 * t369;
-        let t422 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
-        let t425 = t14 * (-6.936717523440031);
-        let t426 = minus_gdistal_wx_leg1 * t425;
-        let t442 = t60 * t326 - t53 * t332 - t148 * t324 - t252;
-        let minus_rate_dot_proximal_leg2 = t54 * t442;
-        let t444 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
-        let t445 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
-        let t446 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
-        let t447 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t448 = minus_gproximal_wx_leg2 * t447;
-        let t449 = minus_gproximal_wy_leg2 * t447;
-        let t450 = gproximal_wz_leg2 * t447;
-        let t451 = 6.936717523440031 * c_proximal_leg2;
-        let t452 = minus_gproximal_wx_leg2 * t451;
-        let t453 = minus_gproximal_wy_leg2 * t451;
-        let t454 = gproximal_wz_leg2 * t451;
-        let t462 = t242 + t442 + t242;
-        let t463 = minus_s_distal_leg2 * t462;
-        let t465 = t239 * t241;
-        let t467 = minus_s_proximal_leg2 * t463 + c_proximal_leg2 * t465;
-        let t469 = gdistal_wy_leg2 * t465;
-        let t470 = t60 * t462 - t469;
-        let t472 = t469 - t148 * t462;
-        let t473 = t239 * rate_distal_leg2;
-        let t474 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t478 = c_distal_leg2 * (t473 - (t474 - t473)) - t463;
-        let t480 = t239 * t239;
-        let t481 = t241 * t241;
-        let t482 = t480 - t481;
-        let t485 = gdistal_wy_leg2 * t482;
-        let minus_rate_dot_distal_leg2 = t239 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t332 + gdistal_wy_leg2 * t326
-            - gdistal_wy_leg2 * t324 - minus_rate_dot_distal_leg2;
-        let t499 = rate_distal_leg2 * rate_distal_leg2;
-        let t502 = c_distal_leg2 * (t465 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t499 - t480);
-        let t507 = gdistal_wy_leg2 * t442;
-        let t518 = minus_s_distal_leg2 * (t465 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t481 - t499);
-        let t522 = gdistal_wy_leg2 * t474;
-        let t528 = gdistal_wy_leg2 * rate_dot_distal_leg2;
-        let t534 = 0.7071067811865475 * t43 * t447;
-        let t547 = t80 * t326 - t75 * t332 + t140 * t324 + t275;
-        let minus_rate_dot_proximal_leg3_2 = t69 * t547;
-        let t549 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t550 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t551 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t552 = 6.936717523440031 * s_proximal_leg3;
-        let t553 = minus_gproximal_wx_leg3 * t552;
-        let t554 = minus_gproximal_wy_leg3 * t552;
-        let t555 = minus_gproximal_wz_leg3 * t552;
-        let t556 = 6.936717523440031 * c_proximal_leg3;
-        let t557 = minus_gproximal_wx_leg3 * t556;
-        let t558 = minus_gproximal_wy_leg3 * t556;
-        let t559 = minus_gproximal_wz_leg3 * t556;
-        let t566 = t267 * t269;
-        let t567 = gdistal_wx_leg3 * t566;
-        let t569 = t547 - t270 - t270;
-        let t571 = t567 + t75 * t569;
-        let t572 = s_distal_leg3 * t569;
-        let t575 = c_proximal_leg3 * t566 - s_proximal_leg3 * t572;
-        let t577 = t567 + t140 * t569;
-        let t578 = t267 * t267;
-        let t579 = t269 * t269;
-        let t580 = t578 - t579;
-        let t581 = gdistal_wx_leg3 * t580;
-        let t582 = t267 * rate_distal_leg3;
-        let t583 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t587 = c_distal_leg3 * (t582 + t583 + t582) + t572;
-        let t595 = gdistal_wx_leg3 * t547;
-        let t596 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t267 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t324
-            - (gdistal_wx_leg3 * t332 + c_proximal_leg3 * t326)
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t198
+            + minus_gdistal_wy_leg4 * t194 + minus_gdistal_wy_leg4 * t192;
+        let t291 = t99 * t194 - t91 * t198 + t155 * t192;
+        let minus_rate_proximal_leg4 = t92 * t291;
+        let t293 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t294 = minus_rate_distal_leg4 * t293;
+        let t295 = t248 + t221;
+        let minus_rate_wrist_leg4 = t293 + 0.7071067811865475 * t295;
+        let t299 = t294 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t92 * t299;
+        let t301 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t303 = minus_gproximal_wx_leg1 * t228 + minus_gproximal_wx_leg2 * t255
+            + minus_gproximal_wx_leg3 * t278 + minus_gproximal_wx_leg4 * t301;
+        let t312 = t111 * t303
+            - (minus_gproximal_wy_leg1 * t228 + minus_gproximal_wy_leg2 * t255
+                + minus_gproximal_wy_leg3 * t278 + minus_gproximal_wy_leg4 * t301);
+        let t324 = gproximal_wz_leg1 * t228 + gproximal_wz_leg2 * t255
+            - minus_gproximal_wz_leg3 * t278 - minus_gproximal_wz_leg4 * t301
+            + t166 * t303 - t169 * t312;
+        let t325 = t324 / t191;
+        let t327 = t312 / t138 - t169 * t325;
+        let t333 = t110 * t303 + t111 * t327 + t166 * t325;
+        let t338 = t36 * t327 - t25 * t333 - t145 * t325 - t226;
+        let minus_rate_dot_proximal_leg1 = t20 * t338;
+        let t340 = minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1;
+        let t341 = minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1;
+        let t342 = gproximal_wz_leg1 * minus_rate_dot_proximal_leg1;
+        let t343 = 6.936717523440031 * s_proximal_leg1;
+        let t347 = 6.936717523440031 * c_proximal_leg1;
+        let t348 = minus_gproximal_wx_leg1 * t347;
+        let t349 = minus_gproximal_wy_leg1 * t347;
+        let t350 = gproximal_wz_leg1 * t347;
+        let t357 = t208 * rate_distal_leg1;
+        let t358 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t360 = t357 - (t358 - t357);
+        let t361 = minus_s_distal_leg1 * t360;
+        let t363 = t208 * t210;
+        let t364 = minus_gdistal_wx_leg1 * t363;
+        let t365 = minus_gproximal_wx_leg1 * t361 + t364;
+        let t369 = c_proximal_leg1 * t363 - minus_gproximal_wy_leg1 * t361;
+        let t372 = gproximal_wz_leg1 * t361 + t364;
+        let t378 = c_distal_leg1 * t360 - minus_s_distal_leg1 * (t211 + t338 + t211);
+        let t380 = t208 * t208;
+        let t381 = t210 * t210;
+        let t382 = t380 - t381;
+        let t383 = minus_gdistal_wx_leg1 * t382;
+        let minus_minus_rate_dot_distal_leg1 = t208 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t333 + c_proximal_leg1 * t327
+            + minus_gdistal_wx_leg1 * t325 + minus_minus_rate_dot_distal_leg1;
+        let t399 = rate_distal_leg1 * rate_distal_leg1;
+        let t402 = c_distal_leg1 * (t363 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t399 - t380);
+        let t404 = minus_gdistal_wx_leg1 * t338;
+        let t415 = minus_s_distal_leg1 * (t363 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t381 - t399);
+        let t417 = minus_gdistal_wx_leg1 * t358;
+        let t424 = minus_gdistal_wx_leg1 * rate_dot_distal_leg1;
+        let t426 = 6.936717523440031 * t36;
+        let t428 = t14 * (-6.936717523440031);
+        let t429 = minus_gdistal_wx_leg1 * t428;
+        let t445 = t60 * t327 - t54 * t333 - t149 * t325 - t253;
+        let minus_rate_dot_proximal_leg2 = t49 * t445;
+        let t447 = minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2;
+        let t448 = minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2;
+        let t449 = gproximal_wz_leg2 * minus_rate_dot_proximal_leg2;
+        let t450 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t451 = minus_gproximal_wx_leg2 * t450;
+        let t454 = 6.936717523440031 * c_proximal_leg2;
+        let t455 = minus_gproximal_wx_leg2 * t454;
+        let t456 = minus_gproximal_wy_leg2 * t454;
+        let t457 = gproximal_wz_leg2 * t454;
+        let t464 = t240 * rate_distal_leg2;
+        let t465 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t467 = t464 - (t465 - t464);
+        let t468 = minus_s_distal_leg2 * t467;
+        let t470 = t240 * t242;
+        let t472 = minus_gproximal_wx_leg2 * t468 + c_proximal_leg2 * t470;
+        let t474 = gdistal_wy_leg2 * t470;
+        let t476 = t474 - minus_gproximal_wy_leg2 * t468;
+        let t479 = gproximal_wz_leg2 * t468 - t474;
+        let t485 = c_distal_leg2 * t467 - minus_s_distal_leg2 * (t243 + t445 + t243);
+        let t487 = t240 * t240;
+        let t488 = t242 * t242;
+        let t489 = t487 - t488;
+        let t492 = gdistal_wy_leg2 * t489;
+        let minus_rate_dot_distal_leg2 = t240 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t333 + gdistal_wy_leg2 * t327
+            - gdistal_wy_leg2 * t325 - minus_rate_dot_distal_leg2;
+        let t506 = rate_distal_leg2 * rate_distal_leg2;
+        let t509 = c_distal_leg2 * (t470 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t506 - t487);
+        let t514 = gdistal_wy_leg2 * t445;
+        let t522 = minus_s_distal_leg2 * (t470 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t488 - t506);
+        let t526 = gdistal_wy_leg2 * t465;
+        let t532 = gdistal_wy_leg2 * rate_dot_distal_leg2;
+        let t533 = 6.936717523440031 * t54;
+        let t539 = 0.7071067811865475 * t43 * t450;
+        let t552 = t80 * t327 - t74 * t333 + t141 * t325 + t276;
+        let minus_rate_dot_proximal_leg3_2 = t75 * t552;
+        let t554 = minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t555 = minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t556 = minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t557 = 6.936717523440031 * s_proximal_leg3;
+        let t558 = minus_gproximal_wx_leg3 * t557;
+        let t559 = minus_gproximal_wy_leg3 * t557;
+        let t560 = minus_gproximal_wz_leg3 * t557;
+        let t561 = 6.936717523440031 * c_proximal_leg3;
+        let t562 = minus_gproximal_wx_leg3 * t561;
+        let t563 = minus_gproximal_wy_leg3 * t561;
+        let t564 = minus_gproximal_wz_leg3 * t561;
+        let t571 = t268 * rate_distal_leg3;
+        let t572 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t574 = t571 + t572 + t571;
+        let t575 = s_distal_leg3 * t574;
+        let t577 = t268 * t270;
+        let t578 = gdistal_wx_leg3 * t577;
+        let t579 = minus_gproximal_wx_leg3 * t575 - t578;
+        let t583 = minus_gproximal_wy_leg3 * t575 + c_proximal_leg3 * t577;
+        let t586 = minus_gproximal_wz_leg3 * t575 - t578;
+        let t588 = t268 * t268;
+        let t589 = t270 * t270;
+        let t590 = t588 - t589;
+        let t591 = gdistal_wx_leg3 * t590;
+        let t596 = c_distal_leg3 * t574 + s_distal_leg3 * (t552 - t271 - t271);
+        let t604 = gdistal_wx_leg3 * t552;
+        let t605 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t268 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t325
+            - (gdistal_wx_leg3 * t333 + c_proximal_leg3 * t327)
             - minus_rate_dot_distal_leg3;
-        let t608 = s_distal_leg3 * (t596 - t578)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t566);
-        let t623 = s_distal_leg3 * (t566 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t579 - t596);
-        let t625 = gdistal_wx_leg3 * t583;
-        let t632 = gdistal_wx_leg3 * rate_dot_distal_leg3;
-        let t635 = t70 * 6.936717523440031;
-        let t636 = gdistal_wx_leg3 * t635;
-        let t652 = t99 * t326 - t92 * t332 + t154 * t324 - t298;
-        let minus_rate_dot_proximal_leg4 = t88 * t652;
-        let t654 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
-        let t655 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
-        let t656 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
-        let t657 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t658 = minus_gproximal_wx_leg4 * t657;
-        let t659 = minus_gproximal_wy_leg4 * t657;
-        let t661 = 6.936717523440031 * c_proximal_leg4;
-        let t662 = minus_gproximal_wx_leg4 * t661;
-        let t663 = minus_gproximal_wy_leg4 * t661;
-        let t664 = minus_gproximal_wz_leg4 * t661;
-        let t672 = t293 + t652 + t293;
-        let t673 = s_distal_leg4 * t672;
-        let t675 = t290 * t292;
-        let t677 = minus_s_proximal_leg4 * t673 + c_proximal_leg4 * t675;
-        let t679 = minus_gdistal_wy_leg4 * t675;
-        let t680 = t99 * t672 - t679;
-        let t682 = t154 * t672 - t679;
-        let t683 = t290 * t290;
-        let t684 = t292 * t292;
-        let t685 = t683 - t684;
-        let t687 = t290 * minus_rate_distal_leg4;
-        let t688 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t692 = t673 - c_distal_leg4 * (t687 + t687 - t688);
-        let t696 = minus_gdistal_wy_leg4 * t685;
-        let minus_rate_dot_distal_leg4 = t290 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t332
-            + minus_gdistal_wy_leg4 * t326 + minus_gdistal_wy_leg4 * t324
+        let t617 = s_distal_leg3 * (t605 - t588)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t577);
+        let t629 = s_distal_leg3 * (t577 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t589 - t605);
+        let t631 = gdistal_wx_leg3 * t572;
+        let t638 = gdistal_wx_leg3 * rate_dot_distal_leg3;
+        let t641 = t66 * 6.936717523440031;
+        let t642 = gdistal_wx_leg3 * t641;
+        let t658 = t99 * t327 - t91 * t333 + t155 * t325 - t299;
+        let minus_rate_dot_proximal_leg4 = t92 * t658;
+        let t660 = minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4;
+        let t661 = minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4;
+        let t662 = minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4;
+        let t663 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t664 = minus_gproximal_wx_leg4 * t663;
+        let t667 = 6.936717523440031 * c_proximal_leg4;
+        let t668 = minus_gproximal_wx_leg4 * t667;
+        let t669 = minus_gproximal_wy_leg4 * t667;
+        let t670 = minus_gproximal_wz_leg4 * t667;
+        let t677 = t291 * minus_rate_distal_leg4;
+        let t678 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t680 = t677 + t677 - t678;
+        let t681 = s_distal_leg4 * t680;
+        let t683 = t291 * t293;
+        let t685 = minus_gproximal_wx_leg4 * t681 + c_proximal_leg4 * t683;
+        let t687 = minus_gdistal_wy_leg4 * t683;
+        let t689 = t687 - minus_gproximal_wy_leg4 * t681;
+        let t692 = t687 - minus_gproximal_wz_leg4 * t681;
+        let t694 = t291 * t291;
+        let t695 = t293 * t293;
+        let t696 = t694 - t695;
+        let t702 = s_distal_leg4 * (t294 + t658 + t294) - c_distal_leg4 * t680;
+        let t706 = minus_gdistal_wy_leg4 * t696;
+        let minus_rate_dot_distal_leg4 = t291 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t333
+            + minus_gdistal_wy_leg4 * t327 + minus_gdistal_wy_leg4 * t325
             + minus_rate_dot_distal_leg4;
-        let t710 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t713 = c_distal_leg4 * (t675 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t710 - t683);
-        let t717 = minus_gdistal_wy_leg4 * t652;
-        let t728 = c_distal_leg4 * (t684 - t710)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t675);
-        let t733 = minus_gdistal_wy_leg4 * t688;
-        let t738 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
-        let t745 = t657 * (0.7071067811865475 * t94) + s_distal_leg4 * t659;
-        let t746 = t92 * 9.81;
-        let t756 = t29 * t326 - t5 * t332 + t11 * t324;
-        let t758 = t215 * t220;
-        let t759 = t46 * t758;
-        let t761 = t215 * t247;
-        let t762 = t9 * t761;
-        let t765 = t40 * t758;
-        let t767 = t32 * t761;
-        let t770 = t42 * t758;
-        let t772 = t13 * t761;
-        let t778 = t40 * t326 - t46 * t332 + t42 * t324;
-        let t779 = t778 - t758;
-        let t781 = t247 * t220;
-        let t782 = t756 + t781;
-        let t785 = t271 * t221;
-        let t786 = t294 * t248;
-        let t787 = t785 + t786;
-        let t804 = t32 * t326 - t9 * t332 + t13 * t324;
-        let t805 = t804 + t761;
-        let t809 = t756 - t781;
-        let t823 = t5 * t781;
-        let t827 = t29 * t781;
-        let t831 = t11 * t781;
-        let t835 = t804 - t761;
-        let t838 = t778 + t758;
+        let t720 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t723 = c_distal_leg4 * (t683 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t720 - t694);
+        let t727 = minus_gdistal_wy_leg4 * t658;
+        let t735 = c_distal_leg4 * (t695 - t720)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t683);
+        let t740 = minus_gdistal_wy_leg4 * t678;
+        let t745 = minus_gdistal_wy_leg4 * minus_rate_dot_distal_leg4_2;
+        let t747 = 6.936717523440031 * t91;
+        let t753 = t663 * (0.7071067811865475 * t94) + minus_gproximal_wy_leg4 * t747;
+        let t764 = t29 * t327 - t5 * t333 + t11 * t325;
+        let t766 = t216 * t221;
+        let t767 = t50 * t766;
+        let t769 = t216 * t248;
+        let t770 = t9 * t769;
+        let t773 = t40 * t766;
+        let t775 = t32 * t769;
+        let t778 = t42 * t766;
+        let t780 = t13 * t769;
+        let t786 = t40 * t327 - t50 * t333 + t42 * t325;
+        let t787 = t786 - t766;
+        let t789 = t248 * t221;
+        let t790 = t764 + t789;
+        let t793 = t272 * t222;
+        let t794 = t295 * t249;
+        let t795 = t793 + t794;
+        let t812 = t32 * t327 - t9 * t333 + t13 * t325;
+        let t813 = t812 + t769;
+        let t817 = t764 - t789;
+        let t831 = t5 * t789;
+        let t835 = t29 * t789;
+        let t839 = t11 * t789;
+        let t843 = t812 - t769;
+        let t846 = t786 + t766;
         Ok([
             [
-                t339, t343, t347, t339, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                t340, minus_gproximal_wx_leg1 * t343, t348, t340,
+                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wx_leg1,
-                t361,
-                -(minus_gproximal_wx_leg1 * t373 + t378),
-                minus_gproximal_wx_leg1 * t397 - t399,
-                t339 - t361,
-                -(minus_gproximal_wx_leg1 * t413 + t415),
-                -t422,
-                -(minus_s_distal_leg1 * t343 + t426),
-                t34 * (-9.81),
-                -t347,
-                t444,
-                -t448,
-                t452,
-                t444,
+                t340 + t365,
+                -(minus_gproximal_wx_leg1 * t378 + t383),
+                minus_gproximal_wx_leg1 * t402 - t404,
+                -t365,
+                -(minus_gproximal_wx_leg1 * t415 + t417),
+                -t424,
+                -(minus_gproximal_wx_leg1 * t426 + t429),
+                t33 * (-6.936717523440031),
+                -t348,
+                t447,
+                -t451,
+                t455,
+                t447,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wx_leg2,
-                t467,
-                -(minus_gproximal_wx_leg2 * t478 + c_proximal_leg2 * t482),
-                minus_gproximal_wx_leg2 * t502 - c_proximal_leg2 * t442,
-                t444 - t467,
-                -(minus_gproximal_wx_leg2 * t518 + c_proximal_leg2 * t474),
+                t447 + t472,
+                -(minus_gproximal_wx_leg2 * t485 + c_proximal_leg2 * t489),
+                minus_gproximal_wx_leg2 * t509 - c_proximal_leg2 * t445,
+                -t472,
+                -(minus_gproximal_wx_leg2 * t522 + c_proximal_leg2 * t465),
                 -(c_proximal_leg2 * rate_dot_distal_leg2),
-                minus_s_distal_leg2 * t448 + t43 * t451,
-                -(t53 * t447 + t147 * t451),
-                -t452,
-                t549,
-                t553,
-                t557,
-                t549,
+                minus_gproximal_wx_leg2 * t533 + t43 * t454,
+                -(c_distal_leg2 * t451 + t148 * t454),
+                -t455,
+                t554,
+                t558,
+                t562,
+                t554,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wx_leg3,
-                t571,
-                t581 - minus_gproximal_wx_leg3 * t587,
-                t595 - minus_gproximal_wx_leg3 * t608,
-                t549 - t571,
-                -(minus_gproximal_wx_leg3 * t623 + t625),
-                t632,
-                s_distal_leg3 * t553 + t636,
+                t554 - t579,
+                t591 - minus_gproximal_wx_leg3 * t596,
+                t604 - minus_gproximal_wx_leg3 * t617,
+                t579,
+                -(minus_gproximal_wx_leg3 * t629 + t631),
+                t638,
+                s_distal_leg3 * t558 + t642,
                 9.81 * t78,
-                -t557,
-                t654,
-                -t658,
-                t662,
-                t654,
+                -t562,
+                t660,
+                -t664,
+                t668,
+                t660,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wx_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wx_leg4,
-                t677,
-                c_proximal_leg4 * t685 - minus_gproximal_wx_leg4 * t692,
-                c_proximal_leg4 * t652 - minus_gproximal_wx_leg4 * t713,
-                t654 - t677,
-                minus_gproximal_wx_leg4 * t728 - c_proximal_leg4 * t688,
+                t660 + t685,
+                c_proximal_leg4 * t696 - minus_gproximal_wx_leg4 * t702,
+                c_proximal_leg4 * t658 - minus_gproximal_wx_leg4 * t723,
+                -t685,
+                minus_gproximal_wx_leg4 * t735 - c_proximal_leg4 * t678,
                 -(c_proximal_leg4 * minus_rate_dot_distal_leg4_2),
-                t94 * t661 - s_distal_leg4 * t658,
-                -(minus_gdistal_wy_leg4 * t746 + t153 * t661),
-                -t662,
-                t5 * t756 + t759 - t762,
-                t5 * t779 + t46 * t782 + t9 * t787,
-                t5 * t805 - t46 * t785 + t9 * t809,
-                t46 * t778 - t823 + t762,
-                t46 * t835 - t5 * t786 + t9 * t838,
-                t823 - t759 + t9 * t804,
+                t94 * t667 - minus_gproximal_wx_leg4 * t747,
+                -(c_distal_leg4 * t664 + t154 * t667),
+                -t668,
+                t5 * t764 + t767 - t770,
+                t5 * t787 + t50 * t790 + t9 * t795,
+                t5 * t813 - t50 * t793 + t9 * t817,
+                t50 * t786 - t831 + t770,
+                t50 * t843 - t5 * t794 + t9 * t846,
+                t831 - t767 + t9 * t812,
                 9.81 * t29,
                 9.81 * t40,
                 9.81 * t32,
             ],
             [
-                t340, t344, t348, t340, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                t341, minus_gproximal_wy_leg1 * t343, t349, t341,
+                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg1,
                     minus_rate_proximal_leg1,
                 ),
                 -minus_gproximal_wy_leg1,
-                t365,
-                c_proximal_leg1 * t377 - minus_gproximal_wy_leg1 * t373,
-                minus_gproximal_wy_leg1 * t397 + c_proximal_leg1 * t337,
-                t340 - t365,
-                c_proximal_leg1 * t369 - minus_gproximal_wy_leg1 * t413,
+                t341 - t369,
+                c_proximal_leg1 * t382 - minus_gproximal_wy_leg1 * t378,
+                minus_gproximal_wy_leg1 * t402 + c_proximal_leg1 * t338,
+                t369,
+                c_proximal_leg1 * t358 - minus_gproximal_wy_leg1 * t415,
                 c_proximal_leg1 * rate_dot_distal_leg1,
-                c_proximal_leg1 * t425 - minus_s_distal_leg1 * t344,
-                c_distal_leg1 * t344 + t143 * t346,
-                -t348,
-                t445,
-                -t449,
-                t453,
-                t445,
+                c_proximal_leg1 * t428 - minus_gproximal_wy_leg1 * t426,
+                s_proximal_leg1 * t426 + t144 * t347,
+                -t349,
+                t448,
+                -(minus_gproximal_wy_leg2 * t450),
+                t456,
+                t448,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg2,
                     minus_rate_proximal_leg2,
                 ),
                 -minus_gproximal_wy_leg2,
-                t470,
-                t485 - minus_gproximal_wy_leg2 * t478,
-                minus_gproximal_wy_leg2 * t502 + t507,
-                t445 - t470,
-                t522 - minus_gproximal_wy_leg2 * t518,
-                t528,
-                minus_s_distal_leg2 * t449 - t534,
-                t47 * 6.936717523440031,
-                -t453,
-                t550,
-                t554,
-                t558,
-                t550,
+                t448 - t476,
+                t492 - minus_gproximal_wy_leg2 * t485,
+                minus_gproximal_wy_leg2 * t509 + t514,
+                t476,
+                t526 - minus_gproximal_wy_leg2 * t522,
+                t532,
+                minus_gproximal_wy_leg2 * t533 - t539,
+                t51 * 6.936717523440031,
+                -t456,
+                t555,
+                t559,
+                t563,
+                t555,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wy_leg3,
-                -t575,
-                -(minus_gproximal_wy_leg3 * t587 + c_proximal_leg3 * t580),
-                -(minus_gproximal_wy_leg3 * t608 + c_proximal_leg3 * t547),
-                t550 + t575,
-                c_proximal_leg3 * t583 - minus_gproximal_wy_leg3 * t623,
+                -(t583 - t555),
+                -(minus_gproximal_wy_leg3 * t596 + c_proximal_leg3 * t590),
+                -(minus_gproximal_wy_leg3 * t617 + c_proximal_leg3 * t552),
+                t583,
+                c_proximal_leg3 * t572 - minus_gproximal_wy_leg3 * t629,
                 -(c_proximal_leg3 * rate_dot_distal_leg3),
-                s_distal_leg3 * t554 - c_proximal_leg3 * t635,
-                c_distal_leg3 * t554 + t139 * t556,
-                -t558,
-                t655,
-                -t659,
-                t663,
-                t655,
+                s_distal_leg3 * t559 - c_proximal_leg3 * t641,
+                c_distal_leg3 * t559 + t140 * t561,
+                -t563,
+                t661,
+                -(minus_gproximal_wy_leg4 * t663),
+                t669,
+                t661,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wy_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wy_leg4,
-                t680,
-                -(minus_gproximal_wy_leg4 * t692 + t696),
-                -(minus_gproximal_wy_leg4 * t713 + t717),
-                t655 - t680,
-                minus_gproximal_wy_leg4 * t728 + t733,
-                t738,
-                -t745,
-                t89 * (-6.936717523440031),
-                -t663,
-                t29 * t756 + t765 - t767,
-                t29 * t779 + t40 * t782 + t32 * t787,
-                t29 * t805 - t40 * t785 + t32 * t809,
-                t40 * t778 - t827 + t767,
-                t40 * t835 - t29 * t786 + t32 * t838,
-                t827 - t765 + t32 * t804,
+                t661 - t689,
+                -(minus_gproximal_wy_leg4 * t702 + t706),
+                -(minus_gproximal_wy_leg4 * t723 + t727),
+                t689,
+                minus_gproximal_wy_leg4 * t735 + t740,
+                t745,
+                -t753,
+                t85 * (-6.936717523440031),
+                -t669,
+                t29 * t764 + t773 - t775,
+                t29 * t787 + t40 * t790 + t32 * t795,
+                t29 * t813 - t40 * t793 + t32 * t817,
+                t40 * t786 - t835 + t775,
+                t40 * t843 - t29 * t794 + t32 * t846,
+                t835 - t773 + t32 * t812,
                 -(9.81 * t5),
-                -(9.81 * t46),
+                -(9.81 * t50),
                 -(9.81 * t9),
             ],
             [
-                -t341, -t345, -t349, -t341, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                -t342, -(gproximal_wz_leg1 * t343), -t350, -t342,
+                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wz_leg1, minus_rate_proximal_leg1),
-                gproximal_wz_leg1, -t367, gproximal_wz_leg1 * t373 + t378,
-                t399 - gproximal_wz_leg1 * t397, t367 - t341, gproximal_wz_leg1 * t413 + t415, t422,
-                minus_s_distal_leg1 * t345 + t426, 0.0, t349, -t446, t450, -t454, -t446,
-                -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
+                gproximal_wz_leg1, -(t342 + t372), gproximal_wz_leg1 * t378 + t383,
+                t404 - gproximal_wz_leg1 * t402, t372, gproximal_wz_leg1 * t415 + t417, t424,
+                gproximal_wz_leg1 * t426 + t429, 0.0, t350, -t449, gproximal_wz_leg2 * t450, -t457,
+                -t449, -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 -::overact::math::signed(gproximal_wz_leg2, minus_rate_proximal_leg2),
-                gproximal_wz_leg2, t472, gproximal_wz_leg2 * t478 - t485,
-                -(gproximal_wz_leg2 * t502 + t507), -(t446 + t472), gproximal_wz_leg2 * t518 - t522,
-                -t528, t534 - minus_s_distal_leg2 * t450, 0.0, t454, t551, t555, t559, t551,
+                gproximal_wz_leg2, -(t449 + t479), gproximal_wz_leg2 * t485 - t492,
+                -(gproximal_wz_leg2 * t509 + t514), t479, gproximal_wz_leg2 * t522 - t526, -t532,
+                t539 - gproximal_wz_leg2 * t533, 0.0, t457, t556, t560, t564, t556,
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg3,
                     minus_rate_proximal_leg3,
                 ),
                 -minus_gproximal_wz_leg3,
-                t577,
-                t581 - minus_gproximal_wz_leg3 * t587,
-                t595 - minus_gproximal_wz_leg3 * t608,
-                t551 - t577,
-                -(minus_gproximal_wz_leg3 * t623 + t625),
-                t632,
-                s_distal_leg3 * t555 + t636,
+                t556 - t586,
+                t591 - minus_gproximal_wz_leg3 * t596,
+                t604 - minus_gproximal_wz_leg3 * t617,
+                t586,
+                -(minus_gproximal_wz_leg3 * t629 + t631),
+                t638,
+                s_distal_leg3 * t560 + t642,
                 0.0,
-                -t559,
-                t656,
-                -(minus_gproximal_wz_leg4 * t657),
-                t664,
-                t656,
+                -t564,
+                t662,
+                -(minus_gproximal_wz_leg4 * t663),
+                t670,
+                t662,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
                 ::overact::math::signed(
                     minus_gproximal_wz_leg4,
                     minus_rate_proximal_leg4,
                 ),
                 -minus_gproximal_wz_leg4,
-                t682,
-                -(minus_gproximal_wz_leg4 * t692 + t696),
-                -(minus_gproximal_wz_leg4 * t713 + t717),
-                t656 - t682,
-                minus_gproximal_wz_leg4 * t728 + t733,
-                t738,
-                t746 - t745,
+                t662 - t692,
+                -(minus_gproximal_wz_leg4 * t702 + t706),
+                -(minus_gproximal_wz_leg4 * t723 + t727),
+                t692,
+                minus_gproximal_wz_leg4 * t735 + t740,
+                t745,
+                t91 * 9.81 - t753,
                 0.0,
-                -t664,
-                t11 * t756 + t770 - t772,
-                t11 * t779 + t42 * t782 + t13 * t787,
-                t11 * t805 - t42 * t785 + t13 * t809,
-                t42 * t778 - t831 + t772,
-                t42 * t835 - t11 * t786 + t13 * t838,
-                t831 - t770 + t13 * t804,
+                -t670,
+                t11 * t764 + t778 - t780,
+                t11 * t787 + t42 * t790 + t13 * t795,
+                t11 * t813 - t42 * t793 + t13 * t817,
+                t42 * t786 - t839 + t780,
+                t42 * t843 - t11 * t794 + t13 * t846,
+                t839 - t778 + t13 * t812,
                 0.0,
                 0.0,
                 0.0,
@@ -5131,7 +5126,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 681 operations (257 additions, 411 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 541 intermediates.
+    /// 692 operations (257 additions, 422 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 552 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5140,294 +5135,294 @@ impl Spherical4Rrr {
         twist: &[f64; 3],
         acceleration: &[f64; 3],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
-        let t0 = pose[2] + pose[2];
-        let t1 = pose[2] * t0;
-        let t3 = pose[3] + pose[3];
-        let t4 = pose[3] * t3;
-        let t5 = 1.0 - t1 - t4;
-        let t7 = pose[1] + pose[1];
-        let t8 = pose[2] * t7;
-        let t9 = pose[0] * t3;
-        let t10 = t8 + t9;
-        let t13 = pose[3] * t7;
-        let t14 = pose[0] * t0;
-        let t15 = t13 - t14;
-        let t17 = t5 * acceleration[0] + t10 * acceleration[1] + t15 * acceleration[2];
-        let t19 = t8 - t9;
-        let t24 = t5 * twist[0] + t10 * twist[1] + t15 * twist[2];
-        let t25 = t13 + t14;
-        let t27 = pose[3] * t0;
-        let t28 = pose[0] * t7;
-        let t29 = t27 - t28;
-        let t32 = pose[1] * t7;
-        let t33 = 1.0 - t32;
-        let t34 = t33 - t1;
-        let t36 = t25 * twist[0] + t29 * twist[1] + t34 * twist[2];
-        let t37 = t24 * t36;
-        let t38 = t19 * t37;
-        let t41 = t33 - t4;
-        let t44 = t27 + t28;
-        let t46 = t19 * twist[0] + t41 * twist[1] + t44 * twist[2];
-        let t47 = t24 * t46;
-        let t48 = t25 * t47;
+        let t0 = pose[1] + pose[1];
+        let t1 = pose[1] * t0;
+        let t2 = 1.0 - t1;
+        let t3 = pose[2] + pose[2];
+        let t5 = t2 - pose[2] * t3;
+        let t6 = pose[3] + pose[3];
+        let t7 = pose[3] * t6;
+        let t8 = t1 - t7;
+        let t9 = t5 + t8;
+        let t11 = pose[2] * t0;
+        let t12 = pose[0] * t6;
+        let t13 = t11 + t12;
+        let t16 = pose[3] * t0;
+        let t17 = pose[0] * t3;
+        let t18 = t16 - t17;
+        let t20 = t9 * acceleration[0] + t13 * acceleration[1] + t18 * acceleration[2];
+        let t22 = t11 - t12;
+        let t27 = t9 * twist[0] + t13 * twist[1] + t18 * twist[2];
+        let t28 = t16 + t17;
+        let t30 = pose[3] * t3;
+        let t31 = pose[0] * t0;
+        let t32 = t30 - t31;
+        let t36 = t28 * twist[0] + t32 * twist[1] + t5 * twist[2];
+        let t37 = t27 * t36;
+        let t38 = t22 * t37;
+        let t41 = t2 - t7;
+        let t44 = t30 + t31;
+        let t46 = t22 * twist[0] + t41 * twist[1] + t44 * twist[2];
+        let t47 = t27 * t46;
+        let t48 = t28 * t47;
         let t51 = t41 * t37;
-        let t53 = t29 * t47;
+        let t53 = t32 * t47;
         let t56 = t44 * t37;
-        let t58 = t34 * t47;
-        let t64 = t19 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
+        let t58 = t5 * t47;
+        let t64 = t22 * acceleration[0] + t41 * acceleration[1] + t44 * acceleration[2];
         let t65 = t64 - t37;
         let t67 = t46 * t36;
-        let t68 = t17 + t67;
-        let t71 = t24 + t36;
-        let t72 = t24 - t36;
+        let t68 = t20 + t67;
+        let t71 = t27 + t36;
+        let t72 = t27 - t36;
         let t73 = t71 * t72;
         let t74 = t46 + t36;
         let t75 = t36 - t46;
         let t76 = t74 * t75;
         let t77 = t73 + t76;
-        let t94 = t25 * acceleration[0] + t29 * acceleration[1] + t34 * acceleration[2];
+        let t94 = t28 * acceleration[0] + t32 * acceleration[1] + t5 * acceleration[2];
         let t95 = t94 + t47;
-        let t99 = t17 - t67;
-        let t113 = t5 * t67;
-        let t117 = t10 * t67;
-        let t121 = t15 * t67;
+        let t99 = t20 - t67;
+        let t113 = t9 * t67;
+        let t117 = t13 * t67;
+        let t121 = t18 * t67;
         let t125 = t94 - t47;
         let t128 = t64 + t37;
-        let t156 = t5 - t25;
-        let t157 = t15 - t34;
+        let t156 = t9 - t28;
+        let t157 = t18 - t5;
         let minus_s_distal_leg1 = 0.5 * (t156 + t157);
-        let t161 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t161, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t161);
+        let t162 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t162, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t162);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t163 = 1.0 / c_distal_leg1;
-        let c_proximal_leg1 = t163 * (t156 - minus_s_distal_leg1);
-        let t166 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t168 = 0.7071067811865475 * (t166 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t168 * t163;
-        let s_proximal_leg1 = 0.7071067811865475 * (t10 - t29) / c_distal_leg1;
+        let c_proximal_leg1 = (t156 - minus_s_distal_leg1) / c_distal_leg1;
+        let t165 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t167 = 0.7071067811865475 * (t165 - c_distal_leg1);
+        let t168 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t167 * t168;
+        let s_proximal_leg1 = t168 * (0.7071067811865475 * (t13 - t32));
+        let t174 = minus_s_distal_leg1 * s_proximal_leg1;
+        let t178 = 0.7071067811865475 * (t165 + c_distal_leg1);
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t179 = minus_s_distal_leg1 * t163;
-        let t181 = minus_s_distal_leg1 * s_proximal_leg1;
-        let t185 = 0.7071067811865475 * (t166 + c_distal_leg1);
-        let t187 = t168 * twist[0] + t181 * twist[1] - t185 * twist[2];
-        let t188 = t179 * t187;
-        let t189 = rate_distal_leg1 * t188;
-        let rate_wrist_leg1 = t188 + 0.7071067811865475 * t72;
-        let t198 = t168 * acceleration[0] + t181 * acceleration[1]
-            - t185 * acceleration[2] - rate_distal_leg1 * rate_wrist_leg1;
-        let t199 = t198 - t189;
-        let minus_rate_dot_proximal_leg1 = t163 * t199;
-        let minus_gproximal_wy_leg1 = t181 * t163;
-        let gproximal_wz_leg1 = t185 * t163;
-        let t207 = t44 - t34;
-        let minus_s_distal_leg2 = 0.5 * (t41 - t29 + t207);
-        let t211 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t211, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t211);
+        let t187 = minus_s_distal_leg1 * t168;
+        let t192 = t167 * twist[0] + t174 * twist[1] - t178 * twist[2];
+        let t193 = t187 * t192;
+        let t194 = rate_distal_leg1 * t193;
+        let rate_wrist_leg1 = t193 + 0.7071067811865475 * t72;
+        let t199 = t167 * acceleration[0] + t174 * acceleration[1]
+            - t178 * acceleration[2] - (t194 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t168 * t199;
+        let minus_gproximal_wy_leg1 = t174 * t168;
+        let gproximal_wz_leg1 = t178 * t168;
+        let t208 = t41 - t32;
+        let t209 = t44 - t5;
+        let t210 = t208 + t209;
+        let t213 = 1.0 - 0.25 * (t210 * t210);
+        ::overact::guard::reach(t213, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t213);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t213 = 1.0 / c_distal_leg2;
-        let minus_s_proximal_leg2 = t213 * (0.7071067811865475 * (t19 - t25));
-        let t217 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t217 * t213;
+        let minus_s_proximal_leg2 = 0.7071067811865475 * (t22 - t28) / c_distal_leg2;
+        let minus_s_distal_leg2 = 0.5 * t210;
+        let t217 = minus_s_distal_leg2 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = minus_s_proximal_leg2 * t217;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let c_proximal_leg2 = t213 * (minus_s_distal_leg2 - t207);
+        let t224 = 0.5 * (t208 * c_distal_leg2 - t209 * c_distal_leg2);
+        let t225 = t224 / c_distal_leg2;
+        let c_proximal_leg2 = t225 * t225 / t224;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t227 = minus_s_distal_leg2 * t213;
-        let t229 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t231 = 0.7071067811865475 * (t229 - c_distal_leg2);
-        let t235 = 0.7071067811865475 * (t229 + c_distal_leg2);
-        let t237 = t217 * twist[0] + t231 * twist[1] - t235 * twist[2];
-        let t238 = t227 * t237;
-        let t239 = rate_distal_leg2 * t238;
-        let rate_wrist_leg2 = t238 - 0.7071067811865475 * t75;
-        let t248 = t217 * acceleration[0] + t231 * acceleration[1]
-            - t235 * acceleration[2] - rate_distal_leg2 * rate_wrist_leg2;
-        let t249 = t248 - t239;
-        let minus_rate_dot_proximal_leg2 = t213 * t249;
-        let minus_gproximal_wy_leg2 = t231 * t213;
-        let gproximal_wz_leg2 = t235 * t213;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t32 - t4);
-        let t258 = t15 + t34;
-        let t261 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t261, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t261);
+        let t232 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t234 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t236 = 0.7071067811865475 * (t234 - c_distal_leg2);
+        let t240 = 0.7071067811865475 * (t234 + c_distal_leg2);
+        let t242 = t232 * twist[0] + t236 * twist[1] - t240 * twist[2];
+        let t243 = t217 * t242;
+        let t244 = rate_distal_leg2 * t243;
+        let rate_wrist_leg2 = t243 - 0.7071067811865475 * t75;
+        let t253 = t232 * acceleration[0] + t236 * acceleration[1]
+            - t240 * acceleration[2] - rate_distal_leg2 * rate_wrist_leg2;
+        let t254 = t253 - t244;
+        let minus_rate_dot_proximal_leg2 = t254 / c_distal_leg2;
+        let minus_gproximal_wy_leg2 = t236 / c_distal_leg2;
+        let gproximal_wz_leg2 = t240 / c_distal_leg2;
+        let s_distal_leg3 = minus_s_distal_leg1 - t8;
+        let t262 = t18 + t5;
+        let t265 = 1.0 - s_distal_leg3 * s_distal_leg3;
+        ::overact::guard::reach(t265, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t265);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let c_proximal_leg3 = (t258 - s_distal_leg3) / c_distal_leg3;
-        let t264 = s_distal_leg3 * c_proximal_leg3;
-        let t266 = 0.7071067811865475 * (t264 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t266 / c_distal_leg3;
-        let s_proximal_leg3 = 0.7071067811865475 * (t10 + t29) / c_distal_leg3;
+        let c_proximal_leg3 = (t262 - s_distal_leg3) / c_distal_leg3;
+        let t268 = s_distal_leg3 * c_proximal_leg3;
+        let t270 = 0.7071067811865475 * (t268 + c_distal_leg3);
+        let t271 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t270 * t271;
+        let s_proximal_leg3 = t271 * (0.7071067811865475 * (t13 + t32));
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t277 = s_distal_leg3 / c_distal_leg3;
-        let t279 = s_distal_leg3 * s_proximal_leg3;
-        let t283 = 0.7071067811865475 * (t264 - c_distal_leg3);
-        let t285 = t266 * twist[0] + t279 * twist[1] + t283 * twist[2];
-        let t286 = t277 * t285;
-        let t287 = rate_distal_leg3 * t286;
-        let minus_rate_wrist_leg3 = t286 + 0.7071067811865475 * t71;
-        let t296 = t266 * acceleration[0] + t279 * acceleration[1]
-            + t283 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let t297 = t287 + t296;
-        let minus_rate_dot_proximal_leg3 = t297 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = s_proximal_leg3 * t277;
-        let minus_gproximal_wz_leg3 = t283 / c_distal_leg3;
-        let s_distal_leg4 = t28 + t28 - minus_s_distal_leg2;
-        let t309 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t309, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t309);
+        let t282 = s_distal_leg3 * t271;
+        let t284 = s_distal_leg3 * s_proximal_leg3;
+        let t288 = 0.7071067811865475 * (t268 - c_distal_leg3);
+        let t290 = t270 * twist[0] + t284 * twist[1] + t288 * twist[2];
+        let t291 = t282 * t290;
+        let t292 = rate_distal_leg3 * t291;
+        let minus_rate_wrist_leg3 = t291 + 0.7071067811865475 * t71;
+        let t301 = t270 * acceleration[0] + t284 * acceleration[1]
+            + t288 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let t302 = t292 + t301;
+        let minus_rate_dot_proximal_leg3 = t271 * t302;
+        let minus_gproximal_wy_leg3 = t284 * t271;
+        let minus_gproximal_wz_leg3 = t288 * t271;
+        let t309 = t44 + t5;
+        let t310 = t41 + t32;
+        let s_distal_leg4 = 0.5 * (t309 - t310);
+        let t314 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t314, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t314);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let minus_s_proximal_leg4 = 0.7071067811865475 * (t19 + t25) / c_distal_leg4;
-        let t312 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t313 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t312 * t313;
-        let t315 = t44 + t34;
-        let c_proximal_leg4 = (t315 - s_distal_leg4) / c_distal_leg4;
+        let t316 = 1.0 / c_distal_leg4;
+        let minus_s_proximal_leg4 = t316 * (0.7071067811865475 * (t22 + t28));
+        let t320 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t320 * t316;
+        let c_proximal_leg4 = t316 * (t310 + s_distal_leg4);
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t324 = s_distal_leg4 * t313;
-        let t326 = s_distal_leg4 * c_proximal_leg4;
-        let t328 = 0.7071067811865475 * (t326 + c_distal_leg4);
-        let t332 = 0.7071067811865475 * (t326 - c_distal_leg4);
-        let t334 = t312 * twist[0] + t328 * twist[1] + t332 * twist[2];
-        let t335 = t324 * t334;
-        let t336 = rate_distal_leg4 * t335;
-        let minus_rate_wrist_leg4 = t335 + 0.7071067811865475 * t74;
-        let t345 = t312 * acceleration[0] + t328 * acceleration[1]
-            + t332 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let t346 = t336 + t345;
-        let minus_rate_dot_proximal_leg4 = t313 * t346;
-        let minus_gproximal_wy_leg4 = t328 * t313;
-        let minus_gproximal_wz_leg4 = t332 * t313;
-        let t353 = 6.936717523440031 * s_proximal_leg1;
-        let t354 = minus_gproximal_wx_leg1 * t353;
-        let t355 = minus_gproximal_wy_leg1 * t353;
-        let t356 = gproximal_wz_leg1 * t353;
-        let t357 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t358 = minus_gproximal_wx_leg2 * t357;
-        let t359 = minus_gproximal_wy_leg2 * t357;
-        let t360 = gproximal_wz_leg2 * t357;
-        let t361 = 6.936717523440031 * s_proximal_leg3;
-        let t362 = minus_gproximal_wx_leg3 * t361;
-        let t363 = minus_gproximal_wy_leg3 * t361;
-        let t364 = minus_gproximal_wz_leg3 * t361;
-        let t365 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t366 = minus_gproximal_wx_leg4 * t365;
-        let t367 = minus_gproximal_wy_leg4 * t365;
-        let t368 = minus_gproximal_wz_leg4 * t365;
-        let t369 = 6.936717523440031 * c_proximal_leg1;
-        let t373 = 6.936717523440031 * c_proximal_leg2;
-        let t377 = 6.936717523440031 * c_proximal_leg3;
-        let t381 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t163 * t187;
-        let minus_rate_proximal_leg2 = t213 * t237;
-        let minus_rate_proximal_leg3 = t285 / c_distal_leg3;
-        let minus_rate_proximal_leg4 = t313 * t334;
-        let t413 = t189 + t198;
-        let t415 = t187 * t188;
-        let t416 = minus_gdistal_wx_leg1 * t415;
-        let t418 = minus_s_distal_leg1 * t413;
-        let t424 = t239 + t248;
-        let t426 = t237 * t238;
-        let t430 = gdistal_wy_leg2 * t426;
-        let t434 = t285 * t286;
-        let t435 = gdistal_wx_leg3 * t434;
-        let t436 = t296 - t287;
-        let t444 = t334 * t335;
-        let t446 = t345 - t336;
-        let t450 = minus_gdistal_wy_leg4 * t444;
-        let t454 = t187 * rate_distal_leg1;
-        let t455 = t179 * t199;
-        let t459 = c_distal_leg1 * (t454 - (t455 - t454)) - t418;
-        let t461 = t187 * t187;
-        let t462 = t188 * t188;
-        let t463 = t461 - t462;
-        let t464 = minus_gdistal_wx_leg1 * t463;
-        let t471 = t237 * rate_distal_leg2;
-        let t472 = t227 * t249;
-        let t477 = c_distal_leg2 * (t471 - (t472 - t471)) - minus_s_distal_leg2 * t424;
-        let t479 = t237 * t237;
-        let t480 = t238 * t238;
-        let t481 = t479 - t480;
-        let t484 = gdistal_wy_leg2 * t481;
-        let t489 = t285 * t285;
-        let t490 = t286 * t286;
-        let t491 = t489 - t490;
-        let t492 = gdistal_wx_leg3 * t491;
-        let t493 = t285 * rate_distal_leg3;
-        let t494 = t277 * t297;
-        let t499 = c_distal_leg3 * (t493 + t494 + t493) + s_distal_leg3 * t436;
-        let t507 = t334 * t334;
-        let t508 = t335 * t335;
-        let t509 = t507 - t508;
-        let t511 = t334 * rate_distal_leg4;
-        let t512 = t324 * t346;
-        let t517 = c_distal_leg4 * (t511 + t512 + t511) + s_distal_leg4 * t446;
-        let t521 = minus_gdistal_wy_leg4 * t509;
+        let t330 = s_distal_leg4 * t316;
+        let t332 = s_distal_leg4 * c_proximal_leg4;
+        let t334 = 0.7071067811865475 * (t332 + c_distal_leg4);
+        let t338 = 0.7071067811865475 * (t332 - c_distal_leg4);
+        let t340 = t320 * twist[0] + t334 * twist[1] + t338 * twist[2];
+        let t341 = t330 * t340;
+        let t342 = rate_distal_leg4 * t341;
+        let minus_rate_wrist_leg4 = t341 + 0.7071067811865475 * t74;
+        let t351 = t320 * acceleration[0] + t334 * acceleration[1]
+            + t338 * acceleration[2] + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let t352 = t342 + t351;
+        let minus_rate_dot_proximal_leg4 = t316 * t352;
+        let minus_gproximal_wy_leg4 = t334 * t316;
+        let minus_gproximal_wz_leg4 = t338 * t316;
+        let t359 = 6.936717523440031 * s_proximal_leg1;
+        let t363 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t364 = minus_gproximal_wx_leg2 * t363;
+        let t365 = minus_gproximal_wy_leg2 * t363;
+        let t366 = gproximal_wz_leg2 * t363;
+        let t367 = 6.936717523440031 * s_proximal_leg3;
+        let t371 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t375 = 6.936717523440031 * c_proximal_leg1;
+        let t379 = 6.936717523440031 * c_proximal_leg2;
+        let t383 = 6.936717523440031 * c_proximal_leg3;
+        let t387 = 6.936717523440031 * c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t168 * t192;
+        let minus_rate_proximal_leg2 = t242 / c_distal_leg2;
+        let minus_rate_proximal_leg3 = t271 * t290;
+        let minus_rate_proximal_leg4 = t316 * t340;
+        let t420 = t194 + t199 + t194;
+        let t422 = t192 * t193;
+        let t423 = minus_gdistal_wx_leg1 * t422;
+        let t425 = minus_s_distal_leg1 * t420;
+        let t431 = t244 + t253;
+        let t433 = t242 * t243;
+        let t437 = gdistal_wy_leg2 * t433;
+        let t441 = t290 * t291;
+        let t442 = gdistal_wx_leg3 * t441;
+        let t443 = t301 - t292;
+        let t451 = t340 * t341;
+        let t453 = t351 - t342;
+        let t454 = c_distal_leg4 * t453;
+        let t458 = minus_gdistal_wy_leg4 * t451;
+        let t462 = t192 * rate_distal_leg1;
+        let t463 = t187 * t199;
+        let t467 = c_distal_leg1 * (t462 - (t463 - t462)) - t425;
+        let t469 = t192 * t192;
+        let t470 = t193 * t193;
+        let t471 = t469 - t470;
+        let t472 = minus_gdistal_wx_leg1 * t471;
+        let t479 = t242 * rate_distal_leg2;
+        let t480 = t217 * t254;
+        let t485 = c_distal_leg2 * (t479 - (t480 - t479)) - minus_s_distal_leg2 * t431;
+        let t487 = t242 * t242;
+        let t488 = t243 * t243;
+        let t489 = t487 - t488;
+        let t492 = gdistal_wy_leg2 * t489;
+        let t497 = t290 * t290;
+        let t498 = t291 * t291;
+        let t499 = t497 - t498;
+        let t500 = gdistal_wx_leg3 * t499;
+        let t501 = t290 * rate_distal_leg3;
+        let t502 = t282 * t302;
+        let t507 = c_distal_leg3 * (t501 + t502 + t501) + s_distal_leg3 * t443;
+        let t515 = t340 * t340;
+        let t516 = t341 * t341;
+        let t517 = t515 - t516;
+        let t519 = t340 * rate_distal_leg4;
+        let t520 = t330 * t352;
+        let t525 = c_distal_leg4 * (t519 + t520 + t519) + s_distal_leg4 * t453;
+        let t529 = minus_gdistal_wy_leg4 * t517;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t187 * rate_wrist_leg1;
-        let t534 = rate_distal_leg1 * rate_distal_leg1;
-        let t537 = c_distal_leg1 * (t415 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t534 - t461);
-        let t539 = minus_gdistal_wx_leg1 * t199;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t192 * rate_wrist_leg1;
+        let t542 = rate_distal_leg1 * rate_distal_leg1;
+        let t545 = c_distal_leg1 * (t422 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t542 - t469);
+        let t547 = minus_gdistal_wx_leg1 * t199;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t237 * rate_wrist_leg2;
-        let t555 = rate_distal_leg2 * rate_distal_leg2;
-        let t558 = c_distal_leg2 * (t426 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t555 - t479);
-        let t563 = gdistal_wy_leg2 * t249;
-        let t567 = gdistal_wx_leg3 * t297;
-        let t568 = rate_distal_leg3 * rate_distal_leg3;
+            + t242 * rate_wrist_leg2;
+        let t563 = rate_distal_leg2 * rate_distal_leg2;
+        let t566 = c_distal_leg2 * (t433 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t563 - t487);
+        let t571 = gdistal_wy_leg2 * t254;
+        let t575 = gdistal_wx_leg3 * t302;
+        let t576 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t285 * minus_rate_wrist_leg3;
-        let t580 = s_distal_leg3 * (t568 - t489)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t434);
-        let t589 = rate_distal_leg4 * rate_distal_leg4;
+            - t290 * minus_rate_wrist_leg3;
+        let t588 = s_distal_leg3 * (t576 - t497)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t441);
+        let t597 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t334 * minus_rate_wrist_leg4;
-        let t601 = s_distal_leg4 * (t589 - t507)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t444);
-        let t605 = minus_gdistal_wy_leg4 * t346;
-        let t613 = minus_s_distal_leg1 * (t415 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t462 - t534);
-        let t615 = minus_gdistal_wx_leg1 * t455;
-        let t626 = minus_s_distal_leg2 * (t426 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t480 - t555);
-        let t630 = gdistal_wy_leg2 * t472;
-        let t639 = s_distal_leg3 * (t434 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t490 - t568);
-        let t641 = gdistal_wx_leg3 * t494;
-        let t652 = s_distal_leg4 * (t444 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t508 - t589);
-        let t656 = minus_gdistal_wy_leg4 * t512;
-        let t662 = t157 * (-6.936717523440031);
-        let t663 = minus_gdistal_wx_leg1 * t662;
-        let t675 = 0.7071067811865475 * t207 * t357;
-        let t680 = t258 * 6.936717523440031;
-        let t681 = gdistal_wx_leg3 * t680;
-        let t692 = t365 * (0.7071067811865475 * t315);
+            - minus_gdistal_wy_leg4 * acceleration[2] - t340 * minus_rate_wrist_leg4;
+        let t609 = s_distal_leg4 * (t597 - t515)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t451);
+        let t613 = minus_gdistal_wy_leg4 * t352;
+        let t621 = minus_s_distal_leg1 * (t422 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t470 - t542);
+        let t623 = minus_gdistal_wx_leg1 * t463;
+        let t634 = minus_s_distal_leg2 * (t433 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t488 - t563);
+        let t638 = gdistal_wy_leg2 * t480;
+        let t647 = s_distal_leg3 * (t441 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t498 - t576);
+        let t649 = gdistal_wx_leg3 * t502;
+        let t660 = s_distal_leg4 * (t451 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t516 - t597);
+        let t664 = minus_gdistal_wy_leg4 * t520;
+        let t669 = 6.936717523440031 * t174;
+        let t671 = t157 * (-6.936717523440031);
+        let t672 = minus_gdistal_wx_leg1 * t671;
+        let t684 = 0.7071067811865475 * t209 * t363;
+        let t688 = 6.936717523440031 * t284;
+        let t690 = t262 * 6.936717523440031;
+        let t691 = gdistal_wx_leg3 * t690;
+        let t699 = 6.936717523440031 * t320;
+        let t703 = t371 * (0.7071067811865475 * t309);
         Ok([
             [
-                t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t77,
-                t5 * t95 - t19 * t73 + t25 * t99, t19 * t64 - t113 + t48,
-                t19 * t125 - t5 * t76 + t25 * t128, t113 - t38 + t25 * t94, 9.81 * t10, 9.81 * t41,
-                9.81 * t29, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
+                t9 * t20 + t38 - t48, t9 * t65 + t22 * t68 + t28 * t77,
+                t9 * t95 - t22 * t73 + t28 * t99, t22 * t64 - t113 + t48,
+                t22 * t125 - t9 * t76 + t28 * t128, t113 - t38 + t28 * t94, 9.81 * t13, 9.81 * t41,
+                9.81 * t32, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4, t354, -t358, t362, -t366,
-                minus_gproximal_wx_leg1 * t369, minus_gproximal_wx_leg2 * t373,
-                minus_gproximal_wx_leg3 * t377, minus_gproximal_wx_leg4 * t381,
-                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4,
+                minus_gproximal_wx_leg1 * t359, -t364, minus_gproximal_wx_leg3 * t367,
+                -(minus_gproximal_wx_leg4 * t371), minus_gproximal_wx_leg1 * t375,
+                minus_gproximal_wx_leg2 * t379, minus_gproximal_wx_leg3 * t383,
+                minus_gproximal_wx_leg4 * t387, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
@@ -5451,39 +5446,40 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
                 -minus_gproximal_wx_leg4,
-                t168 * t413 + t416,
-                t217 * t424 + c_proximal_leg2 * t426,
-                t435 + t266 * t436,
-                c_proximal_leg4 * t444 + t312 * t446,
-                -(minus_gproximal_wx_leg1 * t459 + t464),
-                -(minus_gproximal_wx_leg2 * t477 + c_proximal_leg2 * t481),
-                t492 - minus_gproximal_wx_leg3 * t499,
-                c_proximal_leg4 * t509 - minus_gproximal_wx_leg4 * t517,
-                minus_gproximal_wx_leg1 * t537 - t539,
-                minus_gproximal_wx_leg2 * t558 - c_proximal_leg2 * t249,
-                t567 - minus_gproximal_wx_leg3 * t580,
-                c_proximal_leg4 * t346 - minus_gproximal_wx_leg4 * t601,
-                -(minus_gproximal_wx_leg1 * t613 + t615),
-                -(minus_gproximal_wx_leg2 * t626 + c_proximal_leg2 * t472),
-                -(minus_gproximal_wx_leg3 * t639 + t641),
-                -(minus_gproximal_wx_leg4 * t652 + c_proximal_leg4 * t512),
-                -(minus_s_distal_leg1 * t354 + t663),
-                minus_s_distal_leg2 * t358 + t207 * t373,
-                s_distal_leg3 * t362 + t681,
-                t315 * t381 - s_distal_leg4 * t366,
+                t167 * t420 + t423,
+                t232 * t431 + c_proximal_leg2 * t433,
+                t442 + t270 * t443,
+                c_proximal_leg4 * t451 + minus_gproximal_wx_leg4 * t454,
+                -(minus_gproximal_wx_leg1 * t467 + t472),
+                -(minus_gproximal_wx_leg2 * t485 + c_proximal_leg2 * t489),
+                t500 - minus_gproximal_wx_leg3 * t507,
+                c_proximal_leg4 * t517 - minus_gproximal_wx_leg4 * t525,
+                minus_gproximal_wx_leg1 * t545 - t547,
+                minus_gproximal_wx_leg2 * t566 - c_proximal_leg2 * t254,
+                t575 - minus_gproximal_wx_leg3 * t588,
+                c_proximal_leg4 * t352 - minus_gproximal_wx_leg4 * t609,
+                -(minus_gproximal_wx_leg1 * t621 + t623),
+                -(minus_gproximal_wx_leg2 * t634 + c_proximal_leg2 * t480),
+                -(minus_gproximal_wx_leg3 * t647 + t649),
+                -(minus_gproximal_wx_leg4 * t660 + c_proximal_leg4 * t520),
+                -(minus_gproximal_wx_leg1 * t669 + t672),
+                minus_s_distal_leg2 * t364 + t209 * t379,
+                minus_gproximal_wx_leg3 * t688 + t691,
+                t309 * t387 - minus_gproximal_wx_leg4 * t699,
             ],
             [
-                t10 * t17 + t51 - t53, t10 * t65 + t41 * t68 + t29 * t77,
-                t10 * t95 - t41 * t73 + t29 * t99, t41 * t64 - t117 + t53,
-                t41 * t125 - t10 * t76 + t29 * t128, t117 - t51 + t29 * t94, -(9.81 * t5),
-                -(9.81 * t19), -(9.81 * t25),
+                t13 * t20 + t51 - t53, t13 * t65 + t41 * t68 + t32 * t77,
+                t13 * t95 - t41 * t73 + t32 * t99, t41 * t64 - t117 + t53,
+                t41 * t125 - t13 * t76 + t32 * t128, t117 - t51 + t32 * t94, -(9.81 * t9),
+                -(9.81 * t22), -(9.81 * t28),
                 minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, t355, -t359, t363, -t367,
-                minus_gproximal_wy_leg1 * t369, minus_gproximal_wy_leg2 * t373,
-                minus_gproximal_wy_leg3 * t377, minus_gproximal_wy_leg4 * t381,
-                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4,
+                minus_gproximal_wy_leg1 * t359, -t365, minus_gproximal_wy_leg3 * t367,
+                -(minus_gproximal_wy_leg4 * t371), minus_gproximal_wy_leg1 * t375,
+                minus_gproximal_wy_leg2 * t379, minus_gproximal_wy_leg3 * t383,
+                minus_gproximal_wy_leg4 * t387, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
@@ -5507,37 +5503,38 @@ impl Spherical4Rrr {
                 -minus_gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                s_proximal_leg1 * t418 - c_proximal_leg1 * t415,
-                t231 * t424 - t430,
-                -(c_proximal_leg3 * t434 - t279 * t436),
-                -(t450 - t328 * t446),
-                c_proximal_leg1 * t463 - minus_gproximal_wy_leg1 * t459,
-                t484 - minus_gproximal_wy_leg2 * t477,
-                -(minus_gproximal_wy_leg3 * t499 + c_proximal_leg3 * t491),
-                -(minus_gproximal_wy_leg4 * t517 + t521),
-                minus_gproximal_wy_leg1 * t537 + c_proximal_leg1 * t199,
-                minus_gproximal_wy_leg2 * t558 + t563,
-                -(minus_gproximal_wy_leg3 * t580 + c_proximal_leg3 * t297),
-                -(minus_gproximal_wy_leg4 * t601 + t605),
-                c_proximal_leg1 * t455 - minus_gproximal_wy_leg1 * t613,
-                t630 - minus_gproximal_wy_leg2 * t626,
-                c_proximal_leg3 * t494 - minus_gproximal_wy_leg3 * t639,
-                t656 - minus_gproximal_wy_leg4 * t652,
-                c_proximal_leg1 * t662 - minus_s_distal_leg1 * t355,
-                minus_s_distal_leg2 * t359 - t675,
-                s_distal_leg3 * t363 - c_proximal_leg3 * t680,
-                -(t692 + s_distal_leg4 * t367),
+                s_proximal_leg1 * t425 - c_proximal_leg1 * t422,
+                t236 * t431 - t437,
+                -(c_proximal_leg3 * t441 - t284 * t443),
+                -(t458 - minus_gproximal_wy_leg4 * t454),
+                c_proximal_leg1 * t471 - minus_gproximal_wy_leg1 * t467,
+                t492 - minus_gproximal_wy_leg2 * t485,
+                -(minus_gproximal_wy_leg3 * t507 + c_proximal_leg3 * t499),
+                -(minus_gproximal_wy_leg4 * t525 + t529),
+                minus_gproximal_wy_leg1 * t545 + c_proximal_leg1 * t199,
+                minus_gproximal_wy_leg2 * t566 + t571,
+                -(minus_gproximal_wy_leg3 * t588 + c_proximal_leg3 * t302),
+                -(minus_gproximal_wy_leg4 * t609 + t613),
+                c_proximal_leg1 * t463 - minus_gproximal_wy_leg1 * t621,
+                t638 - minus_gproximal_wy_leg2 * t634,
+                c_proximal_leg3 * t502 - minus_gproximal_wy_leg3 * t647,
+                t664 - minus_gproximal_wy_leg4 * t660,
+                c_proximal_leg1 * t671 - minus_gproximal_wy_leg1 * t669,
+                minus_s_distal_leg2 * t365 - t684,
+                minus_gproximal_wy_leg3 * t688 - c_proximal_leg3 * t690,
+                -(t703 + minus_gproximal_wy_leg4 * t699),
             ],
             [
-                t15 * t17 + t56 - t58, t15 * t65 + t44 * t68 + t34 * t77,
-                t15 * t95 - t44 * t73 + t34 * t99, t44 * t64 - t121 + t58,
-                t44 * t125 - t15 * t76 + t34 * t128, t121 - t56 + t34 * t94, 0.0, 0.0, 0.0,
+                t18 * t20 + t56 - t58, t18 * t65 + t44 * t68 + t5 * t77,
+                t18 * t95 - t44 * t73 + t5 * t99, t44 * t64 - t121 + t58,
+                t44 * t125 - t18 * t76 + t5 * t128, t121 - t56 + t5 * t94, 0.0, 0.0, 0.0,
                 -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -t356, t360, t364, -t368,
-                -(gproximal_wz_leg1 * t369), -(gproximal_wz_leg2 * t373),
-                minus_gproximal_wz_leg3 * t377, minus_gproximal_wz_leg4 * t381,
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -(gproximal_wz_leg1 * t359),
+                t366, minus_gproximal_wz_leg3 * t367, -(minus_gproximal_wz_leg4 * t371),
+                -(gproximal_wz_leg1 * t375), -(gproximal_wz_leg2 * t379),
+                minus_gproximal_wz_leg3 * t383, minus_gproximal_wz_leg4 * t387,
                 -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
@@ -5556,26 +5553,26 @@ impl Spherical4Rrr {
                 gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
-                -(t185 * t413 + t416),
-                t430 - t235 * t424,
-                t435 + t283 * t436,
-                -(t450 - t332 * t446),
-                gproximal_wz_leg1 * t459 + t464,
-                gproximal_wz_leg2 * t477 - t484,
-                t492 - minus_gproximal_wz_leg3 * t499,
-                -(minus_gproximal_wz_leg4 * t517 + t521),
-                t539 - gproximal_wz_leg1 * t537,
-                -(gproximal_wz_leg2 * t558 + t563),
-                t567 - minus_gproximal_wz_leg3 * t580,
-                -(minus_gproximal_wz_leg4 * t601 + t605),
-                gproximal_wz_leg1 * t613 + t615,
-                gproximal_wz_leg2 * t626 - t630,
-                -(minus_gproximal_wz_leg3 * t639 + t641),
-                t656 - minus_gproximal_wz_leg4 * t652,
-                minus_s_distal_leg1 * t356 + t663,
-                t675 - minus_s_distal_leg2 * t360,
-                s_distal_leg3 * t364 + t681,
-                -(t692 + s_distal_leg4 * t368),
+                -(t178 * t420 + t423),
+                t437 - t240 * t431,
+                t442 + t288 * t443,
+                -(t458 - minus_gproximal_wz_leg4 * t454),
+                gproximal_wz_leg1 * t467 + t472,
+                gproximal_wz_leg2 * t485 - t492,
+                t500 - minus_gproximal_wz_leg3 * t507,
+                -(minus_gproximal_wz_leg4 * t525 + t529),
+                t547 - gproximal_wz_leg1 * t545,
+                -(gproximal_wz_leg2 * t566 + t571),
+                t575 - minus_gproximal_wz_leg3 * t588,
+                -(minus_gproximal_wz_leg4 * t609 + t613),
+                gproximal_wz_leg1 * t621 + t623,
+                gproximal_wz_leg2 * t634 - t638,
+                -(minus_gproximal_wz_leg3 * t647 + t649),
+                t664 - minus_gproximal_wz_leg4 * t660,
+                gproximal_wz_leg1 * t669 + t672,
+                t684 - minus_s_distal_leg2 * t366,
+                minus_gproximal_wz_leg3 * t688 + t691,
+                -(t703 + minus_gproximal_wz_leg4 * t699),
             ],
         ])
     }
@@ -5590,7 +5587,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 666 operations (247 additions, 403 multiplications, 16 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 538 intermediates.
+    /// 666 operations (247 additions, 401 multiplications, 18 divisions), 0 square roots, 8 trigonometric pairs, 12 signs, 538 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -5603,11 +5600,12 @@ impl Spherical4Rrr {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
-        (c_distal_leg2, minus_s_distal_leg2), (c_distal_leg3, minus_s_distal_leg3),
+        (c_distal_leg2, minus_s_distal_leg2),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
+        (c_distal_leg3, minus_s_distal_leg3),
         (minus_s_proximal_leg4, minus_c_proximal_leg4),
         (c_distal_leg4, minus_s_distal_leg4)] = ::overact::math::sin_cos_all([
-            joints[0], joints[1], joints[3], joints[4], joints[7], joints[6], joints[9], joints[10],
+            joints[0], joints[1], joints[3], joints[4], joints[6], joints[7], joints[9], joints[10],
         ]);
         ::overact::guard::leg(minus_s_distal_leg1, 1.0, "leg1")?;
         ::overact::guard::leg(minus_s_distal_leg2, 1.0, "leg2")?;
@@ -5687,58 +5685,58 @@ impl Spherical4Rrr {
             + rate_distal_leg1 * minus_rate_wrist_leg1;
         let t197 = t179 + t196;
         let minus_rate_dot_proximal_leg1 = t197 / minus_s_distal_leg1;
-        let gproximal_wy_leg1 = minus_s_proximal_leg1 * t170;
+        let gproximal_wy_leg1 = t174 / minus_s_distal_leg1;
         let minus_gproximal_wz_leg1 = t171 / minus_s_distal_leg1;
         let t208 = minus_s_proximal_leg2 * c_distal_leg2;
-        let minus_gproximal_wx_leg2 = t208 / minus_s_distal_leg2;
+        let t209 = 1.0 / minus_s_distal_leg2;
+        let minus_gproximal_wx_leg2 = t208 * t209;
         let minus_gdistal_wy_leg2 = 0.7071067811865476 * minus_s_proximal_leg2;
         let rate_distal_leg2 = minus_gdistal_wy_leg2 * twist[2]
             - (minus_c_proximal_leg2 * twist[0] + minus_gdistal_wy_leg2 * twist[1]);
-        let t217 = 0.7071067811865476 * c_distal_leg2;
-        let t218 = minus_c_proximal_leg2 * t217;
-        let t219 = 0.7071067811865476 * minus_s_distal_leg2;
-        let t220 = t218 + t219;
-        let t223 = t218 - t219;
-        let t225 = t208 * twist[0] - t220 * twist[1] + t223 * twist[2];
-        let minus_rate_proximal_leg2 = t225 / minus_s_distal_leg2;
-        let t227 = c_distal_leg2 * minus_rate_proximal_leg2;
-        let t228 = rate_distal_leg2 * t227;
-        let t236 = minus_c_proximal_leg2 * t219;
-        let t240 = t236 + t217;
-        let minus_rate_wrist_leg2 = t227
+        let t218 = 0.7071067811865476 * c_distal_leg2;
+        let t219 = minus_c_proximal_leg2 * t218;
+        let t220 = 0.7071067811865476 * minus_s_distal_leg2;
+        let t221 = t219 + t220;
+        let t224 = t219 - t220;
+        let t226 = t208 * twist[0] - t221 * twist[1] + t224 * twist[2];
+        let minus_rate_proximal_leg2 = t209 * t226;
+        let t228 = c_distal_leg2 * minus_rate_proximal_leg2;
+        let t229 = rate_distal_leg2 * t228;
+        let t237 = minus_c_proximal_leg2 * t220;
+        let t241 = t237 + t218;
+        let minus_rate_wrist_leg2 = t228
             + minus_s_proximal_leg2 * minus_s_distal_leg2 * twist[0]
-            + (t217 - t236) * twist[1] + t240 * twist[2];
-        let t245 = t208 * acceleration[0] - t220 * acceleration[1]
-            + t223 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
-        let t246 = t228 + t245;
-        let minus_rate_dot_proximal_leg2 = t246 / minus_s_distal_leg2;
-        let gproximal_wy_leg2 = t220 / minus_s_distal_leg2;
-        let minus_gproximal_wz_leg2 = t223 / minus_s_distal_leg2;
-        let t255 = 1.0 / minus_s_distal_leg3;
-        let t256 = c_distal_leg3 * t255;
-        let t259 = 0.7071067811865476 * minus_s_distal_leg3;
-        let t260 = minus_c_proximal_leg3 * t259;
-        let t261 = t256 * t260;
-        let t262 = t261 + t259;
-        let minus_gproximal_wx_leg3 = t262 * t255;
+            + (t218 - t237) * twist[1] + t241 * twist[2];
+        let t246 = t208 * acceleration[0] - t221 * acceleration[1]
+            + t224 * acceleration[2] + rate_distal_leg2 * minus_rate_wrist_leg2;
+        let t247 = t229 + t246;
+        let minus_rate_dot_proximal_leg2 = t209 * t247;
+        let gproximal_wy_leg2 = t221 * t209;
+        let minus_gproximal_wz_leg2 = t224 * t209;
+        let t258 = 0.7071067811865476 * c_distal_leg3;
+        let t259 = minus_c_proximal_leg3 * t258;
+        let t260 = 0.7071067811865476 * minus_s_distal_leg3;
+        let t261 = t259 + t260;
+        let minus_gproximal_wx_leg3 = t261 / minus_s_distal_leg3;
         let gdistal_wx_leg3 = 0.7071067811865476 * minus_s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0]
             - minus_c_proximal_leg3 * twist[1] + gdistal_wx_leg3 * twist[2];
+        let t269 = c_distal_leg3 / minus_s_distal_leg3;
         let t271 = minus_s_proximal_leg3 * c_distal_leg3;
-        let t274 = t261 - t259;
-        let t276 = t262 * twist[0] + t271 * twist[1] + t274 * twist[2];
-        let t277 = t256 * t276;
+        let t274 = t259 - t260;
+        let t276 = t261 * twist[0] + t271 * twist[1] + t274 * twist[2];
+        let t277 = t269 * t276;
         let t278 = rate_distal_leg3 * t277;
-        let t284 = 0.7071067811865476 * c_distal_leg3;
-        let t290 = t260 + t284;
-        let minus_rate_wrist_leg3 = t277 + (t260 - t284) * twist[0]
+        let t284 = minus_c_proximal_leg3 * t260;
+        let t290 = t284 + t258;
+        let minus_rate_wrist_leg3 = t277 + (t284 - t258) * twist[0]
             + minus_s_proximal_leg3 * minus_s_distal_leg3 * twist[1] + t290 * twist[2];
-        let t295 = t262 * acceleration[0] + t271 * acceleration[1]
+        let t295 = t261 * acceleration[0] + t271 * acceleration[1]
             + t274 * acceleration[2] + rate_distal_leg3 * minus_rate_wrist_leg3;
         let t296 = t278 + t295;
-        let minus_rate_dot_proximal_leg3 = t255 * t296;
-        let minus_gproximal_wy_leg3 = t271 * t255;
-        let minus_gproximal_wz_leg3 = t274 * t255;
+        let minus_rate_dot_proximal_leg3 = t296 / minus_s_distal_leg3;
+        let minus_gproximal_wy_leg3 = t271 / minus_s_distal_leg3;
+        let minus_gproximal_wz_leg3 = t274 / minus_s_distal_leg3;
         let t307 = minus_s_proximal_leg4 * c_distal_leg4;
         let gproximal_wx_leg4 = t307 / minus_s_distal_leg4;
         let gdistal_wy_leg4 = 0.7071067811865476 * minus_s_proximal_leg4;
@@ -5784,34 +5782,32 @@ impl Spherical4Rrr {
         let t376 = 6.9367175234400325 * minus_c_proximal_leg3;
         let t380 = 6.9367175234400325 * minus_c_proximal_leg4;
         let minus_rate_proximal_leg1 = t177 / minus_s_distal_leg1;
-        let minus_rate_proximal_leg3 = t255 * t276;
+        let minus_rate_proximal_leg3 = t276 / minus_s_distal_leg3;
         let t410 = t196 - t179;
         let t412 = t177 * t178;
         let t413 = minus_gdistal_wx_leg1 * t412;
-        let t415 = c_distal_leg1 * t410;
-        let t421 = t245 - t228;
-        let t422 = c_distal_leg2 * t421;
-        let t424 = t225 * t227;
-        let t428 = minus_gdistal_wy_leg2 * t424;
-        let t432 = t276 * t277;
-        let t433 = gdistal_wx_leg3 * t432;
-        let t434 = t295 - t278;
-        let t442 = t344 - t327;
-        let t443 = c_distal_leg4 * t442;
-        let t445 = t324 * t326;
-        let t448 = gdistal_wy_leg4 * t445;
-        let t453 = t177 * rate_distal_leg1;
-        let t454 = t170 * t197;
-        let t458 = minus_s_distal_leg1 * (t453 + t454 + t453) + t415;
-        let t460 = t177 * t177;
-        let t461 = t178 * t178;
-        let t462 = t460 - t461;
-        let t463 = minus_gdistal_wx_leg1 * t462;
-        let t470 = t225 * rate_distal_leg2;
-        let t471 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t475 = minus_s_distal_leg2 * (t470 + t471 + t470) + t422;
-        let t477 = t225 * t225;
-        let t478 = t227 * t227;
+        let t420 = t246 - t229;
+        let t422 = t226 * t228;
+        let t426 = minus_gdistal_wy_leg2 * t422;
+        let t430 = t276 * t277;
+        let t431 = gdistal_wx_leg3 * t430;
+        let t432 = t295 - t278;
+        let t435 = c_distal_leg3 * t432;
+        let t441 = t344 - t327;
+        let t443 = t324 * t326;
+        let t446 = gdistal_wy_leg4 * t443;
+        let t451 = t177 * rate_distal_leg1;
+        let t452 = t170 * t197;
+        let t457 = minus_s_distal_leg1 * (t451 + t452 + t451) + c_distal_leg1 * t410;
+        let t459 = t177 * t177;
+        let t460 = t178 * t178;
+        let t461 = t459 - t460;
+        let t462 = minus_gdistal_wx_leg1 * t461;
+        let t469 = t226 * rate_distal_leg2;
+        let t470 = c_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t475 = minus_s_distal_leg2 * (t469 + t470 + t469) + c_distal_leg2 * t420;
+        let t477 = t226 * t226;
+        let t478 = t228 * t228;
         let t479 = t477 - t478;
         let t483 = minus_gdistal_wy_leg2 * t479;
         let t487 = t276 * t276;
@@ -5819,11 +5815,11 @@ impl Spherical4Rrr {
         let t489 = t487 - t488;
         let t490 = gdistal_wx_leg3 * t489;
         let t491 = t276 * rate_distal_leg3;
-        let t492 = t256 * t296;
-        let t497 = minus_s_distal_leg3 * (t491 + t492 + t491) + c_distal_leg3 * t434;
-        let t505 = t324 * rate_distal_leg4;
-        let t506 = c_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t510 = minus_s_distal_leg4 * (t505 + t506 + t505) + t443;
+        let t492 = t269 * t296;
+        let t496 = minus_s_distal_leg3 * (t491 + t492 + t491) + t435;
+        let t504 = t324 * rate_distal_leg4;
+        let t505 = c_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t510 = minus_s_distal_leg4 * (t504 + t505 + t504) + c_distal_leg4 * t441;
         let t512 = t324 * t324;
         let t513 = t326 * t326;
         let t514 = t512 - t513;
@@ -5832,48 +5828,48 @@ impl Spherical4Rrr {
         let rate_dot_distal_leg1 = minus_c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
             + minus_gdistal_wx_leg1 * acceleration[2] - t177 * minus_rate_wrist_leg1;
-        let t534 = c_distal_leg1 * (t522 - t460)
+        let t534 = c_distal_leg1 * (t522 - t459)
             - minus_s_distal_leg1 * (rate_dot_distal_leg1 - t412);
         let t536 = minus_gdistal_wx_leg1 * t197;
         let t543 = rate_distal_leg2 * rate_distal_leg2;
         let rate_dot_distal_leg2 = minus_gdistal_wy_leg2 * acceleration[2]
             - (minus_c_proximal_leg2 * acceleration[0]
                 + minus_gdistal_wy_leg2 * acceleration[1])
-            - t225 * minus_rate_wrist_leg2;
+            - t226 * minus_rate_wrist_leg2;
         let t555 = c_distal_leg2 * (t543 - t477)
-            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t424);
-        let t560 = minus_gdistal_wy_leg2 * t246;
+            - minus_s_distal_leg2 * (rate_dot_distal_leg2 - t422);
+        let t560 = minus_gdistal_wy_leg2 * t247;
         let t564 = gdistal_wx_leg3 * t296;
         let t565 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - minus_c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
             - t276 * minus_rate_wrist_leg3;
         let t577 = c_distal_leg3 * (t565 - t487)
-            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t432);
+            - minus_s_distal_leg3 * (rate_dot_distal_leg3 - t430);
         let t585 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = minus_c_proximal_leg4 * acceleration[0]
             + gdistal_wy_leg4 * acceleration[1] + gdistal_wy_leg4 * acceleration[2]
             - t324 * minus_rate_wrist_leg4;
         let t597 = c_distal_leg4 * (t585 - t512)
-            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t445);
+            - minus_s_distal_leg4 * (rate_dot_distal_leg4 - t443);
         let t601 = gdistal_wy_leg4 * t345;
         let t610 = c_distal_leg1 * (t412 + rate_dot_distal_leg1)
-            - minus_s_distal_leg1 * (t461 - t522);
-        let t612 = minus_gdistal_wx_leg1 * t454;
-        let t624 = c_distal_leg2 * (t424 + rate_dot_distal_leg2)
+            - minus_s_distal_leg1 * (t460 - t522);
+        let t612 = minus_gdistal_wx_leg1 * t452;
+        let t624 = c_distal_leg2 * (t422 + rate_dot_distal_leg2)
             - minus_s_distal_leg2 * (t478 - t543);
-        let t628 = minus_gdistal_wy_leg2 * t471;
-        let t636 = c_distal_leg3 * (t432 + rate_dot_distal_leg3)
+        let t628 = minus_gdistal_wy_leg2 * t470;
+        let t636 = c_distal_leg3 * (t430 + rate_dot_distal_leg3)
             - minus_s_distal_leg3 * (t488 - t565);
         let t638 = gdistal_wx_leg3 * t492;
-        let t649 = c_distal_leg4 * (t445 + rate_dot_distal_leg4)
+        let t649 = c_distal_leg4 * (t443 + rate_dot_distal_leg4)
             - minus_s_distal_leg4 * (t513 - t585);
-        let t654 = gdistal_wy_leg4 * t506;
+        let t654 = gdistal_wy_leg4 * t505;
         let t659 = 9.81 * t191;
         let t660 = minus_gdistal_wx_leg1 * t659;
-        let t672 = t240 * t356;
-        let t677 = 9.81 * t290;
-        let t678 = gdistal_wx_leg3 * t677;
+        let t668 = 9.81 * t241;
+        let t672 = minus_gdistal_wy_leg2 * t668;
+        let t677 = t290 * t360;
         let t690 = t339 * t364;
         Ok([
             [
@@ -5905,24 +5901,24 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg3,
                 gproximal_wx_leg4,
                 -(t162 * t410 + t413),
-                -(minus_c_proximal_leg2 * t424 - minus_s_proximal_leg2 * t422),
-                t433 + t262 * t434,
-                minus_c_proximal_leg4 * t445 - minus_s_proximal_leg4 * t443,
-                gproximal_wx_leg1 * t458 - t463,
+                -(minus_c_proximal_leg2 * t422 - t208 * t420),
+                t431 + t261 * t432,
+                minus_c_proximal_leg4 * t443 - t307 * t441,
+                gproximal_wx_leg1 * t457 - t462,
                 -(minus_gproximal_wx_leg2 * t475 + minus_c_proximal_leg2 * t479),
-                t490 - minus_gproximal_wx_leg3 * t497,
+                t490 - minus_gproximal_wx_leg3 * t496,
                 gproximal_wx_leg4 * t510 + minus_c_proximal_leg4 * t514,
                 gproximal_wx_leg1 * t534 - t536,
-                -(minus_gproximal_wx_leg2 * t555 + minus_c_proximal_leg2 * t246),
+                -(minus_gproximal_wx_leg2 * t555 + minus_c_proximal_leg2 * t247),
                 t564 - minus_gproximal_wx_leg3 * t577,
                 gproximal_wx_leg4 * t597 + minus_c_proximal_leg4 * t345,
                 gproximal_wx_leg1 * t610 + t612,
-                minus_c_proximal_leg2 * t471 - minus_gproximal_wx_leg2 * t624,
+                minus_c_proximal_leg2 * t470 - minus_gproximal_wx_leg2 * t624,
                 -(minus_gproximal_wx_leg3 * t636 + t638),
-                gproximal_wx_leg4 * t649 - minus_c_proximal_leg4 * t506,
+                gproximal_wx_leg4 * t649 - minus_c_proximal_leg4 * t505,
                 -(c_distal_leg1 * t353 + t660),
-                c_distal_leg2 * t357 - minus_c_proximal_leg2 * (9.81 * t240),
-                c_distal_leg3 * t361 + t678,
+                c_distal_leg2 * t357 - minus_c_proximal_leg2 * t668,
+                c_distal_leg3 * t361 + t677,
                 minus_c_proximal_leg4 * (9.81 * t339) - c_distal_leg4 * t365,
             ],
             [
@@ -5953,25 +5949,25 @@ impl Spherical4Rrr {
                 gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                minus_c_proximal_leg1 * t412 - minus_s_proximal_leg1 * t415,
-                -(t220 * t421 + t428),
-                -(minus_c_proximal_leg3 * t432 - t271 * t434),
-                t448 + t318 * t442,
-                gproximal_wy_leg1 * t458 + minus_c_proximal_leg1 * t462,
+                minus_c_proximal_leg1 * t412 - t174 * t410,
+                -(t221 * t420 + t426),
+                -(minus_c_proximal_leg3 * t430 - minus_s_proximal_leg3 * t435),
+                t446 + t318 * t441,
+                gproximal_wy_leg1 * t457 + minus_c_proximal_leg1 * t461,
                 gproximal_wy_leg2 * t475 - t483,
-                -(minus_gproximal_wy_leg3 * t497 + minus_c_proximal_leg3 * t489),
+                -(minus_gproximal_wy_leg3 * t496 + minus_c_proximal_leg3 * t489),
                 t517 - minus_gproximal_wy_leg4 * t510,
                 gproximal_wy_leg1 * t534 + minus_c_proximal_leg1 * t197,
                 gproximal_wy_leg2 * t555 - t560,
                 -(minus_gproximal_wy_leg3 * t577 + minus_c_proximal_leg3 * t296),
                 t601 - minus_gproximal_wy_leg4 * t597,
-                gproximal_wy_leg1 * t610 - minus_c_proximal_leg1 * t454,
+                gproximal_wy_leg1 * t610 - minus_c_proximal_leg1 * t452,
                 gproximal_wy_leg2 * t624 + t628,
                 minus_c_proximal_leg3 * t492 - minus_gproximal_wy_leg3 * t636,
                 -(minus_gproximal_wy_leg4 * t649 + t654),
                 minus_c_proximal_leg1 * t659 - c_distal_leg1 * t354,
                 -(c_distal_leg2 * t358 + t672),
-                c_distal_leg3 * t362 - minus_c_proximal_leg3 * t677,
+                c_distal_leg3 * t362 - minus_c_proximal_leg3 * (9.81 * t290),
                 c_distal_leg4 * t366 + t690,
             ],
             [
@@ -6009,12 +6005,12 @@ impl Spherical4Rrr {
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
                 t413 + t171 * t410,
-                t428 + t223 * t421,
-                t433 + t274 * t434,
-                t448 + t322 * t442,
-                t463 - minus_gproximal_wz_leg1 * t458,
+                t426 + t224 * t420,
+                t431 + t274 * t432,
+                t446 + t322 * t441,
+                t462 - minus_gproximal_wz_leg1 * t457,
                 t483 - minus_gproximal_wz_leg2 * t475,
-                t490 - minus_gproximal_wz_leg3 * t497,
+                t490 - minus_gproximal_wz_leg3 * t496,
                 t517 - minus_gproximal_wz_leg4 * t510,
                 t536 - minus_gproximal_wz_leg1 * t534,
                 t560 - minus_gproximal_wz_leg2 * t555,
@@ -6026,7 +6022,7 @@ impl Spherical4Rrr {
                 -(minus_gproximal_wz_leg4 * t649 + t654),
                 c_distal_leg1 * t355 + t660,
                 c_distal_leg2 * t359 + t672,
-                c_distal_leg3 * t363 + t678,
+                c_distal_leg3 * t363 + t677,
                 c_distal_leg4 * t367 + t690,
             ],
         ])
@@ -6042,7 +6038,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 815 operations (316 additions, 486 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 675 intermediates.
+    /// 819 operations (314 additions, 492 multiplications, 13 divisions), 4 square roots, 0 trigonometric pairs, 12 signs, 679 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6053,363 +6049,362 @@ impl Spherical4Rrr {
         start: &[f64; 4],
     ) -> Result<[[f64; 53]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
-        let t0 = pose[2] + pose[2];
-        let t1 = pose[2] * t0;
+        let t0 = 2.0 * pose[1];
+        let t1 = pose[1] * t0;
         let t2 = 1.0 - t1;
-        let t3 = pose[3] + pose[3];
-        let t4 = pose[3] * t3;
+        let t3 = 2.0 * pose[2];
+        let t4 = pose[2] * t3;
         let t5 = t2 - t4;
-        let t6 = pose[1] + pose[1];
-        let t7 = pose[2] * t6;
-        let t8 = pose[0] * t3;
-        let t9 = t7 + t8;
-        let t10 = pose[3] * t6;
-        let t11 = pose[0] * t0;
+        let t6 = 2.0 * pose[3];
+        let t7 = pose[3] * t6;
+        let t9 = t5 + t1 - t7;
+        let t10 = pose[2] * t0;
+        let t11 = pose[0] * t6;
         let t12 = t10 + t11;
-        let t14 = t10 - t11;
-        let t15 = pose[1] * t6;
-        let t16 = t2 - t15;
-        let t17 = t14 - t16;
-        let minus_s_distal_leg1 = 0.5 * (t5 - t12 + t17);
-        let t21 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t21, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t21);
+        let t13 = pose[3] * t0;
+        let t14 = pose[0] * t3;
+        let t15 = t13 + t14;
+        let t16 = t9 - t15;
+        let t17 = t13 - t14;
+        let t18 = t17 - t5;
+        let minus_s_distal_leg1 = 0.5 * (t16 + t18);
+        let t22 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
+        ::overact::guard::reach(t22, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t22);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let t23 = 1.0 / c_distal_leg1;
-        let t24 = pose[3] * t0;
-        let t25 = pose[0] * t6;
-        let t26 = t24 - t25;
-        let s_proximal_leg1 = t23 * (0.7071067811865475 * (t9 - t26));
-        let t30 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t30 * t23;
-        let t33 = t4 - t1;
-        let t34 = t16 - t33;
-        let t35 = t34 - t26;
-        let t36 = t24 + t25;
-        let t37 = t36 - t16;
-        let minus_s_distal_leg2 = 0.5 * (t35 + t37);
-        let t41 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t41, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t41);
+        let t24 = 1.0 / c_distal_leg1;
+        let c_proximal_leg1 = t24 * (t16 - minus_s_distal_leg1);
+        let t27 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t29 = 0.7071067811865475 * (t27 - c_distal_leg1);
+        let minus_gproximal_wx_leg1 = t29 * t24;
+        let t31 = pose[3] * t3;
+        let t32 = pose[0] * t0;
+        let t33 = t31 - t32;
+        let s_proximal_leg1 = t24 * (0.7071067811865475 * (t12 - t33));
+        let t37 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t37 * t24;
+        let t40 = t2 - t7;
+        let t41 = t40 - t33;
+        let t42 = t31 + t32;
+        let t43 = t42 - t5;
+        let minus_s_distal_leg2 = 0.5 * (t41 + t43);
+        let t46 = t10 - t11;
+        let t50 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
+        ::overact::guard::reach(t50, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t50);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let t43 = 1.0 / c_distal_leg2;
-        let c_proximal_leg2 = t43 * (t35 - minus_s_distal_leg2);
-        let t46 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t48 = 0.7071067811865475 * (t46 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t48 * t43;
-        let s_distal_leg3 = minus_s_distal_leg1 - (t15 - t4);
-        let t57 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t57, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t57);
+        let minus_s_proximal_leg2 = 0.7071067811865475 * (t46 - t15) / c_distal_leg2;
+        let t53 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let t54 = 1.0 / c_distal_leg2;
+        let minus_gproximal_wx_leg2 = t53 * t54;
+        let c_proximal_leg2 = t54 * (t41 - minus_s_distal_leg2);
+        let t58 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t60 = 0.7071067811865475 * (t58 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t60 * t54;
+        let t64 = t17 + t5;
+        let t66 = t64 - (t9 + t15);
+        let s_distal_leg3 = 0.5 * t66;
+        let t70 = 1.0 - 0.25 * (t66 * t66);
+        ::overact::guard::reach(t70, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t70);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let s_proximal_leg3 = 0.7071067811865475 * (t9 + t26) / c_distal_leg3;
-        let t60 = s_distal_leg3 * s_proximal_leg3;
-        let t61 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wy_leg3 = t60 * t61;
-        let s_distal_leg4 = minus_s_distal_leg2 + t33;
-        let t67 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t67, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t67);
+        let t72 = 1.0 / c_distal_leg3;
+        let c_proximal_leg3 = t72 * (t64 - s_distal_leg3);
+        let t75 = s_distal_leg3 * c_proximal_leg3;
+        let t77 = 0.7071067811865475 * (t75 + c_distal_leg3);
+        let minus_gproximal_wx_leg3 = t77 * t72;
+        let s_proximal_leg3 = t72 * (0.7071067811865475 * (t12 + t33));
+        let t82 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t82 * t72;
+        let s_distal_leg4 = minus_s_distal_leg2 + t7 - t4;
+        let t91 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t91, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t91);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t69 = 1.0 / c_distal_leg4;
-        let t70 = t36 + t16;
-        let c_proximal_leg4 = t69 * (t70 - s_distal_leg4);
-        let t73 = s_distal_leg4 * c_proximal_leg4;
-        let t75 = 0.7071067811865475 * (t73 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t75 * t69;
-        let c_proximal_leg1 = t23 * (minus_s_distal_leg1 - t17);
-        let t81 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t83 = 0.7071067811865475 * (t81 - c_distal_leg1);
-        let minus_gproximal_wx_leg1 = t83 * t23;
-        let t86 = t7 - t8;
-        let minus_s_proximal_leg2 = t43 * (0.7071067811865475 * (t86 - t12));
-        let t90 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t90 * t43;
-        let t94 = t14 + t16;
-        let c_proximal_leg3 = (t94 - s_distal_leg3) / c_distal_leg3;
-        let t97 = s_distal_leg3 * c_proximal_leg3;
-        let t99 = 0.7071067811865475 * (t97 + c_distal_leg3);
-        let minus_gproximal_wx_leg3 = t99 * t61;
-        let minus_s_proximal_leg4 = t69 * (0.7071067811865475 * (t86 + t12));
-        let t106 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t106 * t69;
-        let t109 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let minus_s_proximal_leg4 = 0.7071067811865475 * (t46 + t15) / c_distal_leg4;
+        let t94 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t95 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t94 * t95;
+        let t97 = t42 + t5;
+        let c_proximal_leg4 = (t97 - s_distal_leg4) / c_distal_leg4;
+        let t100 = s_distal_leg4 * c_proximal_leg4;
+        let t102 = 0.7071067811865475 * (t100 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t102 * t95;
+        let t105 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t116 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t112 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t116, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t116, 0.9999999999999998, "actuators")?;
-        let t117 = t109 / t116;
-        let t119 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
-            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
-            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t109 * t117;
-        ::overact::guard::platform(t119, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t119, 0.9999999999999998, "actuators")?;
-        let t120 = 1.0 / t119;
+        ::overact::guard::platform(t112, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t112, 0.9999999999999998, "actuators")?;
+        let t113 = 1.0 / t112;
+        let t114 = t105 * t113;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t128 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t122 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t138 = t128 * t117
+        let t132 = t122 * t114
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t141 = 0.7071067811865475 * (t97 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t141 * t61;
-        let t145 = 0.7071067811865475 * (t81 + c_distal_leg1);
-        let gproximal_wz_leg1 = t145 * t23;
-        let t149 = 0.7071067811865475 * (t46 + c_distal_leg2);
-        let gproximal_wz_leg2 = t149 * t43;
-        let t155 = 0.7071067811865475 * (t73 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t155 * t69;
-        let t165 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t141 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+            + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
+            + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t105 * t114;
+        ::overact::guard::platform(t141, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t141, 0.9999999999999998, "actuators")?;
+        let t144 = 0.7071067811865475 * (t75 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t144 * t72;
+        let t148 = 0.7071067811865475 * (t27 + c_distal_leg1);
+        let gproximal_wz_leg1 = t148 * t24;
+        let t152 = 0.7071067811865475 * (t58 + c_distal_leg2);
+        let gproximal_wz_leg2 = t152 * t54;
+        let t158 = 0.7071067811865475 * (t100 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t158 * t95;
+        let t168 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t166 = t165 / t116;
-        let t168 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t169 = t168 * t113;
+        let t171 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t109 * t166;
-        let t169 = t168 * t120;
-        let t180 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t105 * t169;
+        let t172 = t171 / t141;
+        let t183 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t128 * t166
-            - t169 * t138;
-        let t191 = gproximal_wz_leg1 * gproximal_wz_leg1
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t122 * t169
+            - t172 * t132;
+        let t194 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t165 * t166
-            - t168 * t169;
-        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t191, 1.9999999999999996, "actuators")?;
-        let t192 = t180 / t191;
-        let t194 = t120 * t138 - t169 * t192;
-        let t198 = t128 / t116 + t117 * t194 + t166 * t192;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t198 + c_proximal_leg1 * t194
-            + minus_gdistal_wx_leg1 * t192;
-        let t208 = t30 * t194 - t83 * t198 - t145 * t192;
-        let minus_rate_proximal_leg1 = t23 * t208;
-        let t210 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
-        let t211 = rate_distal_leg1 * t210;
-        let t216 = t9 * t194 - t5 * t198 + t14 * t192;
-        let t221 = t26 * t194 - t12 * t198 + t16 * t192;
-        let t222 = t216 - t221;
-        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t222 + t210;
-        let t226 = t211 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t23 * t226;
-        let t228 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t168 * t169
+            - t171 * t172;
+        ::overact::guard::platform(t194, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t194, 1.9999999999999996, "actuators")?;
+        let t195 = t183 / t194;
+        let t197 = t132 / t141 - t172 * t195;
+        let t201 = t122 * t113 + t114 * t197 + t169 * t195;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t201 + c_proximal_leg1 * t197
+            + minus_gdistal_wx_leg1 * t195;
+        let t211 = t37 * t197 - t29 * t201 - t148 * t195;
+        let minus_rate_proximal_leg1 = t24 * t211;
+        let t213 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t214 = rate_distal_leg1 * t213;
+        let t219 = t12 * t197 - t9 * t201 + t17 * t195;
+        let t224 = t33 * t197 - t15 * t201 + t5 * t195;
+        let t225 = t219 - t224;
+        let minus_minus_rate_wrist_leg1 = 0.7071067811865475 * t225 + t213;
+        let t229 = t214 + rate_distal_leg1 * minus_minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t24 * t229;
+        let t231 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t198 + gdistal_wy_leg2 * t194
-            - gdistal_wy_leg2 * t192;
-        let t240 = t48 * t194 - t90 * t198 - t149 * t192;
-        let minus_rate_proximal_leg2 = t43 * t240;
-        let t242 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
-        let t243 = rate_distal_leg2 * t242;
-        let t248 = t34 * t194 - t86 * t198 + t36 * t192;
-        let t249 = t221 - t248;
-        let minus_rate_wrist_leg2 = 0.7071067811865475 * t249 - t242;
-        let t253 = t243 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t43 * t253;
-        let t255 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t201 + gdistal_wy_leg2 * t197
+            - gdistal_wy_leg2 * t195;
+        let t243 = t60 * t197 - t53 * t201 - t152 * t195;
+        let minus_rate_proximal_leg2 = t54 * t243;
+        let t245 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t246 = rate_distal_leg2 * t245;
+        let t251 = t40 * t197 - t46 * t201 + t42 * t195;
+        let t252 = t224 - t251;
+        let minus_rate_wrist_leg2 = 0.7071067811865475 * t252 - t245;
+        let t256 = t246 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t54 * t256;
+        let t258 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t192
-            - (gdistal_wx_leg3 * t198 + c_proximal_leg3 * t194);
-        let t268 = t60 * t194 - t99 * t198 + t141 * t192;
-        let minus_rate_proximal_leg3 = t61 * t268;
-        let t270 = s_distal_leg3 * minus_rate_proximal_leg3;
-        let t271 = rate_distal_leg3 * t270;
-        let t272 = t216 + t221;
-        let minus_rate_wrist_leg3 = t270 + 0.7071067811865475 * t272;
-        let t276 = t271 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t61 * t276;
-        let t278 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t195
+            - (gdistal_wx_leg3 * t201 + c_proximal_leg3 * t197);
+        let t271 = t82 * t197 - t77 * t201 + t144 * t195;
+        let minus_rate_proximal_leg3 = t72 * t271;
+        let t273 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t274 = rate_distal_leg3 * t273;
+        let t275 = t219 + t224;
+        let minus_rate_wrist_leg3 = t273 + 0.7071067811865475 * t275;
+        let t279 = t274 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t72 * t279;
+        let t281 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t198
-            + minus_gdistal_wy_leg4 * t194 + minus_gdistal_wy_leg4 * t192;
-        let t291 = t75 * t194 - t106 * t198 + t155 * t192;
-        let minus_rate_proximal_leg4 = t69 * t291;
-        let t293 = s_distal_leg4 * minus_rate_proximal_leg4;
-        let t294 = minus_rate_distal_leg4 * t293;
-        let t295 = t248 + t221;
-        let minus_rate_wrist_leg4 = t293 + 0.7071067811865475 * t295;
-        let t299 = t294 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t69 * t299;
-        let t301 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t303 = minus_gproximal_wx_leg1 * t228 + minus_gproximal_wx_leg2 * t255
-            + minus_gproximal_wx_leg3 * t278 + minus_gproximal_wx_leg4 * t301;
-        let t312 = t117 * t303
-            - (minus_gproximal_wy_leg1 * t228 + minus_gproximal_wy_leg2 * t255
-                + minus_gproximal_wy_leg3 * t278 + minus_gproximal_wy_leg4 * t301);
-        let t324 = gproximal_wz_leg1 * t228 + gproximal_wz_leg2 * t255
-            - minus_gproximal_wz_leg3 * t278 - minus_gproximal_wz_leg4 * t301
-            + t166 * t303 - t169 * t312;
-        let t325 = t324 / t191;
-        let t327 = t120 * t312 - t169 * t325;
-        let t333 = t303 / t116 + t117 * t327 + t166 * t325;
-        let t337 = t9 * t327 - t5 * t333 + t14 * t325;
-        let t339 = t216 * t221;
-        let t340 = t86 * t339;
-        let t342 = t216 * t248;
-        let t343 = t12 * t342;
-        let t346 = t34 * t339;
-        let t348 = t26 * t342;
-        let t351 = t36 * t339;
-        let t353 = t16 * t342;
-        let t359 = t34 * t327 - t86 * t333 + t36 * t325;
-        let t360 = t359 - t339;
-        let t362 = t248 * t221;
-        let t363 = t337 + t362;
-        let t366 = t272 * t222;
-        let t367 = t295 * t249;
-        let t368 = t366 + t367;
-        let t385 = t26 * t327 - t12 * t333 + t16 * t325;
-        let t386 = t385 + t342;
-        let t390 = t337 - t362;
-        let t404 = t5 * t362;
-        let t408 = t9 * t362;
-        let t412 = t14 * t362;
-        let t416 = t385 - t342;
-        let t419 = t359 + t339;
-        let t452 = t30 * t327 - t83 * t333 - t145 * t325 - t226;
-        let minus_rate_dot_proximal_leg1 = t23 * t452;
-        let t462 = t48 * t327 - t90 * t333 - t149 * t325 - t253;
-        let minus_rate_dot_proximal_leg2 = t43 * t462;
-        let t472 = t60 * t327 - t99 * t333 + t141 * t325 + t276;
-        let minus_rate_dot_proximal_leg3_2 = t61 * t472;
-        let t482 = t75 * t327 - t106 * t333 + t155 * t325 - t299;
-        let minus_rate_dot_proximal_leg4 = t69 * t482;
-        let t487 = 6.936717523440031 * s_proximal_leg1;
-        let t488 = minus_gproximal_wx_leg1 * t487;
-        let t489 = minus_gproximal_wy_leg1 * t487;
-        let t490 = gproximal_wz_leg1 * t487;
-        let t491 = 6.936717523440031 * minus_s_proximal_leg2;
-        let t492 = minus_gproximal_wx_leg2 * t491;
-        let t493 = minus_gproximal_wy_leg2 * t491;
-        let t494 = gproximal_wz_leg2 * t491;
-        let t495 = 6.936717523440031 * s_proximal_leg3;
-        let t496 = minus_gproximal_wx_leg3 * t495;
-        let t497 = minus_gproximal_wy_leg3 * t495;
-        let t498 = minus_gproximal_wz_leg3 * t495;
-        let t499 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t500 = minus_gproximal_wx_leg4 * t499;
-        let t501 = minus_gproximal_wy_leg4 * t499;
-        let t502 = minus_gproximal_wz_leg4 * t499;
-        let t503 = 6.936717523440031 * c_proximal_leg1;
-        let t507 = 6.936717523440031 * c_proximal_leg2;
-        let t511 = 6.936717523440031 * c_proximal_leg3;
-        let t515 = 6.936717523440031 * c_proximal_leg4;
-        let t544 = t211 + t452 + t211;
-        let t546 = t208 * t210;
-        let t547 = minus_gdistal_wx_leg1 * t546;
-        let t549 = minus_s_distal_leg1 * t544;
-        let t556 = t243 + t462 + t243;
-        let t557 = minus_s_distal_leg2 * t556;
-        let t559 = t240 * t242;
-        let t563 = gdistal_wy_leg2 * t559;
-        let t567 = t268 * t270;
-        let t568 = gdistal_wx_leg3 * t567;
-        let t570 = t472 - t271 - t271;
-        let t573 = s_distal_leg3 * t570;
-        let t580 = t294 + t482 + t294;
-        let t582 = t291 * t293;
-        let t586 = minus_gdistal_wy_leg4 * t582;
-        let t590 = t208 * rate_distal_leg1;
-        let t591 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t595 = c_distal_leg1 * (t590 - (t591 - t590)) - t549;
-        let t597 = t208 * t208;
-        let t598 = t210 * t210;
-        let t599 = t597 - t598;
-        let t600 = minus_gdistal_wx_leg1 * t599;
-        let t607 = t240 * rate_distal_leg2;
-        let t608 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t612 = c_distal_leg2 * (t607 - (t608 - t607)) - t557;
-        let t614 = t240 * t240;
-        let t615 = t242 * t242;
-        let t616 = t614 - t615;
-        let t619 = gdistal_wy_leg2 * t616;
-        let t624 = t268 * t268;
-        let t625 = t270 * t270;
-        let t626 = t624 - t625;
-        let t627 = gdistal_wx_leg3 * t626;
-        let t628 = t268 * rate_distal_leg3;
-        let t629 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t633 = c_distal_leg3 * (t628 + t629 + t628) + t573;
-        let t641 = t291 * t291;
-        let t642 = t293 * t293;
-        let t643 = t641 - t642;
-        let t646 = t291 * minus_rate_distal_leg4;
-        let t647 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t651 = s_distal_leg4 * t580 - c_distal_leg4 * (t646 + t646 - t647);
-        let t655 = minus_gdistal_wy_leg4 * t643;
-        let minus_minus_rate_dot_distal_leg1 = t208 * minus_minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t333 + c_proximal_leg1 * t327
-            + minus_gdistal_wx_leg1 * t325 + minus_minus_rate_dot_distal_leg1;
-        let t668 = rate_distal_leg1 * rate_distal_leg1;
-        let t671 = c_distal_leg1 * (t546 + rate_dot_distal_leg1)
-            + minus_s_distal_leg1 * (t668 - t597);
-        let t673 = minus_gdistal_wx_leg1 * t452;
-        let minus_rate_dot_distal_leg2 = t240 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t333 + gdistal_wy_leg2 * t327
-            - gdistal_wy_leg2 * t325 - minus_rate_dot_distal_leg2;
-        let t689 = rate_distal_leg2 * rate_distal_leg2;
-        let t692 = c_distal_leg2 * (t559 + rate_dot_distal_leg2)
-            + minus_s_distal_leg2 * (t689 - t614);
-        let t697 = gdistal_wy_leg2 * t462;
-        let t701 = gdistal_wx_leg3 * t472;
-        let t702 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t268 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t325
-            - (gdistal_wx_leg3 * t333 + c_proximal_leg3 * t327)
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t201
+            + minus_gdistal_wy_leg4 * t197 + minus_gdistal_wy_leg4 * t195;
+        let t294 = t102 * t197 - t94 * t201 + t158 * t195;
+        let minus_rate_proximal_leg4 = t95 * t294;
+        let t296 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t297 = minus_rate_distal_leg4 * t296;
+        let t298 = t251 + t224;
+        let minus_rate_wrist_leg4 = t296 + 0.7071067811865475 * t298;
+        let t302 = t297 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t95 * t302;
+        let t304 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t306 = minus_gproximal_wx_leg1 * t231 + minus_gproximal_wx_leg2 * t258
+            + minus_gproximal_wx_leg3 * t281 + minus_gproximal_wx_leg4 * t304;
+        let t315 = t114 * t306
+            - (minus_gproximal_wy_leg1 * t231 + minus_gproximal_wy_leg2 * t258
+                + minus_gproximal_wy_leg3 * t281 + minus_gproximal_wy_leg4 * t304);
+        let t327 = gproximal_wz_leg1 * t231 + gproximal_wz_leg2 * t258
+            - minus_gproximal_wz_leg3 * t281 - minus_gproximal_wz_leg4 * t304
+            + t169 * t306 - t172 * t315;
+        let t328 = t327 / t194;
+        let t330 = t315 / t141 - t172 * t328;
+        let t336 = t113 * t306 + t114 * t330 + t169 * t328;
+        let t340 = t12 * t330 - t9 * t336 + t17 * t328;
+        let t342 = t219 * t224;
+        let t343 = t46 * t342;
+        let t345 = t219 * t251;
+        let t346 = t15 * t345;
+        let t349 = t40 * t342;
+        let t351 = t33 * t345;
+        let t354 = t42 * t342;
+        let t356 = t5 * t345;
+        let t362 = t40 * t330 - t46 * t336 + t42 * t328;
+        let t363 = t362 - t342;
+        let t365 = t251 * t224;
+        let t366 = t340 + t365;
+        let t369 = t275 * t225;
+        let t370 = t298 * t252;
+        let t371 = t369 + t370;
+        let t388 = t33 * t330 - t15 * t336 + t5 * t328;
+        let t389 = t388 + t345;
+        let t393 = t340 - t365;
+        let t407 = t9 * t365;
+        let t411 = t12 * t365;
+        let t415 = t17 * t365;
+        let t419 = t388 - t345;
+        let t422 = t362 + t342;
+        let t455 = t37 * t330 - t29 * t336 - t148 * t328 - t229;
+        let minus_rate_dot_proximal_leg1 = t24 * t455;
+        let t465 = t60 * t330 - t53 * t336 - t152 * t328 - t256;
+        let minus_rate_dot_proximal_leg2 = t54 * t465;
+        let t475 = t82 * t330 - t77 * t336 + t144 * t328 + t279;
+        let minus_rate_dot_proximal_leg3_2 = t72 * t475;
+        let t485 = t102 * t330 - t94 * t336 + t158 * t328 - t302;
+        let minus_rate_dot_proximal_leg4 = t95 * t485;
+        let t490 = 6.936717523440031 * s_proximal_leg1;
+        let t491 = minus_gproximal_wx_leg1 * t490;
+        let t492 = minus_gproximal_wy_leg1 * t490;
+        let t493 = gproximal_wz_leg1 * t490;
+        let t494 = 6.936717523440031 * minus_s_proximal_leg2;
+        let t495 = minus_gproximal_wx_leg2 * t494;
+        let t496 = minus_gproximal_wy_leg2 * t494;
+        let t497 = gproximal_wz_leg2 * t494;
+        let t498 = 6.936717523440031 * s_proximal_leg3;
+        let t499 = minus_gproximal_wx_leg3 * t498;
+        let t500 = minus_gproximal_wy_leg3 * t498;
+        let t501 = minus_gproximal_wz_leg3 * t498;
+        let t502 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t506 = 6.936717523440031 * c_proximal_leg1;
+        let t510 = 6.936717523440031 * c_proximal_leg2;
+        let t514 = 6.936717523440031 * c_proximal_leg3;
+        let t518 = 6.936717523440031 * c_proximal_leg4;
+        let t547 = t214 + t455 + t214;
+        let t549 = t211 * t213;
+        let t550 = minus_gdistal_wx_leg1 * t549;
+        let t558 = t246 + t465 + t246;
+        let t559 = minus_s_distal_leg2 * t558;
+        let t561 = t243 * t245;
+        let t565 = gdistal_wy_leg2 * t561;
+        let t569 = t271 * t273;
+        let t570 = gdistal_wx_leg3 * t569;
+        let t572 = t475 - t274 - t274;
+        let t575 = s_distal_leg3 * t572;
+        let t582 = t297 + t485 + t297;
+        let t583 = s_distal_leg4 * t582;
+        let t585 = t294 * t296;
+        let t589 = minus_gdistal_wy_leg4 * t585;
+        let t593 = t211 * rate_distal_leg1;
+        let t594 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t599 = c_distal_leg1 * (t593 - (t594 - t593)) - minus_s_distal_leg1 * t547;
+        let t601 = t211 * t211;
+        let t602 = t213 * t213;
+        let t603 = t601 - t602;
+        let t604 = minus_gdistal_wx_leg1 * t603;
+        let t611 = t243 * rate_distal_leg2;
+        let t612 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t616 = c_distal_leg2 * (t611 - (t612 - t611)) - t559;
+        let t618 = t243 * t243;
+        let t619 = t245 * t245;
+        let t620 = t618 - t619;
+        let t623 = gdistal_wy_leg2 * t620;
+        let t628 = t271 * t271;
+        let t629 = t273 * t273;
+        let t630 = t628 - t629;
+        let t631 = gdistal_wx_leg3 * t630;
+        let t632 = t271 * rate_distal_leg3;
+        let t633 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t637 = c_distal_leg3 * (t632 + t633 + t632) + t575;
+        let t645 = t294 * t294;
+        let t646 = t296 * t296;
+        let t647 = t645 - t646;
+        let t649 = t294 * minus_rate_distal_leg4;
+        let t650 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t654 = t583 - c_distal_leg4 * (t649 + t649 - t650);
+        let t658 = minus_gdistal_wy_leg4 * t647;
+        let minus_minus_rate_dot_distal_leg1 = t211 * minus_minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t336 + c_proximal_leg1 * t330
+            + minus_gdistal_wx_leg1 * t328 + minus_minus_rate_dot_distal_leg1;
+        let t671 = rate_distal_leg1 * rate_distal_leg1;
+        let t674 = c_distal_leg1 * (t549 + rate_dot_distal_leg1)
+            + minus_s_distal_leg1 * (t671 - t601);
+        let t676 = minus_gdistal_wx_leg1 * t455;
+        let minus_rate_dot_distal_leg2 = t243 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t336 + gdistal_wy_leg2 * t330
+            - gdistal_wy_leg2 * t328 - minus_rate_dot_distal_leg2;
+        let t692 = rate_distal_leg2 * rate_distal_leg2;
+        let t695 = c_distal_leg2 * (t561 + rate_dot_distal_leg2)
+            + minus_s_distal_leg2 * (t692 - t618);
+        let t700 = gdistal_wy_leg2 * t465;
+        let t704 = gdistal_wx_leg3 * t475;
+        let t705 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t271 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t328
+            - (gdistal_wx_leg3 * t336 + c_proximal_leg3 * t330)
             - minus_rate_dot_distal_leg3;
-        let t714 = s_distal_leg3 * (t702 - t624)
-            - c_distal_leg3 * (rate_dot_distal_leg3 - t567);
-        let minus_rate_dot_distal_leg4 = t291 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t333
-            + minus_gdistal_wy_leg4 * t327 + minus_gdistal_wy_leg4 * t325
+        let t717 = s_distal_leg3 * (t705 - t628)
+            - c_distal_leg3 * (rate_dot_distal_leg3 - t569);
+        let minus_rate_dot_distal_leg4 = t294 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t336
+            + minus_gdistal_wy_leg4 * t330 + minus_gdistal_wy_leg4 * t328
             + minus_rate_dot_distal_leg4;
-        let t732 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t735 = c_distal_leg4 * (t582 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t732 - t641);
-        let t739 = minus_gdistal_wy_leg4 * t482;
-        let t747 = minus_s_distal_leg1 * (t546 - rate_dot_distal_leg1)
-            - c_distal_leg1 * (t598 - t668);
-        let t749 = minus_gdistal_wx_leg1 * t591;
-        let t760 = minus_s_distal_leg2 * (t559 - rate_dot_distal_leg2)
-            - c_distal_leg2 * (t615 - t689);
-        let t764 = gdistal_wy_leg2 * t608;
-        let t773 = s_distal_leg3 * (t567 + rate_dot_distal_leg3)
-            - c_distal_leg3 * (t625 - t702);
-        let t775 = gdistal_wx_leg3 * t629;
-        let t786 = c_distal_leg4 * (t642 - t732)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t582);
-        let t791 = minus_gdistal_wy_leg4 * t647;
-        let t796 = t17 * (-6.936717523440031);
-        let t797 = minus_gdistal_wx_leg1 * t796;
-        let t809 = 0.7071067811865475 * t37 * t491;
-        let t814 = t94 * 6.936717523440031;
-        let t815 = gdistal_wx_leg3 * t814;
-        let t826 = t499 * (0.7071067811865475 * t70);
+        let t735 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t738 = c_distal_leg4 * (t585 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t735 - t645);
+        let t742 = minus_gdistal_wy_leg4 * t485;
+        let t750 = minus_s_distal_leg1 * (t549 - rate_dot_distal_leg1)
+            - c_distal_leg1 * (t602 - t671);
+        let t752 = minus_gdistal_wx_leg1 * t594;
+        let t763 = minus_s_distal_leg2 * (t561 - rate_dot_distal_leg2)
+            - c_distal_leg2 * (t619 - t692);
+        let t767 = gdistal_wy_leg2 * t612;
+        let t776 = s_distal_leg3 * (t569 + rate_dot_distal_leg3)
+            - c_distal_leg3 * (t629 - t705);
+        let t778 = gdistal_wx_leg3 * t633;
+        let t789 = c_distal_leg4 * (t646 - t735)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t585);
+        let t794 = minus_gdistal_wy_leg4 * t650;
+        let t799 = t18 * (-6.936717523440031);
+        let t800 = minus_gdistal_wx_leg1 * t799;
+        let t812 = 0.7071067811865475 * t43 * t494;
+        let t817 = t64 * 6.936717523440031;
+        let t818 = gdistal_wx_leg3 * t817;
+        let t826 = 6.936717523440031 * t94;
+        let t830 = t502 * (0.7071067811865475 * t97);
         Ok([
             [
-                t5 * t337 + t340 - t343, t5 * t360 + t86 * t363 + t12 * t368,
-                t5 * t386 - t86 * t366 + t12 * t390, t86 * t359 - t404 + t343,
-                t86 * t416 - t5 * t367 + t12 * t419, t404 - t340 + t12 * t385, 9.81 * t9,
-                9.81 * t34, 9.81 * t26, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
+                t9 * t340 + t343 - t346, t9 * t363 + t46 * t366 + t15 * t371,
+                t9 * t389 - t46 * t369 + t15 * t393, t46 * t362 - t407 + t346,
+                t46 * t419 - t9 * t370 + t15 * t422, t407 - t343 + t15 * t388, 9.81 * t12,
+                9.81 * t40, 9.81 * t33, minus_gproximal_wx_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4, t488, -t492, t496, -t500,
-                minus_gproximal_wx_leg1 * t503, minus_gproximal_wx_leg2 * t507,
-                minus_gproximal_wx_leg3 * t511, minus_gproximal_wx_leg4 * t515,
-                minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wx_leg4 * minus_rate_dot_proximal_leg4, t491, -t495, t499,
+                -(minus_gproximal_wx_leg4 * t502), minus_gproximal_wx_leg1 * t506,
+                minus_gproximal_wx_leg2 * t510, minus_gproximal_wx_leg3 * t514,
+                minus_gproximal_wx_leg4 * t518, minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wx_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wx_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wx_leg4 * minus_rate_proximal_leg4,
@@ -6433,39 +6428,39 @@ impl Spherical4Rrr {
                 -minus_gproximal_wx_leg2,
                 -minus_gproximal_wx_leg3,
                 -minus_gproximal_wx_leg4,
-                t83 * t544 + t547,
-                minus_s_proximal_leg2 * t557 + c_proximal_leg2 * t559,
-                t568 + t99 * t570,
-                t106 * t580 + c_proximal_leg4 * t582,
-                -(minus_gproximal_wx_leg1 * t595 + t600),
-                -(minus_gproximal_wx_leg2 * t612 + c_proximal_leg2 * t616),
-                t627 - minus_gproximal_wx_leg3 * t633,
-                c_proximal_leg4 * t643 - minus_gproximal_wx_leg4 * t651,
-                minus_gproximal_wx_leg1 * t671 - t673,
-                minus_gproximal_wx_leg2 * t692 - c_proximal_leg2 * t462,
-                t701 - minus_gproximal_wx_leg3 * t714,
-                c_proximal_leg4 * t482 - minus_gproximal_wx_leg4 * t735,
-                -(minus_gproximal_wx_leg1 * t747 + t749),
-                -(minus_gproximal_wx_leg2 * t760 + c_proximal_leg2 * t608),
-                -(minus_gproximal_wx_leg3 * t773 + t775),
-                minus_gproximal_wx_leg4 * t786 - c_proximal_leg4 * t647,
-                -(minus_s_distal_leg1 * t488 + t797),
-                minus_s_distal_leg2 * t492 + t37 * t507,
-                s_distal_leg3 * t496 + t815,
-                t70 * t515 - s_distal_leg4 * t500,
+                t29 * t547 + t550,
+                minus_s_proximal_leg2 * t559 + c_proximal_leg2 * t561,
+                t570 + t77 * t572,
+                minus_s_proximal_leg4 * t583 + c_proximal_leg4 * t585,
+                -(minus_gproximal_wx_leg1 * t599 + t604),
+                -(minus_gproximal_wx_leg2 * t616 + c_proximal_leg2 * t620),
+                t631 - minus_gproximal_wx_leg3 * t637,
+                c_proximal_leg4 * t647 - minus_gproximal_wx_leg4 * t654,
+                minus_gproximal_wx_leg1 * t674 - t676,
+                minus_gproximal_wx_leg2 * t695 - c_proximal_leg2 * t465,
+                t704 - minus_gproximal_wx_leg3 * t717,
+                c_proximal_leg4 * t485 - minus_gproximal_wx_leg4 * t738,
+                -(minus_gproximal_wx_leg1 * t750 + t752),
+                -(minus_gproximal_wx_leg2 * t763 + c_proximal_leg2 * t612),
+                -(minus_gproximal_wx_leg3 * t776 + t778),
+                minus_gproximal_wx_leg4 * t789 - c_proximal_leg4 * t650,
+                -(minus_s_distal_leg1 * t491 + t800),
+                minus_s_distal_leg2 * t495 + t43 * t510,
+                s_distal_leg3 * t499 + t818,
+                t97 * t518 - minus_gproximal_wx_leg4 * t826,
             ],
             [
-                t9 * t337 + t346 - t348, t9 * t360 + t34 * t363 + t26 * t368,
-                t9 * t386 - t34 * t366 + t26 * t390, t34 * t359 - t408 + t348,
-                t34 * t416 - t9 * t367 + t26 * t419, t408 - t346 + t26 * t385, -(9.81 * t5),
-                -(9.81 * t86), -(9.81 * t12),
+                t12 * t340 + t349 - t351, t12 * t363 + t40 * t366 + t33 * t371,
+                t12 * t389 - t40 * t369 + t33 * t393, t40 * t362 - t411 + t351,
+                t40 * t419 - t12 * t370 + t33 * t422, t411 - t349 + t33 * t388, -(9.81 * t9),
+                -(9.81 * t46), -(9.81 * t15),
                 minus_gproximal_wy_leg1 * minus_rate_dot_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_dot_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, t489, -t493, t497, -t501,
-                minus_gproximal_wy_leg1 * t503, minus_gproximal_wy_leg2 * t507,
-                minus_gproximal_wy_leg3 * t511, minus_gproximal_wy_leg4 * t515,
-                minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
+                minus_gproximal_wy_leg4 * minus_rate_dot_proximal_leg4, t492, -t496, t500,
+                -(minus_gproximal_wy_leg4 * t502), minus_gproximal_wy_leg1 * t506,
+                minus_gproximal_wy_leg2 * t510, minus_gproximal_wy_leg3 * t514,
+                minus_gproximal_wy_leg4 * t518, minus_gproximal_wy_leg1 * minus_rate_proximal_leg1,
                 minus_gproximal_wy_leg2 * minus_rate_proximal_leg2,
                 minus_gproximal_wy_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wy_leg4 * minus_rate_proximal_leg4,
@@ -6489,38 +6484,38 @@ impl Spherical4Rrr {
                 -minus_gproximal_wy_leg2,
                 -minus_gproximal_wy_leg3,
                 -minus_gproximal_wy_leg4,
-                s_proximal_leg1 * t549 - c_proximal_leg1 * t546,
-                t48 * t556 - t563,
-                -(c_proximal_leg3 * t567 - s_proximal_leg3 * t573),
-                t75 * t580 - t586,
-                c_proximal_leg1 * t599 - minus_gproximal_wy_leg1 * t595,
-                t619 - minus_gproximal_wy_leg2 * t612,
-                -(minus_gproximal_wy_leg3 * t633 + c_proximal_leg3 * t626),
-                -(minus_gproximal_wy_leg4 * t651 + t655),
-                minus_gproximal_wy_leg1 * t671 + c_proximal_leg1 * t452,
-                minus_gproximal_wy_leg2 * t692 + t697,
-                -(minus_gproximal_wy_leg3 * t714 + c_proximal_leg3 * t472),
-                -(minus_gproximal_wy_leg4 * t735 + t739),
-                c_proximal_leg1 * t591 - minus_gproximal_wy_leg1 * t747,
-                t764 - minus_gproximal_wy_leg2 * t760,
-                c_proximal_leg3 * t629 - minus_gproximal_wy_leg3 * t773,
-                minus_gproximal_wy_leg4 * t786 + t791,
-                c_proximal_leg1 * t796 - minus_s_distal_leg1 * t489,
-                minus_s_distal_leg2 * t493 - t809,
-                s_distal_leg3 * t497 - c_proximal_leg3 * t814,
-                -(t826 + s_distal_leg4 * t501),
+                t37 * t547 - c_proximal_leg1 * t549,
+                t60 * t558 - t565,
+                -(c_proximal_leg3 * t569 - s_proximal_leg3 * t575),
+                t102 * t582 - t589,
+                c_proximal_leg1 * t603 - minus_gproximal_wy_leg1 * t599,
+                t623 - minus_gproximal_wy_leg2 * t616,
+                -(minus_gproximal_wy_leg3 * t637 + c_proximal_leg3 * t630),
+                -(minus_gproximal_wy_leg4 * t654 + t658),
+                minus_gproximal_wy_leg1 * t674 + c_proximal_leg1 * t455,
+                minus_gproximal_wy_leg2 * t695 + t700,
+                -(minus_gproximal_wy_leg3 * t717 + c_proximal_leg3 * t475),
+                -(minus_gproximal_wy_leg4 * t738 + t742),
+                c_proximal_leg1 * t594 - minus_gproximal_wy_leg1 * t750,
+                t767 - minus_gproximal_wy_leg2 * t763,
+                c_proximal_leg3 * t633 - minus_gproximal_wy_leg3 * t776,
+                minus_gproximal_wy_leg4 * t789 + t794,
+                c_proximal_leg1 * t799 - minus_s_distal_leg1 * t492,
+                minus_s_distal_leg2 * t496 - t812,
+                s_distal_leg3 * t500 - c_proximal_leg3 * t817,
+                -(t830 + minus_gproximal_wy_leg4 * t826),
             ],
             [
-                t14 * t337 + t351 - t353, t14 * t360 + t36 * t363 + t16 * t368,
-                t14 * t386 - t36 * t366 + t16 * t390, t36 * t359 - t412 + t353,
-                t36 * t416 - t14 * t367 + t16 * t419, t412 - t351 + t16 * t385, 0.0, 0.0, 0.0,
+                t17 * t340 + t354 - t356, t17 * t363 + t42 * t366 + t5 * t371,
+                t17 * t389 - t42 * t369 + t5 * t393, t42 * t362 - t415 + t356,
+                t42 * t419 - t17 * t370 + t5 * t422, t415 - t354 + t5 * t388, 0.0, 0.0, 0.0,
                 -(gproximal_wz_leg1 * minus_rate_dot_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_dot_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_dot_proximal_leg3_2,
-                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -t490, t494, t498, -t502,
-                -(gproximal_wz_leg1 * t503), -(gproximal_wz_leg2 * t507),
-                minus_gproximal_wz_leg3 * t511, minus_gproximal_wz_leg4 * t515,
-                -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
+                minus_gproximal_wz_leg4 * minus_rate_dot_proximal_leg4, -t493, t497, t501,
+                -(minus_gproximal_wz_leg4 * t502), -(gproximal_wz_leg1 * t506),
+                -(gproximal_wz_leg2 * t510), minus_gproximal_wz_leg3 * t514,
+                minus_gproximal_wz_leg4 * t518, -(gproximal_wz_leg1 * minus_rate_proximal_leg1),
                 -(gproximal_wz_leg2 * minus_rate_proximal_leg2),
                 minus_gproximal_wz_leg3 * minus_rate_proximal_leg3,
                 minus_gproximal_wz_leg4 * minus_rate_proximal_leg4,
@@ -6538,26 +6533,26 @@ impl Spherical4Rrr {
                 gproximal_wz_leg2,
                 -minus_gproximal_wz_leg3,
                 -minus_gproximal_wz_leg4,
-                -(t145 * t544 + t547),
-                t563 - t149 * t556,
-                t568 + t141 * t570,
-                t155 * t580 - t586,
-                gproximal_wz_leg1 * t595 + t600,
-                gproximal_wz_leg2 * t612 - t619,
-                t627 - minus_gproximal_wz_leg3 * t633,
-                -(minus_gproximal_wz_leg4 * t651 + t655),
-                t673 - gproximal_wz_leg1 * t671,
-                -(gproximal_wz_leg2 * t692 + t697),
-                t701 - minus_gproximal_wz_leg3 * t714,
-                -(minus_gproximal_wz_leg4 * t735 + t739),
-                gproximal_wz_leg1 * t747 + t749,
-                gproximal_wz_leg2 * t760 - t764,
-                -(minus_gproximal_wz_leg3 * t773 + t775),
-                minus_gproximal_wz_leg4 * t786 + t791,
-                minus_s_distal_leg1 * t490 + t797,
-                t809 - minus_s_distal_leg2 * t494,
-                s_distal_leg3 * t498 + t815,
-                -(t826 + s_distal_leg4 * t502),
+                -(t148 * t547 + t550),
+                t565 - t152 * t558,
+                t570 + t144 * t572,
+                t158 * t582 - t589,
+                gproximal_wz_leg1 * t599 + t604,
+                gproximal_wz_leg2 * t616 - t623,
+                t631 - minus_gproximal_wz_leg3 * t637,
+                -(minus_gproximal_wz_leg4 * t654 + t658),
+                t676 - gproximal_wz_leg1 * t674,
+                -(gproximal_wz_leg2 * t695 + t700),
+                t704 - minus_gproximal_wz_leg3 * t717,
+                -(minus_gproximal_wz_leg4 * t738 + t742),
+                gproximal_wz_leg1 * t750 + t752,
+                gproximal_wz_leg2 * t763 - t767,
+                -(minus_gproximal_wz_leg3 * t776 + t778),
+                minus_gproximal_wz_leg4 * t789 + t794,
+                minus_s_distal_leg1 * t493 + t800,
+                t812 - minus_s_distal_leg2 * t497,
+                s_distal_leg3 * t501 + t818,
+                -(t830 + minus_gproximal_wz_leg4 * t826),
             ],
         ])
     }
@@ -6571,7 +6566,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 872 operations (318 additions, 545 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 762 intermediates.
+    /// 882 operations (320 additions, 553 multiplications, 9 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 772 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -6594,405 +6589,409 @@ impl Spherical4Rrr {
         let t12 = pose[2] * t6;
         let t13 = t2 - t12;
         let t14 = t11 - t13;
-        let minus_s_distal_leg2 = 0.5 * (t10 + t14);
-        let t17 = t10 - t14;
-        let t21 = 1.0 - minus_s_distal_leg2 * minus_s_distal_leg2;
-        ::overact::guard::reach(t21, "leg2")?;
-        let c_distal_leg2 = ::overact::math::sqrt(t21);
+        let t15 = t10 + t14;
+        let minus_s_distal_leg2 = 0.5 * t15;
+        let t19 = 1.0 - 0.25 * (t15 * t15);
+        ::overact::guard::reach(t19, "leg2")?;
+        let c_distal_leg2 = ::overact::math::sqrt(t19);
         ::overact::guard::leg(c_distal_leg2, 1.0, "leg2")?;
-        let c_proximal_leg2 = 0.25 * (t17 * t17) / (0.5 * (c_distal_leg2 * t17));
-        let t26 = minus_s_distal_leg2 * c_proximal_leg2;
-        let t28 = 0.7071067811865475 * (t26 + c_distal_leg2);
-        let t29 = 1.0 / c_distal_leg2;
-        let gproximal_wz_leg2 = t28 * t29;
-        let t31 = pose[3] * t0;
-        let t32 = pose[0] * t6;
-        let t33 = t31 - t32;
-        let t34 = t33 + t13;
-        let t36 = 1.0 - t12 - t4;
-        let t37 = t31 + t32;
-        let t38 = t36 + t37;
-        let s_distal_leg3 = 0.5 * (t34 - t38);
-        let t42 = 1.0 - s_distal_leg3 * s_distal_leg3;
-        ::overact::guard::reach(t42, "leg3")?;
-        let c_distal_leg3 = ::overact::math::sqrt(t42);
+        let t21 = t10 - t14;
+        let c_proximal_leg2 = 0.25 * (t21 * t21) / (0.5 * (c_distal_leg2 * t21));
+        let t27 = minus_s_distal_leg2 * c_proximal_leg2;
+        let t29 = 0.7071067811865475 * (t27 + c_distal_leg2);
+        let t30 = 1.0 / c_distal_leg2;
+        let gproximal_wz_leg2 = t29 * t30;
+        let t32 = pose[3] * t0;
+        let t33 = pose[0] * t6;
+        let t34 = t32 - t33;
+        let t35 = t34 + t13;
+        let t37 = 1.0 - t12 - t4;
+        let t38 = t32 + t33;
+        let t39 = t37 + t38;
+        let t40 = t35 - t39;
+        let s_distal_leg3 = 0.5 * t40;
+        let t44 = 1.0 - 0.25 * (t40 * t40);
+        ::overact::guard::reach(t44, "leg3")?;
+        let c_distal_leg3 = ::overact::math::sqrt(t44);
         ::overact::guard::leg(c_distal_leg3, 1.0, "leg3")?;
-        let t44 = t38 + t34;
-        let t47 = 1.0 / (0.5 * (c_distal_leg3 * t44));
-        let c_proximal_leg3 = t47 * (0.25 * (t44 * t44));
-        let t51 = s_distal_leg3 * c_proximal_leg3;
-        let t53 = 0.7071067811865475 * (t51 + c_distal_leg3);
-        let t54 = 1.0 / c_distal_leg3;
-        let minus_gproximal_wx_leg3 = t53 * t54;
-        let t57 = pose[2] * t0;
-        let t58 = pose[0] * t3;
-        let t59 = t57 - t58;
-        let t61 = 0.7071067811865475 * (t59 - t37);
-        let minus_s_proximal_leg2 = t29 * t61;
-        let t63 = minus_s_distal_leg2 * minus_s_proximal_leg2;
-        let minus_gproximal_wx_leg2 = t63 * t29;
-        let t66 = 0.7071067811865475 * (t51 - c_distal_leg3);
-        let minus_gproximal_wz_leg3 = t66 * t54;
-        let t70 = t57 + t58;
-        let s_proximal_leg3 = t47 * (0.35355339059327373 * ((t70 + t9) * t44));
-        let t75 = s_distal_leg3 * s_proximal_leg3;
-        let minus_gproximal_wy_leg3 = t75 * t54;
-        let t77 = t36 - t37;
-        let t78 = t33 - t13;
-        let minus_s_distal_leg1 = 0.5 * (t77 + t78);
-        let t81 = t77 - t78;
-        let t85 = 1.0 - minus_s_distal_leg1 * minus_s_distal_leg1;
-        ::overact::guard::reach(t85, "leg1")?;
-        let c_distal_leg1 = ::overact::math::sqrt(t85);
+        let t50 = 1.0 / (0.5 * (t39 * c_distal_leg3 + t35 * c_distal_leg3));
+        let t51 = t39 + t35;
+        let c_proximal_leg3 = t50 * (0.25 * (t51 * t51));
+        let t55 = s_distal_leg3 * c_proximal_leg3;
+        let t57 = 0.7071067811865475 * (t55 + c_distal_leg3);
+        let t58 = 1.0 / c_distal_leg3;
+        let minus_gproximal_wx_leg3 = t57 * t58;
+        let t61 = pose[2] * t0;
+        let t62 = pose[0] * t3;
+        let t63 = t61 - t62;
+        let t65 = 0.7071067811865475 * (t63 - t38);
+        let minus_s_proximal_leg2 = t30 * t65;
+        let t67 = minus_s_distal_leg2 * minus_s_proximal_leg2;
+        let minus_gproximal_wx_leg2 = t67 * t30;
+        let t70 = 0.7071067811865475 * (t55 - c_distal_leg3);
+        let minus_gproximal_wz_leg3 = t70 * t58;
+        let t74 = t61 + t62;
+        let s_proximal_leg3 = t50 * (0.35355339059327373 * ((t74 + t9) * t51));
+        let t79 = s_distal_leg3 * s_proximal_leg3;
+        let minus_gproximal_wy_leg3 = t79 * t58;
+        let t81 = t37 - t38;
+        let t82 = t34 - t13;
+        let t83 = t81 + t82;
+        let minus_s_distal_leg1 = 0.5 * t83;
+        let t87 = 1.0 - 0.25 * (t83 * t83);
+        ::overact::guard::reach(t87, "leg1")?;
+        let c_distal_leg1 = ::overact::math::sqrt(t87);
         ::overact::guard::leg(c_distal_leg1, 1.0, "leg1")?;
-        let c_proximal_leg1 = 0.25 * (t81 * t81) / (0.5 * (c_distal_leg1 * t81));
-        let t90 = minus_s_distal_leg1 * c_proximal_leg1;
-        let t92 = 0.7071067811865475 * (t90 - c_distal_leg1);
-        let t93 = 1.0 / c_distal_leg1;
-        let minus_gproximal_wx_leg1 = t92 * t93;
-        let t97 = 0.7071067811865475 * (t90 + c_distal_leg1);
-        let gproximal_wz_leg1 = t97 * t93;
-        let t100 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
+        let t93 = 1.0 / (0.5 * (t81 * c_distal_leg1 - t82 * c_distal_leg1));
+        let t94 = t81 - t82;
+        let c_proximal_leg1 = t93 * (0.25 * (t94 * t94));
+        let t98 = minus_s_distal_leg1 * c_proximal_leg1;
+        let t100 = 0.7071067811865475 * (t98 - c_distal_leg1);
+        let t101 = 1.0 / c_distal_leg1;
+        let minus_gproximal_wx_leg1 = t100 * t101;
+        let t105 = 0.7071067811865475 * (t98 + c_distal_leg1);
+        let gproximal_wz_leg1 = t105 * t101;
+        let t108 = minus_gproximal_wx_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wx_leg2;
-        let t103 = 0.7071067811865475 * (t70 - t9);
-        let s_proximal_leg1 = t93 * t103;
-        let t105 = minus_s_distal_leg1 * s_proximal_leg1;
-        let minus_gproximal_wy_leg1 = t105 * t93;
-        let t109 = 0.7071067811865475 * (t26 - c_distal_leg2);
-        let minus_gproximal_wy_leg2 = t109 * t29;
-        let t112 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
+        let t110 = t74 - t9;
+        let s_proximal_leg1 = t93 * (0.35355339059327373 * (t110 * t94));
+        let t114 = minus_s_distal_leg1 * s_proximal_leg1;
+        let minus_gproximal_wy_leg1 = t114 * t101;
+        let t118 = 0.7071067811865475 * (t27 - c_distal_leg2);
+        let minus_gproximal_wy_leg2 = t118 * t30;
+        let t121 = minus_gproximal_wy_leg1 * gproximal_wz_leg2
             - gproximal_wz_leg1 * minus_gproximal_wy_leg2;
-        let t117 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
+        let t126 = minus_gproximal_wy_leg1 * minus_gproximal_wx_leg2
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg2;
-        let t119 = minus_gproximal_wy_leg3 * t100 - minus_gproximal_wx_leg3 * t112
-            - minus_gproximal_wz_leg3 * t117;
-        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
-        ::overact::guard::platform(t119, 0.7071067811865474, "kept actuators")?;
-        let t120 = 1.0 / t119;
-        let t121 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t120;
-        let t126 = t36 * acceleration[0] + t70 * acceleration[1] + t33 * acceleration[2];
-        let t132 = t36 * twist[0] + t70 * twist[1] + t33 * twist[2];
-        let t137 = t37 * twist[0] + t9 * twist[1] + t13 * twist[2];
-        let t138 = t132 * t137;
-        let t139 = t5 * t138;
-        let t145 = t59 * twist[0] + t5 * twist[1] + t11 * twist[2];
-        let t146 = t132 * t145;
-        let t147 = t9 * t146;
-        let t148 = t70 * t126 + t139 - t147;
-        let t153 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t120;
-        let t155 = t59 * t138;
-        let t157 = t37 * t146;
-        let t158 = t36 * t126 + t155 - t157;
-        let t164 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t120;
-        let t166 = t11 * t138;
-        let t168 = t13 * t146;
-        let t169 = t33 * t126 + t166 - t168;
-        let t175 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t120;
-        let t180 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
-            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t120;
-        let t186 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
-            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t120;
-        let t189 = t112 * t120;
-        let t191 = t100 * t120;
-        let t194 = t117 * t120;
-        let t201 = t59 * acceleration[0] + t5 * acceleration[1] + t11 * acceleration[2];
-        let t202 = t201 - t138;
-        let t204 = t145 * t137;
-        let t205 = t126 + t204;
-        let t208 = t132 * t132;
-        let t209 = t145 * t145;
-        let t210 = t208 - t209;
-        let t212 = t70 * t202 + t5 * t205 + t9 * t210;
-        let t218 = t36 * t202 + t59 * t205 + t37 * t210;
-        let t225 = t33 * t202 + t11 * t205 + t13 * t210;
-        let t242 = t37 * acceleration[0] + t9 * acceleration[1] + t13 * acceleration[2];
-        let t243 = t242 + t146;
-        let t245 = t137 * t137;
-        let t246 = t245 - t208;
-        let t249 = t126 - t204;
-        let t251 = t70 * t243 + t5 * t246 + t9 * t249;
-        let t257 = t36 * t243 + t59 * t246 + t37 * t249;
-        let t264 = t33 * t243 + t11 * t246 + t13 * t249;
-        let t278 = t70 * t204;
-        let t280 = t5 * t201 - t278 + t147;
-        let t283 = t36 * t204;
-        let t285 = t59 * t201 - t283 + t157;
-        let t289 = t33 * t204;
-        let t291 = t11 * t201 - t289 + t168;
-        let t304 = t209 - t245;
-        let t306 = t242 - t146;
-        let t309 = t201 + t138;
-        let t311 = t70 * t304 + t5 * t306 + t9 * t309;
-        let t317 = t36 * t304 + t59 * t306 + t37 * t309;
-        let t324 = t33 * t304 + t11 * t306 + t13 * t309;
-        let t339 = t278 - t139 + t9 * t242;
-        let t343 = t283 - t155 + t37 * t242;
-        let t348 = t289 - t166 + t13 * t242;
-        let t361 = 9.81 * t70;
-        let t363 = 9.81 * t36;
-        let t372 = 9.81 * t5;
-        let t374 = 9.81 * t59;
-        let t383 = 9.81 * t9;
-        let t385 = 9.81 * t37;
+        let t128 = minus_gproximal_wy_leg3 * t108 - minus_gproximal_wx_leg3 * t121
+            - minus_gproximal_wz_leg3 * t126;
+        ::overact::guard::platform(t128, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t128, 0.7071067811865474, "kept actuators")?;
+        ::overact::guard::platform(t128, 0.7071067811865474, "kept actuators")?;
+        let t129 = 1.0 / t128;
+        let t130 = (gproximal_wz_leg2 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t129;
+        let t135 = t37 * acceleration[0] + t74 * acceleration[1] + t34 * acceleration[2];
+        let t141 = t37 * twist[0] + t74 * twist[1] + t34 * twist[2];
+        let t146 = t38 * twist[0] + t9 * twist[1] + t13 * twist[2];
+        let t147 = t141 * t146;
+        let t148 = t5 * t147;
+        let t154 = t63 * twist[0] + t5 * twist[1] + t11 * twist[2];
+        let t155 = t141 * t154;
+        let t156 = t9 * t155;
+        let t157 = t74 * t135 + t148 - t156;
+        let t162 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t129;
+        let t164 = t63 * t147;
+        let t166 = t38 * t155;
+        let t167 = t37 * t135 + t164 - t166;
+        let t173 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t129;
+        let t175 = t11 * t147;
+        let t177 = t13 * t155;
+        let t178 = t34 * t135 + t175 - t177;
+        let t184 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+            + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t129;
+        let t189 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+            + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t129;
+        let t195 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+            - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t129;
+        let t198 = t121 * t129;
+        let t200 = t108 * t129;
+        let t203 = t126 * t129;
+        let t210 = t63 * acceleration[0] + t5 * acceleration[1] + t11 * acceleration[2];
+        let t211 = t210 - t147;
+        let t213 = t154 * t146;
+        let t214 = t135 + t213;
+        let t217 = t141 * t141;
+        let t218 = t154 * t154;
+        let t219 = t217 - t218;
+        let t221 = t74 * t211 + t5 * t214 + t9 * t219;
+        let t227 = t37 * t211 + t63 * t214 + t38 * t219;
+        let t234 = t34 * t211 + t11 * t214 + t13 * t219;
+        let t251 = t38 * acceleration[0] + t9 * acceleration[1] + t13 * acceleration[2];
+        let t252 = t251 + t155;
+        let t254 = t146 * t146;
+        let t255 = t254 - t217;
+        let t258 = t135 - t213;
+        let t260 = t74 * t252 + t5 * t255 + t9 * t258;
+        let t266 = t37 * t252 + t63 * t255 + t38 * t258;
+        let t273 = t34 * t252 + t11 * t255 + t13 * t258;
+        let t287 = t74 * t213;
+        let t289 = t5 * t210 - t287 + t156;
+        let t292 = t37 * t213;
+        let t294 = t63 * t210 - t292 + t166;
+        let t298 = t34 * t213;
+        let t300 = t11 * t210 - t298 + t177;
+        let t313 = t218 - t254;
+        let t315 = t251 - t155;
+        let t318 = t210 + t147;
+        let t320 = t74 * t313 + t5 * t315 + t9 * t318;
+        let t326 = t37 * t313 + t63 * t315 + t38 * t318;
+        let t333 = t34 * t313 + t11 * t315 + t13 * t318;
+        let t348 = t287 - t148 + t9 * t251;
+        let t352 = t292 - t164 + t38 * t251;
+        let t357 = t298 - t175 + t13 * t251;
+        let t370 = 9.81 * t74;
+        let t372 = 9.81 * t37;
+        let t381 = 9.81 * t5;
+        let t383 = 9.81 * t63;
+        let t392 = 9.81 * t9;
+        let t394 = 9.81 * t38;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
         let rate_distal_leg1 = c_proximal_leg1 * twist[1]
             - minus_gdistal_wx_leg1 * twist[0] + minus_gdistal_wx_leg1 * twist[2];
-        let t405 = minus_s_distal_leg1 * t93;
-        let t410 = t92 * twist[0] + t105 * twist[1] - t97 * twist[2];
-        let t411 = t405 * t410;
-        let t412 = rate_distal_leg1 * t411;
-        let rate_wrist_leg1 = t411 + 0.7071067811865475 * t77 * twist[0]
-            + t103 * twist[1] + 0.7071067811865475 * t78 * twist[2];
-        let t423 = t92 * acceleration[0] + t105 * acceleration[1] - t97 * acceleration[2]
-            - (t412 + rate_distal_leg1 * rate_wrist_leg1);
-        let minus_rate_dot_proximal_leg1 = t93 * t423;
+        let t414 = minus_s_distal_leg1 * t101;
+        let t419 = t100 * twist[0] + t114 * twist[1] - t105 * twist[2];
+        let t420 = t414 * t419;
+        let t421 = rate_distal_leg1 * t420;
+        let rate_wrist_leg1 = t420 + 0.7071067811865475 * t81 * twist[0]
+            + 0.7071067811865475 * t110 * twist[1] + 0.7071067811865475 * t82 * twist[2];
+        let t433 = t100 * acceleration[0] + t114 * acceleration[1]
+            - t105 * acceleration[2] - (t421 + rate_distal_leg1 * rate_wrist_leg1);
+        let minus_rate_dot_proximal_leg1 = t101 * t433;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
         let rate_distal_leg2 = gdistal_wy_leg2 * twist[1] - c_proximal_leg2 * twist[0]
             - gdistal_wy_leg2 * twist[2];
-        let t436 = minus_s_distal_leg2 * t29;
-        let t441 = t63 * twist[0] + t109 * twist[1] - t28 * twist[2];
-        let t442 = t436 * t441;
-        let t443 = rate_distal_leg2 * t442;
-        let rate_wrist_leg2 = t442 + t61 * twist[0] + 0.7071067811865475 * t10 * twist[1]
+        let t446 = minus_s_distal_leg2 * t30;
+        let t451 = t67 * twist[0] + t118 * twist[1] - t29 * twist[2];
+        let t452 = t446 * t451;
+        let t453 = rate_distal_leg2 * t452;
+        let rate_wrist_leg2 = t452 + t65 * twist[0] + 0.7071067811865475 * t10 * twist[1]
             + 0.7071067811865475 * t14 * twist[2];
-        let t454 = t63 * acceleration[0] + t109 * acceleration[1] - t28 * acceleration[2]
-            - (t443 + rate_distal_leg2 * rate_wrist_leg2);
-        let minus_rate_dot_proximal_leg2 = t29 * t454;
+        let t464 = t67 * acceleration[0] + t118 * acceleration[1] - t29 * acceleration[2]
+            - (t453 + rate_distal_leg2 * rate_wrist_leg2);
+        let minus_rate_dot_proximal_leg2 = t30 * t464;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
         let rate_distal_leg3 = gdistal_wx_leg3 * twist[0] - c_proximal_leg3 * twist[1]
             + gdistal_wx_leg3 * twist[2];
-        let t467 = s_distal_leg3 * t54;
-        let t472 = t53 * twist[0] + t75 * twist[1] + t66 * twist[2];
-        let t473 = t467 * t472;
-        let t474 = rate_distal_leg3 * t473;
-        let minus_rate_wrist_leg3 = t473 + 0.7071067811865475 * (t132 + t137);
-        let t480 = t53 * acceleration[0] + t75 * acceleration[1] + t66 * acceleration[2]
-            + t474 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t54 * t480;
-        let t482 = t11 + t13;
-        let t483 = t5 + t9;
-        let s_distal_leg4 = 0.5 * (t482 - t483);
-        let t487 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t487, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t487);
+        let t477 = s_distal_leg3 * t58;
+        let t482 = t57 * twist[0] + t79 * twist[1] + t70 * twist[2];
+        let t483 = t477 * t482;
+        let t484 = rate_distal_leg3 * t483;
+        let minus_rate_wrist_leg3 = t483 + 0.7071067811865475 * (t141 + t146);
+        let t490 = t57 * acceleration[0] + t79 * acceleration[1] + t70 * acceleration[2]
+            + t484 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t58 * t490;
+        let t492 = t11 + t13;
+        let t493 = t5 + t9;
+        let s_distal_leg4 = 0.5 * (t492 - t493);
+        let t497 = 1.0 - s_distal_leg4 * s_distal_leg4;
+        ::overact::guard::reach(t497, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t497);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t489 = t483 + t482;
-        let t492 = 1.0 / (0.5 * (c_distal_leg4 * t489));
-        let minus_s_proximal_leg4 = t492 * (0.35355339059327373 * ((t59 + t37) * t489));
-        let t497 = s_distal_leg4 * minus_s_proximal_leg4;
-        let t498 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wx_leg4 = t497 * t498;
-        let c_proximal_leg4 = t492 * (0.25 * (t489 * t489));
-        let t504 = s_distal_leg4 * c_proximal_leg4;
-        let t506 = 0.7071067811865475 * (t504 + c_distal_leg4);
-        let minus_gproximal_wy_leg4 = t506 * t498;
-        let t511 = 0.7071067811865475 * (t504 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t511 * t498;
-        let t514 = minus_gproximal_wx_leg4 * t153 - minus_gproximal_wy_leg4 * t121
-            - minus_gproximal_wz_leg4 * t164;
+        let t499 = t493 + t492;
+        let t502 = 1.0 / (0.5 * (c_distal_leg4 * t499));
+        let minus_s_proximal_leg4 = t502 * (0.35355339059327373 * ((t63 + t38) * t499));
+        let t507 = s_distal_leg4 * minus_s_proximal_leg4;
+        let t508 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wx_leg4 = t507 * t508;
+        let c_proximal_leg4 = t502 * (0.25 * (t499 * t499));
+        let t514 = s_distal_leg4 * c_proximal_leg4;
+        let t516 = 0.7071067811865475 * (t514 + c_distal_leg4);
+        let minus_gproximal_wy_leg4 = t516 * t508;
+        let t521 = 0.7071067811865475 * (t514 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t521 * t508;
+        let t524 = minus_gproximal_wx_leg4 * t162 - minus_gproximal_wy_leg4 * t130
+            - minus_gproximal_wz_leg4 * t173;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
         let rate_distal_leg4 = c_proximal_leg4 * twist[0]
             - minus_gdistal_wy_leg4 * twist[1] - minus_gdistal_wy_leg4 * twist[2];
-        let t526 = s_distal_leg4 * t498;
-        let t531 = t497 * twist[0] + t506 * twist[1] + t511 * twist[2];
-        let t532 = t526 * t531;
-        let t533 = rate_distal_leg4 * t532;
-        let minus_rate_wrist_leg4 = t532 + 0.7071067811865475 * (t145 + t137);
-        let t539 = t497 * acceleration[0] + t506 * acceleration[1]
-            + t511 * acceleration[2] + t533 + rate_distal_leg4 * minus_rate_wrist_leg4;
-        let minus_rate_dot_proximal_leg4 = t498 * t539;
-        let t546 = minus_gproximal_wy_leg4 * t180 - minus_gproximal_wx_leg4 * t175
-            + minus_gproximal_wz_leg4 * t186;
-        let t552 = minus_gproximal_wy_leg4 * t191 - minus_gproximal_wx_leg4 * t189
-            - minus_gproximal_wz_leg4 * t194;
-        let t557 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t564 = 6.936717523440031 * c_proximal_leg4;
-        let minus_rate_proximal_leg1 = t93 * t410;
-        let minus_rate_proximal_leg2 = t29 * t441;
-        let minus_rate_proximal_leg3 = t54 * t472;
-        let minus_rate_proximal_leg4 = t498 * t531;
-        let t582 = t412 + t423 + t412;
-        let t588 = minus_gdistal_wx_leg1 * t153 + c_proximal_leg1 * t121
-            + minus_gdistal_wx_leg1 * t164;
-        let t589 = t410 * t411;
-        let t596 = minus_gdistal_wx_leg1 * t175 + c_proximal_leg1 * t180
-            + minus_gdistal_wx_leg1 * t186;
-        let t602 = minus_gdistal_wx_leg1 * t194
-            - (minus_gdistal_wx_leg1 * t189 + c_proximal_leg1 * t191);
-        let t608 = c_proximal_leg2 * t153 + gdistal_wy_leg2 * t121
-            - gdistal_wy_leg2 * t164;
-        let t609 = t441 * t442;
-        let t612 = t443 + t454 + t443;
-        let t618 = gdistal_wy_leg2 * t186
-            - (c_proximal_leg2 * t175 + gdistal_wy_leg2 * t180);
-        let t625 = c_proximal_leg2 * t189 + gdistal_wy_leg2 * t191
-            + gdistal_wy_leg2 * t194;
-        let t631 = gdistal_wx_leg3 * t164
-            - (gdistal_wx_leg3 * t153 + c_proximal_leg3 * t121);
-        let t632 = t472 * t473;
-        let t638 = gdistal_wx_leg3 * t175 + c_proximal_leg3 * t180
-            - gdistal_wx_leg3 * t186;
-        let t641 = t480 - t474 - t474;
-        let t647 = gdistal_wx_leg3 * t189 + c_proximal_leg3 * t191
-            + gdistal_wx_leg3 * t194;
-        let t651 = t539 - t533 - t533;
-        let t652 = c_distal_leg4 * t651;
-        let t658 = c_proximal_leg4 * t153 + minus_gdistal_wy_leg4 * t121
-            + minus_gdistal_wy_leg4 * t164;
-        let t659 = t531 * t532;
-        let t667 = c_proximal_leg4 * t175 + minus_gdistal_wy_leg4 * t180
-            + minus_gdistal_wy_leg4 * t186;
-        let t675 = c_proximal_leg4 * t189 + minus_gdistal_wy_leg4 * t191
-            - minus_gdistal_wy_leg4 * t194;
-        let t678 = t410 * rate_distal_leg1;
-        let t679 = t405 * t423;
-        let t685 = t410 * t410;
-        let t686 = t411 * t411;
-        let t687 = t685 - t686;
-        let t692 = t441 * t441;
-        let t693 = t442 * t442;
-        let t694 = t692 - t693;
-        let t696 = t441 * rate_distal_leg2;
-        let t697 = t436 * t454;
-        let t706 = t472 * t472;
-        let t707 = t473 * t473;
-        let t708 = t706 - t707;
-        let t711 = t472 * rate_distal_leg3;
-        let t712 = t467 * t480;
-        let t720 = t531 * rate_distal_leg4;
-        let t721 = t526 * t539;
-        let t726 = c_distal_leg4 * (t720 + t721 + t720) + s_distal_leg4 * t651;
-        let t728 = t531 * t531;
-        let t729 = t532 * t532;
-        let t730 = t728 - t729;
+        let t536 = s_distal_leg4 * t508;
+        let t541 = t507 * twist[0] + t516 * twist[1] + t521 * twist[2];
+        let t542 = t536 * t541;
+        let t543 = rate_distal_leg4 * t542;
+        let minus_rate_wrist_leg4 = t542 + 0.7071067811865475 * (t154 + t146);
+        let t549 = t507 * acceleration[0] + t516 * acceleration[1]
+            + t521 * acceleration[2] + t543 + rate_distal_leg4 * minus_rate_wrist_leg4;
+        let minus_rate_dot_proximal_leg4 = t508 * t549;
+        let t556 = minus_gproximal_wy_leg4 * t189 - minus_gproximal_wx_leg4 * t184
+            + minus_gproximal_wz_leg4 * t195;
+        let t562 = minus_gproximal_wy_leg4 * t200 - minus_gproximal_wx_leg4 * t198
+            - minus_gproximal_wz_leg4 * t203;
+        let t567 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t574 = 6.936717523440031 * c_proximal_leg4;
+        let minus_rate_proximal_leg1 = t101 * t419;
+        let minus_rate_proximal_leg2 = t30 * t451;
+        let minus_rate_proximal_leg3 = t58 * t482;
+        let minus_rate_proximal_leg4 = t508 * t541;
+        let t592 = t421 + t433 + t421;
+        let t598 = minus_gdistal_wx_leg1 * t162 + c_proximal_leg1 * t130
+            + minus_gdistal_wx_leg1 * t173;
+        let t599 = t419 * t420;
+        let t606 = minus_gdistal_wx_leg1 * t184 + c_proximal_leg1 * t189
+            + minus_gdistal_wx_leg1 * t195;
+        let t612 = minus_gdistal_wx_leg1 * t203
+            - (minus_gdistal_wx_leg1 * t198 + c_proximal_leg1 * t200);
+        let t618 = c_proximal_leg2 * t162 + gdistal_wy_leg2 * t130
+            - gdistal_wy_leg2 * t173;
+        let t619 = t451 * t452;
+        let t622 = t453 + t464 + t453;
+        let t628 = gdistal_wy_leg2 * t195
+            - (c_proximal_leg2 * t184 + gdistal_wy_leg2 * t189);
+        let t635 = c_proximal_leg2 * t198 + gdistal_wy_leg2 * t200
+            + gdistal_wy_leg2 * t203;
+        let t641 = gdistal_wx_leg3 * t173
+            - (gdistal_wx_leg3 * t162 + c_proximal_leg3 * t130);
+        let t642 = t482 * t483;
+        let t648 = gdistal_wx_leg3 * t184 + c_proximal_leg3 * t189
+            - gdistal_wx_leg3 * t195;
+        let t651 = t490 - t484 - t484;
+        let t657 = gdistal_wx_leg3 * t198 + c_proximal_leg3 * t200
+            + gdistal_wx_leg3 * t203;
+        let t661 = t549 - t543 - t543;
+        let t662 = c_distal_leg4 * t661;
+        let t668 = c_proximal_leg4 * t162 + minus_gdistal_wy_leg4 * t130
+            + minus_gdistal_wy_leg4 * t173;
+        let t669 = t541 * t542;
+        let t677 = c_proximal_leg4 * t184 + minus_gdistal_wy_leg4 * t189
+            + minus_gdistal_wy_leg4 * t195;
+        let t685 = c_proximal_leg4 * t198 + minus_gdistal_wy_leg4 * t200
+            - minus_gdistal_wy_leg4 * t203;
+        let t688 = t419 * rate_distal_leg1;
+        let t689 = t414 * t433;
+        let t695 = t419 * t419;
+        let t696 = t420 * t420;
+        let t697 = t695 - t696;
+        let t702 = t451 * t451;
+        let t703 = t452 * t452;
+        let t704 = t702 - t703;
+        let t706 = t451 * rate_distal_leg2;
+        let t707 = t446 * t464;
+        let t716 = t482 * t482;
+        let t717 = t483 * t483;
+        let t718 = t716 - t717;
+        let t721 = t482 * rate_distal_leg3;
+        let t722 = t477 * t490;
+        let t730 = t541 * rate_distal_leg4;
+        let t731 = t536 * t549;
+        let t736 = c_distal_leg4 * (t730 + t731 + t730) + s_distal_leg4 * t661;
+        let t738 = t541 * t541;
+        let t739 = t542 * t542;
+        let t740 = t738 - t739;
         let rate_dot_distal_leg1 = c_proximal_leg1 * acceleration[1]
             - minus_gdistal_wx_leg1 * acceleration[0]
-            + minus_gdistal_wx_leg1 * acceleration[2] + t410 * rate_wrist_leg1;
-        let t749 = rate_distal_leg1 * rate_distal_leg1;
+            + minus_gdistal_wx_leg1 * acceleration[2] + t419 * rate_wrist_leg1;
+        let t759 = rate_distal_leg1 * rate_distal_leg1;
         let rate_dot_distal_leg2 = gdistal_wy_leg2 * acceleration[1]
             - c_proximal_leg2 * acceleration[0] - gdistal_wy_leg2 * acceleration[2]
-            + t441 * rate_wrist_leg2;
-        let t767 = rate_distal_leg2 * rate_distal_leg2;
-        let t775 = rate_distal_leg3 * rate_distal_leg3;
+            + t451 * rate_wrist_leg2;
+        let t777 = rate_distal_leg2 * rate_distal_leg2;
+        let t785 = rate_distal_leg3 * rate_distal_leg3;
         let rate_dot_distal_leg3 = gdistal_wx_leg3 * acceleration[0]
             - c_proximal_leg3 * acceleration[1] + gdistal_wx_leg3 * acceleration[2]
-            - t472 * minus_rate_wrist_leg3;
-        let t790 = rate_distal_leg4 * rate_distal_leg4;
+            - t482 * minus_rate_wrist_leg3;
+        let t800 = rate_distal_leg4 * rate_distal_leg4;
         let rate_dot_distal_leg4 = c_proximal_leg4 * acceleration[0]
             - minus_gdistal_wy_leg4 * acceleration[1]
-            - minus_gdistal_wy_leg4 * acceleration[2] - t531 * minus_rate_wrist_leg4;
-        let t802 = s_distal_leg4 * (t790 - t728)
-            - c_distal_leg4 * (rate_dot_distal_leg4 - t659);
-        let t843 = s_distal_leg4 * (t659 + rate_dot_distal_leg4)
-            - c_distal_leg4 * (t729 - t790);
-        let t854 = t78 * (-6.936717523440031);
-        let t859 = t14 * (-6.936717523440031);
-        let t865 = t34 * 6.936717523440031;
-        let t871 = 6.936717523440031 * t497;
-        let t873 = t482 * 6.936717523440031;
+            - minus_gdistal_wy_leg4 * acceleration[2] - t541 * minus_rate_wrist_leg4;
+        let t812 = s_distal_leg4 * (t800 - t738)
+            - c_distal_leg4 * (rate_dot_distal_leg4 - t669);
+        let t853 = s_distal_leg4 * (t669 + rate_dot_distal_leg4)
+            - c_distal_leg4 * (t739 - t800);
+        let t864 = t82 * (-6.936717523440031);
+        let t869 = t14 * (-6.936717523440031);
+        let t875 = t35 * 6.936717523440031;
+        let t881 = 6.936717523440031 * t507;
+        let t883 = t492 * 6.936717523440031;
         Ok([
             [
-                t121 * t148 - t153 * t158 + t164 * t169, t121 * t212 - t153 * t218 + t164 * t225,
-                t121 * t251 - t153 * t257 + t164 * t264, t121 * t280 - t153 * t285 + t164 * t291,
-                t121 * t311 - t153 * t317 + t164 * t324, t121 * t339 - t153 * t343 + t164 * t348,
-                -(t153 * t361 + t121 * t363), -(t153 * t372 + t121 * t374),
-                -(t153 * t383 + t121 * t385), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
-                -(t514 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
-                0.0, t514 * t557, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t514 * t564),
-                -minus_rate_proximal_leg1, 0.0, 0.0, -(t514 * minus_rate_proximal_leg4),
+                t130 * t157 - t162 * t167 + t173 * t178, t130 * t221 - t162 * t227 + t173 * t234,
+                t130 * t260 - t162 * t266 + t173 * t273, t130 * t289 - t162 * t294 + t173 * t300,
+                t130 * t320 - t162 * t326 + t173 * t333, t130 * t348 - t162 * t352 + t173 * t357,
+                -(t162 * t370 + t130 * t372), -(t162 * t381 + t130 * t383),
+                -(t162 * t392 + t130 * t394), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
+                -(t524 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
+                0.0, t524 * t567, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t524 * t574),
+                -minus_rate_proximal_leg1, 0.0, 0.0, -(t524 * minus_rate_proximal_leg4),
                 -::overact::math::sign(minus_rate_proximal_leg1), 0.0, 0.0,
-                -::overact::math::signed(t514, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t514,
-                -(c_distal_leg1 * t582 + t588 * t589), -(t608 * t609), t631 * t632,
-                -(t514 * t652 + t658 * t659),
-                c_distal_leg1 * (t678 - (t679 - t678)) - minus_s_distal_leg1 * t582
-                    + t588 * t687,
-                t608 * t694,
-                t631 * t708,
-                t514 * t726 - t658 * t730,
-                t588 * t423
-                    - (c_distal_leg1 * (t589 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t749 - t685)),
-                t608 * t454,
-                t631 * t480,
-                t514 * t802 - t658 * t539,
-                minus_s_distal_leg1 * (t589 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t686 - t749) + t588 * t679,
-                t608 * t697,
-                -(t631 * t712),
-                t514 * t843 + t658 * t721,
-                6.936717523440031 * t105 + t588 * t854,
-                t608 * t859,
-                t631 * t865,
-                t514 * t871 - t658 * t873,
+                -::overact::math::signed(t524, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t524,
+                -(c_distal_leg1 * t592 + t598 * t599), -(t618 * t619), t641 * t642,
+                -(t524 * t662 + t668 * t669),
+                c_distal_leg1 * (t688 - (t689 - t688)) - minus_s_distal_leg1 * t592
+                    + t598 * t697,
+                t618 * t704,
+                t641 * t718,
+                t524 * t736 - t668 * t740,
+                t598 * t433
+                    - (c_distal_leg1 * (t599 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t759 - t695)),
+                t618 * t464,
+                t641 * t490,
+                t524 * t812 - t668 * t549,
+                minus_s_distal_leg1 * (t599 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t696 - t759) + t598 * t689,
+                t618 * t707,
+                -(t641 * t722),
+                t524 * t853 + t668 * t731,
+                6.936717523440031 * t114 + t598 * t864,
+                t618 * t869,
+                t641 * t875,
+                t524 * t881 - t668 * t883,
             ],
             [
-                t175 * t158 - t180 * t148 - t186 * t169, t175 * t218 - t180 * t212 - t186 * t225,
-                t175 * t257 - t180 * t251 - t186 * t264, t175 * t285 - t180 * t280 - t186 * t291,
-                t175 * t317 - t180 * t311 - t186 * t324, t175 * t343 - t180 * t339 - t186 * t348,
-                t175 * t361 + t180 * t363, t175 * t372 + t180 * t374, t175 * t383 + t180 * t385,
-                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t546 * minus_rate_dot_proximal_leg4),
-                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t546 * t557, 0.0,
-                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t546 * t564), 0.0,
-                -minus_rate_proximal_leg2, 0.0, -(t546 * minus_rate_proximal_leg4), 0.0,
+                t184 * t167 - t189 * t157 - t195 * t178, t184 * t227 - t189 * t221 - t195 * t234,
+                t184 * t266 - t189 * t260 - t195 * t273, t184 * t294 - t189 * t289 - t195 * t300,
+                t184 * t326 - t189 * t320 - t195 * t333, t184 * t352 - t189 * t348 - t195 * t357,
+                t184 * t370 + t189 * t372, t184 * t381 + t189 * t383, t184 * t392 + t189 * t394,
+                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t556 * minus_rate_dot_proximal_leg4),
+                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t556 * t567, 0.0,
+                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t556 * t574), 0.0,
+                -minus_rate_proximal_leg2, 0.0, -(t556 * minus_rate_proximal_leg4), 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg2), 0.0,
-                -::overact::math::signed(t546, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t546,
-                t596 * t589, -(c_distal_leg2 * t612 + t618 * t609), t638 * t632,
-                t667 * t659 - t546 * t652, -(t596 * t687),
-                c_distal_leg2 * (t696 - (t697 - t696)) - minus_s_distal_leg2 * t612
-                    + t618 * t694,
-                t638 * t708,
-                t546 * t726 + t667 * t730,
-                -(t596 * t423),
-                t618 * t454
-                    - (c_distal_leg2 * (t609 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t767 - t692)),
-                t638 * t480,
-                t546 * t802 + t667 * t539,
-                -(t596 * t679),
-                minus_s_distal_leg2 * (t609 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t693 - t767) + t618 * t697,
-                -(t638 * t712),
-                t546 * t843 - t667 * t721,
-                -(t596 * t854),
-                t618 * t859 - 6.936717523440031 * t63,
-                t638 * t865,
-                t546 * t871 + t667 * t873,
+                -::overact::math::signed(t556, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t556,
+                t606 * t599, -(c_distal_leg2 * t622 + t628 * t619), t648 * t642,
+                t677 * t669 - t556 * t662, -(t606 * t697),
+                c_distal_leg2 * (t706 - (t707 - t706)) - minus_s_distal_leg2 * t622
+                    + t628 * t704,
+                t648 * t718,
+                t556 * t736 + t677 * t740,
+                -(t606 * t433),
+                t628 * t464
+                    - (c_distal_leg2 * (t619 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t777 - t702)),
+                t648 * t490,
+                t556 * t812 + t677 * t549,
+                -(t606 * t689),
+                minus_s_distal_leg2 * (t619 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t703 - t777) + t628 * t707,
+                -(t648 * t722),
+                t556 * t853 - t677 * t731,
+                -(t606 * t864),
+                t628 * t869 - 6.936717523440031 * t67,
+                t648 * t875,
+                t556 * t881 + t677 * t883,
             ],
             [
-                t189 * t158 - t191 * t148 + t194 * t169, t189 * t218 - t191 * t212 + t194 * t225,
-                t189 * t257 - t191 * t251 + t194 * t264, t189 * t285 - t191 * t280 + t194 * t291,
-                t189 * t317 - t191 * t311 + t194 * t324, t189 * t343 - t191 * t339 + t194 * t348,
-                t189 * t361 + t191 * t363, t189 * t372 + t191 * t374, t189 * t383 + t191 * t385,
-                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t552 * minus_rate_dot_proximal_leg4),
-                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t552 * t557, 0.0, 0.0,
-                -(6.936717523440031 * c_proximal_leg3), -(t552 * t564), 0.0, 0.0,
-                -minus_rate_proximal_leg3, -(t552 * minus_rate_proximal_leg4), 0.0, 0.0,
+                t198 * t167 - t200 * t157 + t203 * t178, t198 * t227 - t200 * t221 + t203 * t234,
+                t198 * t266 - t200 * t260 + t203 * t273, t198 * t294 - t200 * t289 + t203 * t300,
+                t198 * t326 - t200 * t320 + t203 * t333, t198 * t352 - t200 * t348 + t203 * t357,
+                t198 * t370 + t200 * t372, t198 * t381 + t200 * t383, t198 * t392 + t200 * t394,
+                0.0, 0.0, -minus_rate_dot_proximal_leg3, -(t562 * minus_rate_dot_proximal_leg4),
+                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t562 * t567, 0.0, 0.0,
+                -(6.936717523440031 * c_proximal_leg3), -(t562 * t574), 0.0, 0.0,
+                -minus_rate_proximal_leg3, -(t562 * minus_rate_proximal_leg4), 0.0, 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg3),
-                -::overact::math::signed(t552, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t552,
-                -(t602 * t589), t625 * t609, t647 * t632 - c_distal_leg3 * t641,
-                t675 * t659 - t552 * t652, t602 * t687, -(t625 * t694),
-                c_distal_leg3 * (t711 + t712 + t711) + s_distal_leg3 * t641
-                    + t647 * t708,
-                t552 * t726 + t675 * t730,
-                t602 * t423,
-                -(t625 * t454),
-                s_distal_leg3 * (t775 - t706)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t632) + t647 * t480,
-                t552 * t802 + t675 * t539,
-                t602 * t679,
-                -(t625 * t697),
-                s_distal_leg3 * (t632 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t707 - t775) - t647 * t712,
-                t552 * t843 - t675 * t721,
-                t602 * t854,
-                -(t625 * t859),
-                t647 * t865 - 6.936717523440031 * t75,
-                t552 * t871 + t675 * t873,
+                -::overact::math::signed(t562, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t562,
+                -(t612 * t599), t635 * t619, t657 * t642 - c_distal_leg3 * t651,
+                t685 * t669 - t562 * t662, t612 * t697, -(t635 * t704),
+                c_distal_leg3 * (t721 + t722 + t721) + s_distal_leg3 * t651
+                    + t657 * t718,
+                t562 * t736 + t685 * t740,
+                t612 * t433,
+                -(t635 * t464),
+                s_distal_leg3 * (t785 - t716)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t642) + t657 * t490,
+                t562 * t812 + t685 * t549,
+                t612 * t689,
+                -(t635 * t707),
+                s_distal_leg3 * (t642 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t717 - t785) - t657 * t722,
+                t562 * t853 - t685 * t731,
+                t612 * t864,
+                -(t635 * t869),
+                t657 * t875 - 6.936717523440031 * t79,
+                t562 * t881 + t685 * t883,
             ],
         ])
     }
@@ -7440,7 +7439,7 @@ impl Spherical4Rrr {
     /// Output: 3 x 53.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 1004 operations (374 additions, 618 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 894 intermediates.
+    /// 1005 operations (374 additions, 619 multiplications, 12 divisions), 4 square roots, 0 trigonometric pairs, 6 signs, 895 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -7545,396 +7544,397 @@ impl Spherical4Rrr {
             + minus_gproximal_wx_leg2 * minus_gproximal_wz_leg3) * t120;
         let t127 = t11 + t13;
         let t128 = t5 + t9;
-        let s_distal_leg4 = 0.5 * (t127 - t128);
-        let t132 = 1.0 - s_distal_leg4 * s_distal_leg4;
-        ::overact::guard::reach(t132, "leg4")?;
-        let c_distal_leg4 = ::overact::math::sqrt(t132);
+        let t129 = t127 - t128;
+        let s_distal_leg4 = 0.5 * t129;
+        let t133 = 1.0 - 0.25 * (t129 * t129);
+        ::overact::guard::reach(t133, "leg4")?;
+        let c_distal_leg4 = ::overact::math::sqrt(t133);
         ::overact::guard::leg(c_distal_leg4, 1.0, "leg4")?;
-        let t134 = t128 + t127;
-        let t137 = 1.0 / (0.5 * (c_distal_leg4 * t134));
-        let c_proximal_leg4 = t137 * (0.25 * (t134 * t134));
-        let t141 = s_distal_leg4 * c_proximal_leg4;
-        let t143 = 0.7071067811865475 * (t141 + c_distal_leg4);
-        let t144 = 1.0 / c_distal_leg4;
-        let minus_gproximal_wy_leg4 = t143 * t144;
-        let minus_s_proximal_leg4 = t137 * (0.35355339059327373 * ((t59 + t37) * t134));
-        let t157 = s_distal_leg4 * minus_s_proximal_leg4;
-        let minus_gproximal_wx_leg4 = t157 * t144;
-        let t160 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
+        let t135 = t128 + t127;
+        let t138 = 1.0 / (0.5 * (c_distal_leg4 * t135));
+        let c_proximal_leg4 = t138 * (0.25 * (t135 * t135));
+        let t142 = s_distal_leg4 * c_proximal_leg4;
+        let t144 = 0.7071067811865475 * (t142 + c_distal_leg4);
+        let t145 = 1.0 / c_distal_leg4;
+        let minus_gproximal_wy_leg4 = t144 * t145;
+        let minus_s_proximal_leg4 = t138 * (0.35355339059327373 * ((t59 + t37) * t135));
+        let t158 = s_distal_leg4 * minus_s_proximal_leg4;
+        let minus_gproximal_wx_leg4 = t158 * t145;
+        let t161 = minus_gproximal_wx_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wy_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wy_leg4;
-        let t167 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
+        let t168 = minus_gproximal_wx_leg1 * minus_gproximal_wx_leg1
             + minus_gproximal_wx_leg2 * minus_gproximal_wx_leg2
             + minus_gproximal_wx_leg3 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg4 * minus_gproximal_wx_leg4;
-        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t167, 0.9999999999999998, "actuators")?;
-        let t168 = 1.0 / t167;
-        let t169 = t160 * t168;
-        let t171 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
+        ::overact::guard::platform(t168, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t168, 0.9999999999999998, "actuators")?;
+        let t169 = 1.0 / t168;
+        let t170 = t161 * t169;
+        let t172 = minus_gproximal_wy_leg1 * minus_gproximal_wy_leg1
             + minus_gproximal_wy_leg2 * minus_gproximal_wy_leg2
             + minus_gproximal_wy_leg3 * minus_gproximal_wy_leg3
-            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t160 * t169;
-        ::overact::guard::platform(t171, 0.9999999999999998, "actuators")?;
-        ::overact::guard::platform(t171, 0.9999999999999998, "actuators")?;
-        let t172 = 1.0 / t171;
+            + minus_gproximal_wy_leg4 * minus_gproximal_wy_leg4 - t161 * t170;
+        ::overact::guard::platform(t172, 0.9999999999999998, "actuators")?;
+        ::overact::guard::platform(t172, 0.9999999999999998, "actuators")?;
+        let t173 = 1.0 / t172;
         let minus_gdistal_wx_leg1 = 0.7071067811865475 * s_proximal_leg1;
-        let t180 = minus_gproximal_wx_leg1 * actuator_velocities[0]
+        let t181 = minus_gproximal_wx_leg1 * actuator_velocities[0]
             + minus_gproximal_wx_leg2 * actuator_velocities[1]
             + minus_gproximal_wx_leg3 * actuator_velocities[2]
             + minus_gproximal_wx_leg4 * actuator_velocities[3];
-        let t190 = t180 * t169
+        let t191 = t181 * t170
             - (minus_gproximal_wy_leg1 * actuator_velocities[0]
                 + minus_gproximal_wy_leg2 * actuator_velocities[1]
                 + minus_gproximal_wy_leg3 * actuator_velocities[2]
                 + minus_gproximal_wy_leg4 * actuator_velocities[3]);
-        let t198 = 0.7071067811865475 * (t141 - c_distal_leg4);
-        let minus_gproximal_wz_leg4 = t198 * t144;
-        let t208 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
+        let t199 = 0.7071067811865475 * (t142 - c_distal_leg4);
+        let minus_gproximal_wz_leg4 = t199 * t145;
+        let t209 = minus_gproximal_wx_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wx_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wx_leg2 * gproximal_wz_leg2)
             + minus_gproximal_wx_leg4 * minus_gproximal_wz_leg4;
-        let t209 = t208 * t168;
-        let t211 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
+        let t210 = t209 * t169;
+        let t212 = minus_gproximal_wy_leg3 * minus_gproximal_wz_leg3
             - (minus_gproximal_wy_leg1 * gproximal_wz_leg1
                 + minus_gproximal_wy_leg2 * gproximal_wz_leg2)
-            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t160 * t209;
-        let t212 = t211 * t172;
-        let t223 = gproximal_wz_leg1 * gproximal_wz_leg1
+            + minus_gproximal_wy_leg4 * minus_gproximal_wz_leg4 - t161 * t210;
+        let t213 = t212 * t173;
+        let t224 = gproximal_wz_leg1 * gproximal_wz_leg1
             + gproximal_wz_leg2 * gproximal_wz_leg2
             + minus_gproximal_wz_leg3 * minus_gproximal_wz_leg3
-            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t208 * t209
-            - t211 * t212;
-        ::overact::guard::platform(t223, 1.9999999999999996, "actuators")?;
-        ::overact::guard::platform(t223, 1.9999999999999996, "actuators")?;
-        let t224 = 1.0 / t223;
-        let t235 = gproximal_wz_leg1 * actuator_velocities[0]
+            + minus_gproximal_wz_leg4 * minus_gproximal_wz_leg4 - t209 * t210
+            - t212 * t213;
+        ::overact::guard::platform(t224, 1.9999999999999996, "actuators")?;
+        ::overact::guard::platform(t224, 1.9999999999999996, "actuators")?;
+        let t225 = 1.0 / t224;
+        let t236 = gproximal_wz_leg1 * actuator_velocities[0]
             + gproximal_wz_leg2 * actuator_velocities[1]
             - minus_gproximal_wz_leg3 * actuator_velocities[2]
-            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t180 * t209
-            - t212 * t190;
-        let t236 = t224 * t235;
-        let t238 = t172 * t190 - t212 * t236;
-        let t242 = t180 * t168 + t169 * t238 + t209 * t236;
-        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t242 + c_proximal_leg1 * t238
-            + minus_gdistal_wx_leg1 * t236;
-        let t252 = t105 * t238 - t92 * t242 - t97 * t236;
-        let minus_rate_proximal_leg1 = t93 * t252;
-        let t254 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
-        let t255 = rate_distal_leg1 * t254;
-        let minus_rate_wrist_leg1 = 0.7071067811865475 * t77 * t242 - t103 * t238
-            - 0.7071067811865475 * t78 * t236 - t254;
-        let t265 = t255 - rate_distal_leg1 * minus_rate_wrist_leg1;
-        let rate_dot_proximal_leg1 = t93 * t265;
-        let t267 = actuator_accelerations[0] - rate_dot_proximal_leg1;
+            - minus_gproximal_wz_leg4 * actuator_velocities[3] + t181 * t210
+            - t213 * t191;
+        let t237 = t225 * t236;
+        let t239 = t173 * t191 - t213 * t237;
+        let t243 = t181 * t169 + t170 * t239 + t210 * t237;
+        let rate_distal_leg1 = minus_gdistal_wx_leg1 * t243 + c_proximal_leg1 * t239
+            + minus_gdistal_wx_leg1 * t237;
+        let t253 = t105 * t239 - t92 * t243 - t97 * t237;
+        let minus_rate_proximal_leg1 = t93 * t253;
+        let t255 = minus_s_distal_leg1 * minus_rate_proximal_leg1;
+        let t256 = rate_distal_leg1 * t255;
+        let minus_rate_wrist_leg1 = 0.7071067811865475 * t77 * t243 - t103 * t239
+            - 0.7071067811865475 * t78 * t237 - t255;
+        let t266 = t256 - rate_distal_leg1 * minus_rate_wrist_leg1;
+        let rate_dot_proximal_leg1 = t93 * t266;
+        let t268 = actuator_accelerations[0] - rate_dot_proximal_leg1;
         let gdistal_wy_leg2 = 0.7071067811865475 * minus_s_proximal_leg2;
-        let rate_distal_leg2 = c_proximal_leg2 * t242 + gdistal_wy_leg2 * t238
-            - gdistal_wy_leg2 * t236;
-        let t279 = t109 * t238 - t63 * t242 - t28 * t236;
-        let minus_rate_proximal_leg2 = t29 * t279;
-        let t281 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
-        let t282 = rate_distal_leg2 * t281;
-        let minus_rate_wrist_leg2 = t61 * t242 - 0.7071067811865475 * t10 * t238
-            - 0.7071067811865475 * t14 * t236 - t281;
-        let t292 = t282 - rate_distal_leg2 * minus_rate_wrist_leg2;
-        let rate_dot_proximal_leg2 = t29 * t292;
-        let t294 = actuator_accelerations[1] - rate_dot_proximal_leg2;
+        let rate_distal_leg2 = c_proximal_leg2 * t243 + gdistal_wy_leg2 * t239
+            - gdistal_wy_leg2 * t237;
+        let t280 = t109 * t239 - t63 * t243 - t28 * t237;
+        let minus_rate_proximal_leg2 = t29 * t280;
+        let t282 = minus_s_distal_leg2 * minus_rate_proximal_leg2;
+        let t283 = rate_distal_leg2 * t282;
+        let minus_rate_wrist_leg2 = t61 * t243 - 0.7071067811865475 * t10 * t239
+            - 0.7071067811865475 * t14 * t237 - t282;
+        let t293 = t283 - rate_distal_leg2 * minus_rate_wrist_leg2;
+        let rate_dot_proximal_leg2 = t29 * t293;
+        let t295 = actuator_accelerations[1] - rate_dot_proximal_leg2;
         let gdistal_wx_leg3 = 0.7071067811865475 * s_proximal_leg3;
-        let rate_distal_leg3 = gdistal_wx_leg3 * t236
-            - (gdistal_wx_leg3 * t242 + c_proximal_leg3 * t238);
-        let t307 = t75 * t238 - t53 * t242 + t66 * t236;
-        let minus_rate_proximal_leg3 = t54 * t307;
-        let t309 = s_distal_leg3 * minus_rate_proximal_leg3;
-        let t310 = rate_distal_leg3 * t309;
-        let t315 = t70 * t238 - t36 * t242 + t33 * t236;
-        let t320 = t9 * t238 - t37 * t242 + t13 * t236;
-        let minus_rate_wrist_leg3 = t309 + 0.7071067811865475 * (t315 + t320);
-        let t325 = t310 + rate_distal_leg3 * minus_rate_wrist_leg3;
-        let minus_rate_dot_proximal_leg3 = t54 * t325;
-        let t327 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
+        let rate_distal_leg3 = gdistal_wx_leg3 * t237
+            - (gdistal_wx_leg3 * t243 + c_proximal_leg3 * t239);
+        let t308 = t75 * t239 - t53 * t243 + t66 * t237;
+        let minus_rate_proximal_leg3 = t54 * t308;
+        let t310 = s_distal_leg3 * minus_rate_proximal_leg3;
+        let t311 = rate_distal_leg3 * t310;
+        let t316 = t70 * t239 - t36 * t243 + t33 * t237;
+        let t321 = t9 * t239 - t37 * t243 + t13 * t237;
+        let minus_rate_wrist_leg3 = t310 + 0.7071067811865475 * (t316 + t321);
+        let t326 = t311 + rate_distal_leg3 * minus_rate_wrist_leg3;
+        let minus_rate_dot_proximal_leg3 = t54 * t326;
+        let t328 = actuator_accelerations[2] + minus_rate_dot_proximal_leg3;
         let minus_gdistal_wy_leg4 = 0.7071067811865475 * minus_s_proximal_leg4;
-        let minus_rate_distal_leg4 = c_proximal_leg4 * t242
-            + minus_gdistal_wy_leg4 * t238 + minus_gdistal_wy_leg4 * t236;
-        let t340 = t143 * t238 - t157 * t242 + t198 * t236;
-        let minus_rate_proximal_leg4 = t144 * t340;
-        let t342 = s_distal_leg4 * minus_rate_proximal_leg4;
-        let t343 = minus_rate_distal_leg4 * t342;
-        let t348 = t5 * t238 - t59 * t242 + t11 * t236;
-        let minus_rate_wrist_leg4 = t342 + 0.7071067811865475 * (t348 + t320);
-        let t353 = t343 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
-        let rate_dot_proximal_leg4 = t144 * t353;
-        let t355 = actuator_accelerations[3] - rate_dot_proximal_leg4;
-        let t357 = minus_gproximal_wx_leg1 * t267 + minus_gproximal_wx_leg2 * t294
-            + minus_gproximal_wx_leg3 * t327 + minus_gproximal_wx_leg4 * t355;
-        let t366 = t169 * t357
-            - (minus_gproximal_wy_leg1 * t267 + minus_gproximal_wy_leg2 * t294
-                + minus_gproximal_wy_leg3 * t327 + minus_gproximal_wy_leg4 * t355);
-        let t378 = gproximal_wz_leg1 * t267 + gproximal_wz_leg2 * t294
-            - minus_gproximal_wz_leg3 * t327 - minus_gproximal_wz_leg4 * t355
-            + t209 * t357 - t212 * t366;
-        let t379 = t224 * t378;
-        let t381 = t172 * t366 - t212 * t379;
-        let t387 = t168 * t357 + t169 * t381 + t209 * t379;
-        let t391 = t70 * t381 - t36 * t387 + t33 * t379;
-        let t393 = t315 * t320;
-        let t394 = t5 * t393;
-        let t396 = t315 * t348;
-        let t397 = t9 * t396;
-        let t398 = t70 * t391 + t394 - t397;
-        let t403 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
+        let minus_rate_distal_leg4 = c_proximal_leg4 * t243
+            + minus_gdistal_wy_leg4 * t239 + minus_gdistal_wy_leg4 * t237;
+        let t341 = t144 * t239 - t158 * t243 + t199 * t237;
+        let minus_rate_proximal_leg4 = t145 * t341;
+        let t343 = s_distal_leg4 * minus_rate_proximal_leg4;
+        let t344 = minus_rate_distal_leg4 * t343;
+        let t349 = t5 * t239 - t59 * t243 + t11 * t237;
+        let minus_rate_wrist_leg4 = t343 + 0.7071067811865475 * (t349 + t321);
+        let t354 = t344 + minus_rate_distal_leg4 * minus_rate_wrist_leg4;
+        let rate_dot_proximal_leg4 = t145 * t354;
+        let t356 = actuator_accelerations[3] - rate_dot_proximal_leg4;
+        let t358 = minus_gproximal_wx_leg1 * t268 + minus_gproximal_wx_leg2 * t295
+            + minus_gproximal_wx_leg3 * t328 + minus_gproximal_wx_leg4 * t356;
+        let t367 = t170 * t358
+            - (minus_gproximal_wy_leg1 * t268 + minus_gproximal_wy_leg2 * t295
+                + minus_gproximal_wy_leg3 * t328 + minus_gproximal_wy_leg4 * t356);
+        let t379 = gproximal_wz_leg1 * t268 + gproximal_wz_leg2 * t295
+            - minus_gproximal_wz_leg3 * t328 - minus_gproximal_wz_leg4 * t356
+            + t210 * t358 - t213 * t367;
+        let t380 = t225 * t379;
+        let t382 = t173 * t367 - t213 * t380;
+        let t388 = t169 * t358 + t170 * t382 + t210 * t380;
+        let t392 = t70 * t382 - t36 * t388 + t33 * t380;
+        let t394 = t316 * t321;
+        let t395 = t5 * t394;
+        let t397 = t316 * t349;
+        let t398 = t9 * t397;
+        let t399 = t70 * t392 + t395 - t398;
+        let t404 = (gproximal_wz_leg2 * minus_gproximal_wy_leg3
             + minus_gproximal_wy_leg2 * minus_gproximal_wz_leg3) * t120;
-        let t405 = t59 * t393;
-        let t407 = t37 * t396;
-        let t408 = t36 * t391 + t405 - t407;
-        let t414 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
+        let t406 = t59 * t394;
+        let t408 = t37 * t397;
+        let t409 = t36 * t392 + t406 - t408;
+        let t415 = (minus_gproximal_wy_leg2 * minus_gproximal_wx_leg3
             - minus_gproximal_wx_leg2 * minus_gproximal_wy_leg3) * t120;
-        let t416 = t11 * t393;
-        let t418 = t13 * t396;
-        let t419 = t33 * t391 + t416 - t418;
-        let t425 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
+        let t417 = t11 * t394;
+        let t419 = t13 * t397;
+        let t420 = t33 * t392 + t417 - t419;
+        let t426 = (gproximal_wz_leg1 * minus_gproximal_wy_leg3
             + minus_gproximal_wy_leg1 * minus_gproximal_wz_leg3) * t120;
-        let t430 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
+        let t431 = (gproximal_wz_leg1 * minus_gproximal_wx_leg3
             + minus_gproximal_wx_leg1 * minus_gproximal_wz_leg3) * t120;
-        let t436 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
+        let t437 = (minus_gproximal_wy_leg1 * minus_gproximal_wx_leg3
             - minus_gproximal_wx_leg1 * minus_gproximal_wy_leg3) * t120;
-        let t439 = t112 * t120;
-        let t441 = t100 * t120;
-        let t444 = t117 * t120;
-        let t451 = t5 * t381 - t59 * t387 + t11 * t379;
-        let t452 = t451 - t393;
-        let t454 = t348 * t320;
-        let t455 = t391 + t454;
-        let t458 = t315 * t315;
-        let t459 = t348 * t348;
-        let t460 = t458 - t459;
-        let t462 = t70 * t452 + t5 * t455 + t9 * t460;
-        let t468 = t36 * t452 + t59 * t455 + t37 * t460;
-        let t475 = t33 * t452 + t11 * t455 + t13 * t460;
-        let t492 = t9 * t381 - t37 * t387 + t13 * t379;
-        let t493 = t492 + t396;
-        let t495 = t320 * t320;
-        let t496 = t495 - t458;
-        let t499 = t391 - t454;
-        let t501 = t70 * t493 + t5 * t496 + t9 * t499;
-        let t507 = t36 * t493 + t59 * t496 + t37 * t499;
-        let t514 = t33 * t493 + t11 * t496 + t13 * t499;
-        let t528 = t70 * t454;
-        let t530 = t5 * t451 - t528 + t397;
-        let t533 = t36 * t454;
-        let t535 = t59 * t451 - t533 + t407;
-        let t539 = t33 * t454;
-        let t541 = t11 * t451 - t539 + t418;
-        let t554 = t459 - t495;
-        let t556 = t492 - t396;
-        let t559 = t451 + t393;
-        let t561 = t70 * t554 + t5 * t556 + t9 * t559;
-        let t567 = t36 * t554 + t59 * t556 + t37 * t559;
-        let t574 = t33 * t554 + t11 * t556 + t13 * t559;
-        let t589 = t528 - t394 + t9 * t492;
-        let t593 = t533 - t405 + t37 * t492;
-        let t598 = t539 - t416 + t13 * t492;
-        let t611 = 9.81 * t70;
-        let t613 = 9.81 * t36;
-        let t622 = 9.81 * t5;
-        let t624 = 9.81 * t59;
-        let t633 = 9.81 * t9;
-        let t635 = 9.81 * t37;
-        let t649 = t105 * t381 - t92 * t387 - t97 * t379 - t265;
-        let minus_rate_dot_proximal_leg1 = t93 * t649;
-        let t656 = t109 * t381 - t63 * t387 - t28 * t379 - t292;
-        let minus_rate_dot_proximal_leg2 = t29 * t656;
-        let t663 = t75 * t381 - t53 * t387 + t66 * t379 + t325;
-        let minus_rate_dot_proximal_leg3_2 = t54 * t663;
-        let t669 = minus_gproximal_wx_leg4 * t403 - minus_gproximal_wy_leg4 * t121
-            - minus_gproximal_wz_leg4 * t414;
-        let t675 = t143 * t381 - t157 * t387 + t198 * t379 - t353;
-        let minus_rate_dot_proximal_leg4 = t144 * t675;
-        let t682 = minus_gproximal_wy_leg4 * t430 - minus_gproximal_wx_leg4 * t425
-            + minus_gproximal_wz_leg4 * t436;
-        let t688 = minus_gproximal_wy_leg4 * t441 - minus_gproximal_wx_leg4 * t439
-            - minus_gproximal_wz_leg4 * t444;
-        let t693 = 6.936717523440031 * minus_s_proximal_leg4;
-        let t700 = 6.936717523440031 * c_proximal_leg4;
-        let t714 = t255 + t649 + t255;
-        let t720 = minus_gdistal_wx_leg1 * t403 + c_proximal_leg1 * t121
-            + minus_gdistal_wx_leg1 * t414;
-        let t721 = t252 * t254;
-        let t728 = minus_gdistal_wx_leg1 * t425 + c_proximal_leg1 * t430
-            + minus_gdistal_wx_leg1 * t436;
-        let t734 = minus_gdistal_wx_leg1 * t444
-            - (minus_gdistal_wx_leg1 * t439 + c_proximal_leg1 * t441);
-        let t740 = c_proximal_leg2 * t403 + gdistal_wy_leg2 * t121
-            - gdistal_wy_leg2 * t414;
-        let t741 = t279 * t281;
-        let t744 = t282 + t656 + t282;
-        let t750 = gdistal_wy_leg2 * t436
-            - (c_proximal_leg2 * t425 + gdistal_wy_leg2 * t430);
-        let t757 = c_proximal_leg2 * t439 + gdistal_wy_leg2 * t441
-            + gdistal_wy_leg2 * t444;
-        let t763 = gdistal_wx_leg3 * t414
-            - (gdistal_wx_leg3 * t403 + c_proximal_leg3 * t121);
-        let t764 = t307 * t309;
-        let t770 = gdistal_wx_leg3 * t425 + c_proximal_leg3 * t430
-            - gdistal_wx_leg3 * t436;
-        let t773 = t663 - t310 - t310;
-        let t779 = gdistal_wx_leg3 * t439 + c_proximal_leg3 * t441
-            + gdistal_wx_leg3 * t444;
-        let t783 = t343 + t675 + t343;
-        let t784 = c_distal_leg4 * t783;
-        let t790 = c_proximal_leg4 * t403 + minus_gdistal_wy_leg4 * t121
-            + minus_gdistal_wy_leg4 * t414;
-        let t791 = t340 * t342;
-        let t798 = c_proximal_leg4 * t425 + minus_gdistal_wy_leg4 * t430
-            + minus_gdistal_wy_leg4 * t436;
-        let t806 = c_proximal_leg4 * t439 + minus_gdistal_wy_leg4 * t441
-            - minus_gdistal_wy_leg4 * t444;
-        let t810 = t252 * rate_distal_leg1;
-        let t811 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
-        let t817 = t252 * t252;
-        let t818 = t254 * t254;
-        let t819 = t817 - t818;
-        let t824 = t279 * t279;
-        let t825 = t281 * t281;
-        let t826 = t824 - t825;
-        let t828 = t279 * rate_distal_leg2;
-        let t829 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
-        let t838 = t307 * t307;
-        let t839 = t309 * t309;
-        let t840 = t838 - t839;
-        let t843 = t307 * rate_distal_leg3;
-        let t844 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
-        let t853 = t340 * minus_rate_distal_leg4;
-        let t854 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
-        let t858 = s_distal_leg4 * t783 - c_distal_leg4 * (t853 + t853 - t854);
-        let t860 = t340 * t340;
-        let t861 = t342 * t342;
-        let t862 = t860 - t861;
-        let minus_rate_dot_distal_leg1 = t252 * minus_rate_wrist_leg1;
-        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t387 + c_proximal_leg1 * t381
-            + minus_gdistal_wx_leg1 * t379 - minus_rate_dot_distal_leg1;
-        let t881 = rate_distal_leg1 * rate_distal_leg1;
-        let minus_rate_dot_distal_leg2 = t279 * minus_rate_wrist_leg2;
-        let rate_dot_distal_leg2 = c_proximal_leg2 * t387 + gdistal_wy_leg2 * t381
-            - gdistal_wy_leg2 * t379 - minus_rate_dot_distal_leg2;
-        let t899 = rate_distal_leg2 * rate_distal_leg2;
-        let t907 = rate_distal_leg3 * rate_distal_leg3;
-        let minus_rate_dot_distal_leg3 = t307 * minus_rate_wrist_leg3;
-        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t379
-            - (gdistal_wx_leg3 * t387 + c_proximal_leg3 * t381)
+        let t440 = t112 * t120;
+        let t442 = t100 * t120;
+        let t445 = t117 * t120;
+        let t452 = t5 * t382 - t59 * t388 + t11 * t380;
+        let t453 = t452 - t394;
+        let t455 = t349 * t321;
+        let t456 = t392 + t455;
+        let t459 = t316 * t316;
+        let t460 = t349 * t349;
+        let t461 = t459 - t460;
+        let t463 = t70 * t453 + t5 * t456 + t9 * t461;
+        let t469 = t36 * t453 + t59 * t456 + t37 * t461;
+        let t476 = t33 * t453 + t11 * t456 + t13 * t461;
+        let t493 = t9 * t382 - t37 * t388 + t13 * t380;
+        let t494 = t493 + t397;
+        let t496 = t321 * t321;
+        let t497 = t496 - t459;
+        let t500 = t392 - t455;
+        let t502 = t70 * t494 + t5 * t497 + t9 * t500;
+        let t508 = t36 * t494 + t59 * t497 + t37 * t500;
+        let t515 = t33 * t494 + t11 * t497 + t13 * t500;
+        let t529 = t70 * t455;
+        let t531 = t5 * t452 - t529 + t398;
+        let t534 = t36 * t455;
+        let t536 = t59 * t452 - t534 + t408;
+        let t540 = t33 * t455;
+        let t542 = t11 * t452 - t540 + t419;
+        let t555 = t460 - t496;
+        let t557 = t493 - t397;
+        let t560 = t452 + t394;
+        let t562 = t70 * t555 + t5 * t557 + t9 * t560;
+        let t568 = t36 * t555 + t59 * t557 + t37 * t560;
+        let t575 = t33 * t555 + t11 * t557 + t13 * t560;
+        let t590 = t529 - t395 + t9 * t493;
+        let t594 = t534 - t406 + t37 * t493;
+        let t599 = t540 - t417 + t13 * t493;
+        let t612 = 9.81 * t70;
+        let t614 = 9.81 * t36;
+        let t623 = 9.81 * t5;
+        let t625 = 9.81 * t59;
+        let t634 = 9.81 * t9;
+        let t636 = 9.81 * t37;
+        let t650 = t105 * t382 - t92 * t388 - t97 * t380 - t266;
+        let minus_rate_dot_proximal_leg1 = t93 * t650;
+        let t657 = t109 * t382 - t63 * t388 - t28 * t380 - t293;
+        let minus_rate_dot_proximal_leg2 = t29 * t657;
+        let t664 = t75 * t382 - t53 * t388 + t66 * t380 + t326;
+        let minus_rate_dot_proximal_leg3_2 = t54 * t664;
+        let t670 = minus_gproximal_wx_leg4 * t404 - minus_gproximal_wy_leg4 * t121
+            - minus_gproximal_wz_leg4 * t415;
+        let t676 = t144 * t382 - t158 * t388 + t199 * t380 - t354;
+        let minus_rate_dot_proximal_leg4 = t145 * t676;
+        let t683 = minus_gproximal_wy_leg4 * t431 - minus_gproximal_wx_leg4 * t426
+            + minus_gproximal_wz_leg4 * t437;
+        let t689 = minus_gproximal_wy_leg4 * t442 - minus_gproximal_wx_leg4 * t440
+            - minus_gproximal_wz_leg4 * t445;
+        let t694 = 6.936717523440031 * minus_s_proximal_leg4;
+        let t701 = 6.936717523440031 * c_proximal_leg4;
+        let t715 = t256 + t650 + t256;
+        let t721 = minus_gdistal_wx_leg1 * t404 + c_proximal_leg1 * t121
+            + minus_gdistal_wx_leg1 * t415;
+        let t722 = t253 * t255;
+        let t729 = minus_gdistal_wx_leg1 * t426 + c_proximal_leg1 * t431
+            + minus_gdistal_wx_leg1 * t437;
+        let t735 = minus_gdistal_wx_leg1 * t445
+            - (minus_gdistal_wx_leg1 * t440 + c_proximal_leg1 * t442);
+        let t741 = c_proximal_leg2 * t404 + gdistal_wy_leg2 * t121
+            - gdistal_wy_leg2 * t415;
+        let t742 = t280 * t282;
+        let t745 = t283 + t657 + t283;
+        let t751 = gdistal_wy_leg2 * t437
+            - (c_proximal_leg2 * t426 + gdistal_wy_leg2 * t431);
+        let t758 = c_proximal_leg2 * t440 + gdistal_wy_leg2 * t442
+            + gdistal_wy_leg2 * t445;
+        let t764 = gdistal_wx_leg3 * t415
+            - (gdistal_wx_leg3 * t404 + c_proximal_leg3 * t121);
+        let t765 = t308 * t310;
+        let t771 = gdistal_wx_leg3 * t426 + c_proximal_leg3 * t431
+            - gdistal_wx_leg3 * t437;
+        let t774 = t664 - t311 - t311;
+        let t780 = gdistal_wx_leg3 * t440 + c_proximal_leg3 * t442
+            + gdistal_wx_leg3 * t445;
+        let t784 = t344 + t676 + t344;
+        let t785 = c_distal_leg4 * t784;
+        let t791 = c_proximal_leg4 * t404 + minus_gdistal_wy_leg4 * t121
+            + minus_gdistal_wy_leg4 * t415;
+        let t792 = t341 * t343;
+        let t799 = c_proximal_leg4 * t426 + minus_gdistal_wy_leg4 * t431
+            + minus_gdistal_wy_leg4 * t437;
+        let t807 = c_proximal_leg4 * t440 + minus_gdistal_wy_leg4 * t442
+            - minus_gdistal_wy_leg4 * t445;
+        let t811 = t253 * rate_distal_leg1;
+        let t812 = minus_s_distal_leg1 * minus_rate_dot_proximal_leg1;
+        let t818 = t253 * t253;
+        let t819 = t255 * t255;
+        let t820 = t818 - t819;
+        let t825 = t280 * t280;
+        let t826 = t282 * t282;
+        let t827 = t825 - t826;
+        let t829 = t280 * rate_distal_leg2;
+        let t830 = minus_s_distal_leg2 * minus_rate_dot_proximal_leg2;
+        let t839 = t308 * t308;
+        let t840 = t310 * t310;
+        let t841 = t839 - t840;
+        let t844 = t308 * rate_distal_leg3;
+        let t845 = s_distal_leg3 * minus_rate_dot_proximal_leg3_2;
+        let t854 = t341 * minus_rate_distal_leg4;
+        let t855 = s_distal_leg4 * minus_rate_dot_proximal_leg4;
+        let t859 = s_distal_leg4 * t784 - c_distal_leg4 * (t854 + t854 - t855);
+        let t861 = t341 * t341;
+        let t862 = t343 * t343;
+        let t863 = t861 - t862;
+        let minus_rate_dot_distal_leg1 = t253 * minus_rate_wrist_leg1;
+        let rate_dot_distal_leg1 = minus_gdistal_wx_leg1 * t388 + c_proximal_leg1 * t382
+            + minus_gdistal_wx_leg1 * t380 - minus_rate_dot_distal_leg1;
+        let t882 = rate_distal_leg1 * rate_distal_leg1;
+        let minus_rate_dot_distal_leg2 = t280 * minus_rate_wrist_leg2;
+        let rate_dot_distal_leg2 = c_proximal_leg2 * t388 + gdistal_wy_leg2 * t382
+            - gdistal_wy_leg2 * t380 - minus_rate_dot_distal_leg2;
+        let t900 = rate_distal_leg2 * rate_distal_leg2;
+        let t908 = rate_distal_leg3 * rate_distal_leg3;
+        let minus_rate_dot_distal_leg3 = t308 * minus_rate_wrist_leg3;
+        let rate_dot_distal_leg3 = gdistal_wx_leg3 * t380
+            - (gdistal_wx_leg3 * t388 + c_proximal_leg3 * t382)
             - minus_rate_dot_distal_leg3;
-        let minus_rate_dot_distal_leg4 = t340 * minus_rate_wrist_leg4;
-        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t387
-            + minus_gdistal_wy_leg4 * t381 + minus_gdistal_wy_leg4 * t379
+        let minus_rate_dot_distal_leg4 = t341 * minus_rate_wrist_leg4;
+        let minus_rate_dot_distal_leg4_2 = c_proximal_leg4 * t388
+            + minus_gdistal_wy_leg4 * t382 + minus_gdistal_wy_leg4 * t380
             + minus_rate_dot_distal_leg4;
-        let t931 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
-        let t934 = c_distal_leg4 * (t791 + minus_rate_dot_distal_leg4_2)
-            + s_distal_leg4 * (t931 - t860);
-        let t976 = c_distal_leg4 * (t861 - t931)
-            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t791);
-        let t986 = t78 * (-6.936717523440031);
-        let t991 = t14 * (-6.936717523440031);
-        let t997 = t34 * 6.936717523440031;
-        let t1003 = 6.936717523440031 * t157;
-        let t1005 = t127 * 6.936717523440031;
+        let t932 = minus_rate_distal_leg4 * minus_rate_distal_leg4;
+        let t935 = c_distal_leg4 * (t792 + minus_rate_dot_distal_leg4_2)
+            + s_distal_leg4 * (t932 - t861);
+        let t977 = c_distal_leg4 * (t862 - t932)
+            + s_distal_leg4 * (minus_rate_dot_distal_leg4_2 - t792);
+        let t987 = t78 * (-6.936717523440031);
+        let t992 = t14 * (-6.936717523440031);
+        let t998 = t34 * 6.936717523440031;
+        let t1004 = 6.936717523440031 * t158;
+        let t1006 = t127 * 6.936717523440031;
         Ok([
             [
-                t121 * t398 - t403 * t408 + t414 * t419, t121 * t462 - t403 * t468 + t414 * t475,
-                t121 * t501 - t403 * t507 + t414 * t514, t121 * t530 - t403 * t535 + t414 * t541,
-                t121 * t561 - t403 * t567 + t414 * t574, t121 * t589 - t403 * t593 + t414 * t598,
-                -(t403 * t611 + t121 * t613), -(t403 * t622 + t121 * t624),
-                -(t403 * t633 + t121 * t635), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
-                -(t669 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
-                0.0, t669 * t693, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t669 * t700),
-                -minus_rate_proximal_leg1, 0.0, 0.0, -(t669 * minus_rate_proximal_leg4),
+                t121 * t399 - t404 * t409 + t415 * t420, t121 * t463 - t404 * t469 + t415 * t476,
+                t121 * t502 - t404 * t508 + t415 * t515, t121 * t531 - t404 * t536 + t415 * t542,
+                t121 * t562 - t404 * t568 + t415 * t575, t121 * t590 - t404 * t594 + t415 * t599,
+                -(t404 * t612 + t121 * t614), -(t404 * t623 + t121 * t625),
+                -(t404 * t634 + t121 * t636), -minus_rate_dot_proximal_leg1, 0.0, 0.0,
+                -(t670 * minus_rate_dot_proximal_leg4), -(6.936717523440031 * s_proximal_leg1), 0.0,
+                0.0, t670 * t694, -(6.936717523440031 * c_proximal_leg1), 0.0, 0.0, -(t670 * t701),
+                -minus_rate_proximal_leg1, 0.0, 0.0, -(t670 * minus_rate_proximal_leg4),
                 -::overact::math::sign(minus_rate_proximal_leg1), 0.0, 0.0,
-                -::overact::math::signed(t669, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t669,
-                -(c_distal_leg1 * t714 + t720 * t721), -(t740 * t741), t763 * t764,
-                -(t669 * t784 + t790 * t791),
-                c_distal_leg1 * (t810 - (t811 - t810)) - minus_s_distal_leg1 * t714
-                    + t720 * t819,
-                t740 * t826,
-                t763 * t840,
-                t669 * t858 - t790 * t862,
-                t720 * t649
-                    - (c_distal_leg1 * (t721 + rate_dot_distal_leg1)
-                        + minus_s_distal_leg1 * (t881 - t817)),
-                t740 * t656,
-                t763 * t663,
-                t669 * t934 - t790 * t675,
-                minus_s_distal_leg1 * (t721 - rate_dot_distal_leg1)
-                    - c_distal_leg1 * (t818 - t881) + t720 * t811,
-                t740 * t829,
-                -(t763 * t844),
-                t790 * t854 - t669 * t976,
-                6.936717523440031 * t105 + t720 * t986,
-                t740 * t991,
-                t763 * t997,
-                t669 * t1003 - t790 * t1005,
+                -::overact::math::signed(t670, minus_rate_proximal_leg4), 1.0, 0.0, 0.0, t670,
+                -(c_distal_leg1 * t715 + t721 * t722), -(t741 * t742), t764 * t765,
+                -(t670 * t785 + t791 * t792),
+                c_distal_leg1 * (t811 - (t812 - t811)) - minus_s_distal_leg1 * t715
+                    + t721 * t820,
+                t741 * t827,
+                t764 * t841,
+                t670 * t859 - t791 * t863,
+                t721 * t650
+                    - (c_distal_leg1 * (t722 + rate_dot_distal_leg1)
+                        + minus_s_distal_leg1 * (t882 - t818)),
+                t741 * t657,
+                t764 * t664,
+                t670 * t935 - t791 * t676,
+                minus_s_distal_leg1 * (t722 - rate_dot_distal_leg1)
+                    - c_distal_leg1 * (t819 - t882) + t721 * t812,
+                t741 * t830,
+                -(t764 * t845),
+                t791 * t855 - t670 * t977,
+                6.936717523440031 * t105 + t721 * t987,
+                t741 * t992,
+                t764 * t998,
+                t670 * t1004 - t791 * t1006,
             ],
             [
-                t425 * t408 - t430 * t398 - t436 * t419, t425 * t468 - t430 * t462 - t436 * t475,
-                t425 * t507 - t430 * t501 - t436 * t514, t425 * t535 - t430 * t530 - t436 * t541,
-                t425 * t567 - t430 * t561 - t436 * t574, t425 * t593 - t430 * t589 - t436 * t598,
-                t425 * t611 + t430 * t613, t425 * t622 + t430 * t624, t425 * t633 + t430 * t635,
-                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t682 * minus_rate_dot_proximal_leg4),
-                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t682 * t693, 0.0,
-                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t682 * t700), 0.0,
-                -minus_rate_proximal_leg2, 0.0, -(t682 * minus_rate_proximal_leg4), 0.0,
+                t426 * t409 - t431 * t399 - t437 * t420, t426 * t469 - t431 * t463 - t437 * t476,
+                t426 * t508 - t431 * t502 - t437 * t515, t426 * t536 - t431 * t531 - t437 * t542,
+                t426 * t568 - t431 * t562 - t437 * t575, t426 * t594 - t431 * t590 - t437 * t599,
+                t426 * t612 + t431 * t614, t426 * t623 + t431 * t625, t426 * t634 + t431 * t636,
+                0.0, -minus_rate_dot_proximal_leg2, 0.0, -(t683 * minus_rate_dot_proximal_leg4),
+                0.0, 6.936717523440031 * minus_s_proximal_leg2, 0.0, t683 * t694, 0.0,
+                -(6.936717523440031 * c_proximal_leg2), 0.0, -(t683 * t701), 0.0,
+                -minus_rate_proximal_leg2, 0.0, -(t683 * minus_rate_proximal_leg4), 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg2), 0.0,
-                -::overact::math::signed(t682, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t682,
-                t728 * t721, -(c_distal_leg2 * t744 + t750 * t741), t770 * t764,
-                t798 * t791 - t682 * t784, -(t728 * t819),
-                c_distal_leg2 * (t828 - (t829 - t828)) - minus_s_distal_leg2 * t744
-                    + t750 * t826,
-                t770 * t840,
-                t682 * t858 + t798 * t862,
-                -(t728 * t649),
-                t750 * t656
-                    - (c_distal_leg2 * (t741 + rate_dot_distal_leg2)
-                        + minus_s_distal_leg2 * (t899 - t824)),
-                t770 * t663,
-                t682 * t934 + t798 * t675,
-                -(t728 * t811),
-                minus_s_distal_leg2 * (t741 - rate_dot_distal_leg2)
-                    - c_distal_leg2 * (t825 - t899) + t750 * t829,
-                -(t770 * t844),
-                -(t682 * t976 + t798 * t854),
-                -(t728 * t986),
-                t750 * t991 - 6.936717523440031 * t63,
-                t770 * t997,
-                t682 * t1003 + t798 * t1005,
+                -::overact::math::signed(t683, minus_rate_proximal_leg4), 0.0, 1.0, 0.0, t683,
+                t729 * t722, -(c_distal_leg2 * t745 + t751 * t742), t771 * t765,
+                t799 * t792 - t683 * t785, -(t729 * t820),
+                c_distal_leg2 * (t829 - (t830 - t829)) - minus_s_distal_leg2 * t745
+                    + t751 * t827,
+                t771 * t841,
+                t683 * t859 + t799 * t863,
+                -(t729 * t650),
+                t751 * t657
+                    - (c_distal_leg2 * (t742 + rate_dot_distal_leg2)
+                        + minus_s_distal_leg2 * (t900 - t825)),
+                t771 * t664,
+                t683 * t935 + t799 * t676,
+                -(t729 * t812),
+                minus_s_distal_leg2 * (t742 - rate_dot_distal_leg2)
+                    - c_distal_leg2 * (t826 - t900) + t751 * t830,
+                -(t771 * t845),
+                -(t683 * t977 + t799 * t855),
+                -(t729 * t987),
+                t751 * t992 - 6.936717523440031 * t63,
+                t771 * t998,
+                t683 * t1004 + t799 * t1006,
             ],
             [
-                t439 * t408 - t441 * t398 + t444 * t419, t439 * t468 - t441 * t462 + t444 * t475,
-                t439 * t507 - t441 * t501 + t444 * t514, t439 * t535 - t441 * t530 + t444 * t541,
-                t439 * t567 - t441 * t561 + t444 * t574, t439 * t593 - t441 * t589 + t444 * t598,
-                t439 * t611 + t441 * t613, t439 * t622 + t441 * t624, t439 * t633 + t441 * t635,
-                0.0, 0.0, -minus_rate_dot_proximal_leg3_2, -(t688 * minus_rate_dot_proximal_leg4),
-                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t688 * t693, 0.0, 0.0,
-                -(6.936717523440031 * c_proximal_leg3), -(t688 * t700), 0.0, 0.0,
-                -minus_rate_proximal_leg3, -(t688 * minus_rate_proximal_leg4), 0.0, 0.0,
+                t440 * t409 - t442 * t399 + t445 * t420, t440 * t469 - t442 * t463 + t445 * t476,
+                t440 * t508 - t442 * t502 + t445 * t515, t440 * t536 - t442 * t531 + t445 * t542,
+                t440 * t568 - t442 * t562 + t445 * t575, t440 * t594 - t442 * t590 + t445 * t599,
+                t440 * t612 + t442 * t614, t440 * t623 + t442 * t625, t440 * t634 + t442 * t636,
+                0.0, 0.0, -minus_rate_dot_proximal_leg3_2, -(t689 * minus_rate_dot_proximal_leg4),
+                0.0, 0.0, -(6.936717523440031 * s_proximal_leg3), t689 * t694, 0.0, 0.0,
+                -(6.936717523440031 * c_proximal_leg3), -(t689 * t701), 0.0, 0.0,
+                -minus_rate_proximal_leg3, -(t689 * minus_rate_proximal_leg4), 0.0, 0.0,
                 -::overact::math::sign(minus_rate_proximal_leg3),
-                -::overact::math::signed(t688, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t688,
-                -(t734 * t721), t757 * t741, t779 * t764 - c_distal_leg3 * t773,
-                t806 * t791 - t688 * t784, t734 * t819, -(t757 * t826),
-                c_distal_leg3 * (t843 + t844 + t843) + s_distal_leg3 * t773
-                    + t779 * t840,
-                t688 * t858 + t806 * t862,
-                t734 * t649,
-                -(t757 * t656),
-                s_distal_leg3 * (t907 - t838)
-                    - c_distal_leg3 * (rate_dot_distal_leg3 - t764) + t779 * t663,
-                t688 * t934 + t806 * t675,
-                t734 * t811,
-                -(t757 * t829),
-                s_distal_leg3 * (t764 + rate_dot_distal_leg3)
-                    - c_distal_leg3 * (t839 - t907) - t779 * t844,
-                -(t688 * t976 + t806 * t854),
-                t734 * t986,
-                -(t757 * t991),
-                t779 * t997 - 6.936717523440031 * t75,
-                t688 * t1003 + t806 * t1005,
+                -::overact::math::signed(t689, minus_rate_proximal_leg4), 0.0, 0.0, 1.0, t689,
+                -(t735 * t722), t758 * t742, t780 * t765 - c_distal_leg3 * t774,
+                t807 * t792 - t689 * t785, t735 * t820, -(t758 * t827),
+                c_distal_leg3 * (t844 + t845 + t844) + s_distal_leg3 * t774
+                    + t780 * t841,
+                t689 * t859 + t807 * t863,
+                t735 * t650,
+                -(t758 * t657),
+                s_distal_leg3 * (t908 - t839)
+                    - c_distal_leg3 * (rate_dot_distal_leg3 - t765) + t780 * t664,
+                t689 * t935 + t807 * t676,
+                t735 * t812,
+                -(t758 * t830),
+                s_distal_leg3 * (t765 + rate_dot_distal_leg3)
+                    - c_distal_leg3 * (t840 - t908) - t780 * t845,
+                -(t689 * t977 + t807 * t855),
+                t735 * t987,
+                -(t758 * t992),
+                t780 * t998 - 6.936717523440031 * t75,
+                t689 * t1004 + t807 * t1006,
             ],
         ])
     }

@@ -619,7 +619,7 @@ impl Stanford {
     /// Output: 6 x 55.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 564 operations (236 additions, 328 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 459 intermediates.
+    /// 563 operations (236 additions, 327 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 458 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
         joints: &[f64; 6],
@@ -644,216 +644,215 @@ impl Stanford {
         let t22 = t17 - s2_arm * t20;
         let t23 = t15 + joint_accelerations[1];
         let t24 = s2_arm * t23;
-        let t29 = s4_arm * joint_velocities[1] - c4_arm * t8;
-        let t30 = t29 * t29;
-        let t33 = s4_arm * t8 + c4_arm * joint_velocities[1];
-        let t34 = t33 * t33;
-        let t35 = t30 + t34;
-        let t36 = t18 + t19;
-        let t37 = t35 - t36;
-        let t40 = t24 - c2_arm * (t20 + t37);
-        let t41 = s2_arm * joint_accelerations[0];
-        let t45 = 0.1524 * t10 + 9.81 * s2_arm;
-        let t46 = joint_velocities[1] * t14;
-        let t47 = t41 + t46;
-        let t48 = t46 + t47;
-        let t55 = 0.1524 * t41 - 9.81 * c2_arm;
-        let t57 = joint_velocities[0] * joint_velocities[0];
-        let t60 = joint_velocities[2] + joint_velocities[2];
-        let t62 = joints[2] * t48 - 0.1524 * t57 + t8 * t60;
-        let t63 = s2_arm * joints[2];
-        let t65 = 0.1524 * s2_arm;
-        let t68 = joint_accelerations[2] - (t55 + joints[2] * t35);
-        let t70 = 0.1524 * c2_arm;
-        let t72 = joints[2] * t16;
-        let t74 = joint_velocities[1] * t60 - (t45 + t72);
-        let t76 = t65 * t68 + t70 * t74;
-        let t87 = joint_accelerations[3] - t11;
-        let t89 = s2_arm * c4_arm;
-        let t90 = t14 + joint_velocities[3];
-        let t91 = t33 * t90;
-        let t93 = s2_arm * s4_arm;
-        let t94 = t29 * t90;
-        let t95 = t93 * t94;
-        let t98 = t8 * t90;
-        let t103 = s4_arm * joint_accelerations[1] - c4_arm * t47
-            + joint_velocities[3] * t33;
-        let t106 = t29 * t33;
-        let t109 = t91 + t103;
-        let t122 = s4_arm * t47 + c4_arm * joint_accelerations[1]
-            - joint_velocities[3] * t29;
-        let t123 = t94 - t122;
-        let t127 = t30 - t34;
-        let t133 = t90 * t90;
-        let t134 = t133 - t30;
-        let t136 = t106 + t87;
-        let t139 = t91 - t103;
-        let t145 = t94 + t122;
-        let t147 = t34 - t133;
-        let t149 = t106 - t87;
-        let t160 = t89 * c5_arm + c2_arm * s5_arm;
-        let t163 = s5_arm * t29 + c5_arm * t90;
-        let t164 = t33 + joint_velocities[4];
-        let t165 = t163 * t164;
-        let t169 = t89 * s5_arm - c2_arm * c5_arm;
-        let t172 = c5_arm * t29 - s5_arm * t90;
-        let t173 = t172 * t164;
-        let t174 = t169 * t173;
-        let t176 = t122 + joint_accelerations[4];
-        let t179 = s4_arm * s5_arm;
-        let t180 = t179 * t173;
-        let t181 = s4_arm * c5_arm;
-        let t186 = t29 * t164;
-        let t200 = c5_arm * t103 - s5_arm * t87 - joint_velocities[4] * t163;
-        let t203 = t172 * t163;
-        let t210 = t200 - t165;
-        let t215 = s4_arm * t63 - c4_arm * t70;
-        let t219 = s4_arm * t70 + c4_arm * t63;
-        let t220 = t30 + t133;
-        let t228 = c4_arm * t74 + s4_arm * t62;
+        let t25 = joint_velocities[0] * joint_velocities[0];
+        let t26 = t18 + t19;
+        let t27 = t26 - t25;
+        let t29 = t24 + c2_arm * t27;
+        let t30 = s2_arm * joint_accelerations[0];
+        let t34 = 0.1524 * t10 + 9.81 * s2_arm;
+        let t35 = joint_velocities[1] * t14;
+        let t36 = t30 + t35;
+        let t37 = t35 + t36;
+        let t45 = 0.1524 * t30 - 9.81 * c2_arm;
+        let t49 = joint_velocities[2] + joint_velocities[2];
+        let t51 = joints[2] * t37 - 0.1524 * t25 + t8 * t49;
+        let t52 = s2_arm * joints[2];
+        let t54 = 0.1524 * s2_arm;
+        let t55 = t25 - t20;
+        let t58 = joint_accelerations[2] - (t45 + joints[2] * t55);
+        let t60 = 0.1524 * c2_arm;
+        let t62 = joints[2] * t16;
+        let t64 = joint_velocities[1] * t49 - (t34 + t62);
+        let t66 = t54 * t58 + t60 * t64;
+        let t77 = joint_accelerations[3] - t11;
+        let t81 = s2_arm * c4_arm;
+        let t84 = s4_arm * t8 + c4_arm * joint_velocities[1];
+        let t85 = t14 + joint_velocities[3];
+        let t86 = t84 * t85;
+        let t88 = s2_arm * s4_arm;
+        let t91 = s4_arm * joint_velocities[1] - c4_arm * t8;
+        let t92 = t91 * t85;
+        let t93 = t88 * t92;
+        let t96 = t8 * t85;
+        let t101 = s4_arm * joint_accelerations[1] - c4_arm * t36
+            + joint_velocities[3] * t84;
+        let t104 = t91 * t84;
+        let t107 = t86 + t101;
+        let t120 = s4_arm * t36 + c4_arm * joint_accelerations[1]
+            - joint_velocities[3] * t91;
+        let t121 = t92 - t120;
+        let t125 = t84 * t84;
+        let t126 = t85 * t85;
+        let t127 = t125 - t126;
+        let t128 = t55 - t127;
+        let t129 = t125 + t126;
+        let t130 = t128 - t129;
+        let t136 = t129 - t55;
+        let t138 = t104 + t77;
+        let t141 = t86 - t101;
+        let t147 = t92 + t120;
+        let t150 = t104 - t77;
+        let t161 = t81 * c5_arm + c2_arm * s5_arm;
+        let t164 = s5_arm * t91 + c5_arm * t85;
+        let t165 = t84 + joint_velocities[4];
+        let t166 = t164 * t165;
+        let t170 = t81 * s5_arm - c2_arm * c5_arm;
+        let t173 = c5_arm * t91 - s5_arm * t85;
+        let t174 = t173 * t165;
+        let t175 = t170 * t174;
+        let t177 = t120 + joint_accelerations[4];
+        let t180 = s4_arm * s5_arm;
+        let t181 = t180 * t174;
+        let t182 = s4_arm * c5_arm;
+        let t187 = t91 * t165;
+        let t201 = c5_arm * t101 - s5_arm * t77 - joint_velocities[4] * t164;
+        let t204 = t173 * t164;
+        let t211 = t201 - t166;
+        let t216 = s4_arm * t52 - c4_arm * t60;
+        let t220 = s4_arm * t60 + c4_arm * t52;
+        let t228 = c4_arm * t64 + s4_arm * t51;
         let t232 = joints[2] * c4_arm;
         let t234 = joints[2] * s4_arm;
-        let t243 = s5_arm * t103 + c5_arm * t87 + joint_velocities[4] * t172;
-        let t244 = t173 + t243;
-        let t248 = t163 * t163;
-        let t249 = t164 * t164;
-        let t250 = t248 + t249;
-        let t251 = t250 - t220;
-        let t252 = t248 - t249;
-        let t253 = t251 + t252;
-        let t265 = t176 - t203;
-        let t268 = t165 + t200;
-        let t279 = t203 + t176;
-        let t283 = t173 - t243;
-        let t298 = t93 * s6_arm - t160 * c6_arm;
-        let t301 = c6_arm * t164 - s6_arm * t172;
-        let t302 = t163 + joint_velocities[5];
+        let t243 = s5_arm * t101 + c5_arm * t77 + joint_velocities[4] * t173;
+        let t244 = t174 + t243;
+        let t248 = t165 * t165;
+        let t249 = t173 * t173;
+        let t250 = t248 - t249;
+        let t251 = t249 + t248;
+        let t252 = t128 - t251;
+        let t253 = t250 + t252;
+        let t265 = t177 - t204;
+        let t268 = t166 + t201;
+        let t279 = t204 + t177;
+        let t283 = t174 - t243;
+        let t298 = t88 * s6_arm - t161 * c6_arm;
+        let t301 = c6_arm * t165 - s6_arm * t173;
+        let t302 = t164 + joint_velocities[5];
         let t303 = t301 * t302;
-        let t307 = t160 * s6_arm + t93 * c6_arm;
-        let t310 = c6_arm * t172 + s6_arm * t164;
+        let t307 = t161 * s6_arm + t88 * c6_arm;
+        let t310 = c6_arm * t173 + s6_arm * t165;
         let t311 = t310 * t302;
         let t312 = t307 * t311;
         let t314 = t243 + joint_accelerations[5];
-        let t319 = c6_arm * t181 + c4_arm * s6_arm;
-        let t323 = c4_arm * c6_arm - s6_arm * t181;
+        let t319 = c6_arm * t182 + c4_arm * s6_arm;
+        let t323 = c4_arm * c6_arm - s6_arm * t182;
         let t324 = t323 * t311;
         let t329 = s5_arm * c6_arm;
         let t331 = s5_arm * s6_arm;
         let t332 = t331 * t311;
-        let t335 = t172 * t302;
-        let t337 = t34 + t133;
-        let t344 = c4_arm * t62 - s4_arm * t74;
-        let t357 = c5_arm * t215 + s5_arm * t65;
-        let t361 = c5_arm * t65 - s5_arm * t215;
-        let t362 = t220 - t252;
-        let t369 = c5_arm * t228 - s5_arm * t68;
-        let t373 = s5_arm * t232;
-        let t375 = c5_arm * t232;
-        let t392 = c6_arm * t200 + s6_arm * t176 + joint_velocities[5] * t301;
-        let t395 = t310 * t301;
-        let t406 = t303 + t392;
-        let t409 = t395 + t314;
-        let t411 = t302 * t302;
-        let t412 = t310 * t310;
-        let t413 = t411 - t412;
-        let t416 = t303 - t392;
-        let t432 = t301 * t301;
-        let t433 = t432 - t411;
-        let t435 = t395 - t314;
-        let t442 = c6_arm * t176 - s6_arm * t200 - joint_velocities[5] * t310;
-        let t443 = t311 + t442;
-        let t460 = t311 - t442;
-        let t463 = t412 - t432;
-        let t487 = s5_arm * t228 + c5_arm * t68;
-        let t506 = c6_arm * t219 - s6_arm * t357;
-        let t510 = c6_arm * t357 + s6_arm * t219;
-        let t511 = t432 + t411;
-        let t519 = c6_arm * t344 - s6_arm * t369;
-        let t526 = c6_arm * t375 - s6_arm * t234;
-        let t530 = s6_arm * t375 + c6_arm * t234;
-        let t548 = t412 + t411;
-        let t556 = c6_arm * t369 + s6_arm * t344;
+        let t335 = t173 * t302;
+        let t343 = c4_arm * t51 - s4_arm * t64;
+        let t356 = c5_arm * t216 + s5_arm * t54;
+        let t360 = c5_arm * t54 - s5_arm * t216;
+        let t367 = c5_arm * t228 - s5_arm * t58;
+        let t371 = s5_arm * t232;
+        let t373 = c5_arm * t232;
+        let t390 = c6_arm * t201 + s6_arm * t177 + joint_velocities[5] * t301;
+        let t393 = t310 * t301;
+        let t404 = t303 + t390;
+        let t407 = t393 + t314;
+        let t409 = t302 * t302;
+        let t410 = t310 * t310;
+        let t411 = t409 - t410;
+        let t414 = t303 - t390;
+        let t430 = t301 * t301;
+        let t431 = t430 - t409;
+        let t433 = t393 - t314;
+        let t440 = c6_arm * t177 - s6_arm * t201 - joint_velocities[5] * t310;
+        let t441 = t311 + t440;
+        let t458 = t311 - t440;
+        let t461 = t410 - t430;
+        let t478 = t128 + t250;
+        let t486 = s5_arm * t228 + c5_arm * t58;
+        let t505 = c6_arm * t220 - s6_arm * t356;
+        let t509 = c6_arm * t356 + s6_arm * t220;
+        let t510 = t430 + t409;
+        let t518 = c6_arm * t343 - s6_arm * t367;
+        let t525 = c6_arm * t373 - s6_arm * t234;
+        let t529 = s6_arm * t373 + c6_arm * t234;
+        let t547 = t410 + t409;
+        let t555 = c6_arm * t367 + s6_arm * t343;
         [
             [
                 joint_accelerations[0], joint_velocities[0],
                 ::overact::math::sign(joint_velocities[0]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(c2_arm * t12),
-                t22, -t40, -(0.1524 * t22), c2_arm * t48 - s2_arm * t12, 0.1524 * t40,
-                t62 * t63 - t76, 0.1524 * t17 + t48 * t63 + t65 * t35 + s2_arm * t62,
-                c2_arm * t87 - (t89 * t91 + t95), t95 - t89 * t103 - c2_arm * t106,
-                joint_accelerations[0] * 0.1524 - t57 * t63 - 6.561679790026247 * t76,
-                t89 * t123 + t93 * t109 + c2_arm * t127, t93 * t134 - t89 * t136 - c2_arm * t139,
-                c2_arm * t145 - (t89 * t147 + t93 * t149), t160 * t165 - t174 + t93 * t176,
-                t70 * t36 - t12 * t63 + 0.1524 * t24 + c2_arm * t62,
-                t174 - t160 * t200 + t93 * t203,
-                t215 * t149 - t219 * t220 - t65 * t109 - (t89 * t68 + c2_arm * t228),
-                t160 * t244 + t169 * t210 - t93 * t253, t169 * t251 - t160 * t265 + t93 * t268,
-                t169 * t279 - t160 * t252 + t93 * t283, t298 * t303 - t312 - t169 * t314,
-                t219 * t136 - t215 * t337 - t65 * t123 + c2_arm * t344 - t93 * t68,
-                t219 * t210 - (t357 * t279 + t361 * t362) - (t160 * t344 + t93 * t369),
-                t298 * t392 + t312 + t169 * t395, t298 * t409 + t307 * t413 + t169 * t416,
-                t298 * t433 - t307 * t435 - t169 * t443, t307 * t406 - t298 * t460 - t169 * t463,
-                t361 * t265 - t357 * t250 + t219 * t244 - (t169 * t344 + t93 * t487),
-                t506 * t409 - t510 * t511 - t361 * t460 - (t307 * t487 + t169 * t519),
-                t510 * t435 - t506 * t548 - t361 * t406 + t298 * t487 + t169 * t556,
+                t22, -t29, -(0.1524 * t22), c2_arm * t37 - s2_arm * t12, 0.1524 * t29,
+                t51 * t52 - t66, 0.1524 * t17 + t37 * t52 + t54 * t55 + s2_arm * t51,
+                c2_arm * t77 - (t81 * t86 + t93), t93 - t81 * t101 - c2_arm * t104,
+                joint_accelerations[0] * 0.1524 - t25 * t52 - 6.561679790026247 * t66,
+                t81 * t121 + t88 * t107 + c2_arm * t130, t88 * t136 - t81 * t138 - c2_arm * t141,
+                c2_arm * t147 - (t81 * t127 + t88 * t150), t161 * t166 - t175 + t88 * t177,
+                t60 * t26 - t12 * t52 + 0.1524 * t24 + c2_arm * t51,
+                t175 - t161 * t201 + t88 * t204,
+                t216 * t150 - t220 * t128 - t54 * t107 - (t81 * t58 + c2_arm * t228),
+                t161 * t244 + t170 * t211 - t88 * t253, t170 * t250 - t161 * t265 + t88 * t268,
+                t170 * t279 - t161 * t252 + t88 * t283, t298 * t303 - t312 - t170 * t314,
+                t220 * t138 - t216 * t129 - t54 * t121 + c2_arm * t343 - t88 * t58,
+                t220 * t211 - (t356 * t279 + t360 * t251) - (t161 * t343 + t88 * t367),
+                t298 * t390 + t312 + t170 * t393, t298 * t407 + t307 * t411 + t170 * t414,
+                t298 * t431 - t307 * t433 - t170 * t441, t307 * t404 - t298 * t458 - t170 * t461,
+                t360 * t265 - t356 * t478 + t220 * t244 - (t170 * t343 + t88 * t486),
+                t505 * t407 - t509 * t510 - t360 * t458 - (t307 * t486 + t170 * t518),
+                t509 * t433 - t505 * t547 - t360 * t404 + t298 * t486 + t170 * t555,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, joint_accelerations[1], joint_velocities[1],
                 ::overact::math::sign(joint_velocities[1]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t15, -t10, -t41, t45, t37, t55,
-                joints[2] * t74, t74 - t72, t98, s4_arm * t109 - t98, -(joints[2] * t10),
-                c4_arm * t109 - s4_arm * t123, s4_arm * t136 + c4_arm * t134,
-                s4_arm * t147 - c4_arm * t149, t180 - t181 * t165 + c4_arm * t176,
-                -(joints[2] * t36 + t68), t200 * t181 - t180 + c4_arm * t203,
-                t232 * t149 + t234 * t220 + s4_arm * t68,
-                -(c4_arm * t253 + t181 * t244 + t179 * t210),
-                t181 * t265 - t179 * t251 + c4_arm * t268,
-                t181 * t252 - t179 * t279 + c4_arm * t283, t319 * t303 - t324 + t179 * t314,
-                -(t232 * t337 + t234 * t136 + c4_arm * t68),
-                t373 * t362 - t375 * t279 - t234 * t210 + t344 * t181 - c4_arm * t369,
-                t392 * t319 + t324 - t179 * t395, t319 * t409 + t323 * t413 - t179 * t416,
-                t319 * t433 - t323 * t435 + t179 * t443, t323 * t406 - t319 * t460 + t179 * t463,
-                t344 * t179 - c4_arm * t487 - (t375 * t250 + t373 * t265 + t234 * t244),
-                t373 * t460 - (t526 * t511 + t530 * t409) + t179 * t519 - t487 * t323,
-                t526 * t435 + t530 * t548 + t373 * t406 + t487 * t319 - t179 * t556,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t15, -t10, -t30, t34, -(t20 + t27),
+                t45, joints[2] * t64, t64 - t62, t96, s4_arm * t107 - t96, -(joints[2] * t10),
+                c4_arm * t107 - s4_arm * t121, s4_arm * t138 + c4_arm * t136,
+                s4_arm * t127 - c4_arm * t150, t181 - t182 * t166 + c4_arm * t177,
+                -(joints[2] * t26 + t58), t201 * t182 - t181 + c4_arm * t204,
+                t232 * t150 + t234 * t128 + s4_arm * t58,
+                -(c4_arm * t253 + t182 * t244 + t180 * t211),
+                t182 * t265 - t180 * t250 + c4_arm * t268,
+                t182 * t252 - t180 * t279 + c4_arm * t283, t319 * t303 - t324 + t180 * t314,
+                -(t232 * t129 + t234 * t138 + c4_arm * t58),
+                t371 * t251 - t373 * t279 - t234 * t211 + t343 * t182 - c4_arm * t367,
+                t390 * t319 + t324 - t180 * t393, t319 * t407 + t323 * t411 - t180 * t414,
+                t319 * t431 - t323 * t433 + t180 * t441, t323 * t404 - t319 * t458 + t180 * t461,
+                t343 * t180 - c4_arm * t486 - (t373 * t478 + t371 * t265 + t234 * t244),
+                t371 * t458 - (t525 * t510 + t529 * t407) + t180 * t518 - t486 * t323,
+                t525 * t433 + t529 * t547 + t371 * t404 + t486 * t319 - t180 * t555,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[2], joint_velocities[2],
                 ::overact::math::sign(joint_velocities[2]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t68, -t35, 0.0, 0.0, -t41,
-                0.0, 0.0, 0.0, 0.0, -t23, 0.0, t109, 0.0, 0.0, 0.0, 0.0, t123,
-                s5_arm * t279 + c5_arm * t362, 0.0, 0.0, 0.0, 0.0, s5_arm * t250 - c5_arm * t265,
-                t329 * t511 + t331 * t409 + c5_arm * t460,
-                c5_arm * t406 - (t329 * t435 + t331 * t548),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t58, -t55, 0.0, 0.0, -t30,
+                0.0, 0.0, 0.0, 0.0, -t23, 0.0, t107, 0.0, 0.0, 0.0, 0.0, t121,
+                s5_arm * t279 + c5_arm * t251, 0.0, 0.0, 0.0, 0.0, s5_arm * t478 - c5_arm * t265,
+                t329 * t510 + t331 * t407 + c5_arm * t458,
+                c5_arm * t404 - (t329 * t433 + t331 * t547),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, joint_accelerations[3],
                 joint_velocities[3], ::overact::math::sign(joint_velocities[3]), 1.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t87, -t106, 0.0,
-                t127, -t139, t145, t186, 0.0, -(t186 + s5_arm * t210), -t228,
-                s5_arm * t244 - c5_arm * t210, -(s5_arm * t265 + c5_arm * t251),
-                -(s5_arm * t252 + c5_arm * t279), c5_arm * t314 - (t329 * t303 + t332), t344,
-                -(s5_arm * t344), t332 - t392 * t329 - c5_arm * t395,
-                t331 * t413 - t329 * t409 - c5_arm * t416,
-                c5_arm * t443 - (t329 * t433 + t331 * t435),
-                t329 * t460 + t331 * t406 + c5_arm * t463, c5_arm * t344,
-                c5_arm * t519 - t487 * t331, -(t487 * t329 + c5_arm * t556),
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t77, -t104, 0.0,
+                t130, -t141, t147, t187, 0.0, -(t187 + s5_arm * t211), -t228,
+                s5_arm * t244 - c5_arm * t211, -(s5_arm * t265 + c5_arm * t250),
+                -(s5_arm * t252 + c5_arm * t279), c5_arm * t314 - (t329 * t303 + t332), t343,
+                -(s5_arm * t343), t332 - t390 * t329 - c5_arm * t393,
+                t331 * t411 - t329 * t407 - c5_arm * t414,
+                c5_arm * t441 - (t329 * t431 + t331 * t433),
+                t329 * t458 + t331 * t404 + c5_arm * t461, c5_arm * t343,
+                c5_arm * t518 - t486 * t331, -(t486 * t329 + c5_arm * t555),
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 joint_accelerations[4], joint_velocities[4],
                 ::overact::math::sign(joint_velocities[4]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t176, 0.0, t203, 0.0, -t253,
-                t268, t283, -t335, 0.0, -t369, t335 + s6_arm * t406, s6_arm * t409 + c6_arm * t413,
-                s6_arm * t433 - c6_arm * t435, c6_arm * t406 - s6_arm * t460, -t487,
-                -(c6_arm * t487), s6_arm * t487,
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t177, 0.0, t204, 0.0, -t253,
+                t268, t283, -t335, 0.0, -t367, t335 + s6_arm * t404, s6_arm * t407 + c6_arm * t411,
+                s6_arm * t431 - c6_arm * t433, c6_arm * t404 - s6_arm * t458, -t486,
+                -(c6_arm * t486), s6_arm * t486,
             ],
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, joint_accelerations[5], joint_velocities[5],
                 ::overact::math::sign(joint_velocities[5]), 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t314, 0.0,
-                0.0, -t395, -t416, t443, t463, 0.0, t519, -t556,
+                0.0, -t393, -t414, t441, t461, 0.0, t518, -t555,
             ],
         ]
     }

@@ -1251,7 +1251,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 31.
     /// Columns: `PARAMETERS`.
     ///
-    /// 296 operations (112 additions, 173 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 256 intermediates.
+    /// 296 operations (111 additions, 174 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 256 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -1278,44 +1278,41 @@ impl ThreeLegPoint {
         let t16 = pose[1] + 0.175;
         let t17 = 0.5 * t16;
         let t18 = 0.8660254037844386 * t14 + t17;
-        let t19 = pose[1] * 0.8660254037844386;
-        let t20 = t0 + t19;
-        let t21 = 0.5 * t20;
-        let t22 = t21 - t19;
-        let t23 = t22 + t22;
-        let t26 = t18 * t18 + t23 * t23;
-        let t28 = 0.0576 / t26 - 0.25;
-        ::overact::guard::reach(t28, "leg2")?;
-        let t29 = ::overact::math::sqrt(t28);
-        let t32 = t23 * t29 - 0.5 * t18;
-        let t36 = t22 + t18 * t29;
-        let t39 = 3.608439182435161 * (t18 + t32) + 2.0833333333333335 * (t23 - t36);
-        let t40 = t26 * t29;
-        ::overact::guard::leg(t40, 0.05748423696979895, "leg2")?;
-        let t41 = 0.24 / t40;
-        let g1_vx_leg2 = t39 * t41;
-        let t45 = 3.608439182435161 * t36 + 2.0833333333333335 * t32;
-        let g2_vy_leg2 = t45 * t41;
-        let t49 = 0.5 * t1 - pose[0] * t7;
-        let t50 = t1 - t49;
-        let g1_vy_leg1 = t50 * t12;
-        let t53 = t16 * 4.166666666666667;
-        let t54 = t45 + t53;
-        let minus_minus_g1_vy_leg2 = t54 * t41;
-        let t58 = pose[0] - 0.3031088913245535;
-        let t60 = 0.8660254037844386 * t58 - t17;
-        let t64 = t60 * t60 + t20 * t20;
-        let t66 = 0.0576 / t64 - 0.25;
-        ::overact::guard::reach(t66, "leg3")?;
-        let t67 = ::overact::math::sqrt(t66);
-        let t69 = 0.5 * t60 - t20 * t67;
-        let t72 = t21 + t60 * t67;
-        let t74 = 2.0833333333333335 * t69 - 3.608439182435161 * t72;
-        let t75 = t64 * t67;
+        let t20 = t0 + pose[1] * 0.8660254037844386;
+        let t21 = pose[0] - t20;
+        let t24 = t18 * t18 + t21 * t21;
+        let t26 = 0.0576 / t24 - 0.25;
+        ::overact::guard::reach(t26, "leg2")?;
+        let t27 = ::overact::math::sqrt(t26);
+        let t30 = t21 * t27 - 0.5 * t18;
+        let t35 = 0.5 * t21 + t18 * t27;
+        let t38 = 3.608439182435161 * (t18 + t30) + 2.0833333333333335 * (t21 - t35);
+        let t39 = t24 * t27;
+        ::overact::guard::leg(t39, 0.05748423696979895, "leg2")?;
+        let t40 = 0.24 / t39;
+        let g1_vx_leg2 = t38 * t40;
+        let t44 = 3.608439182435161 * t35 + 2.0833333333333335 * t30;
+        let g2_vy_leg2 = t44 * t40;
+        let t48 = 0.5 * t1 - pose[0] * t7;
+        let t49 = t1 - t48;
+        let g1_vy_leg1 = t49 * t12;
+        let t52 = t16 * 4.166666666666667;
+        let t53 = t44 + t52;
+        let minus_minus_g1_vy_leg2 = t53 * t40;
+        let t57 = pose[0] - 0.3031088913245535;
+        let t59 = 0.8660254037844386 * t57 - t17;
+        let t63 = t59 * t59 + t20 * t20;
+        let t65 = 0.0576 / t63 - 0.25;
+        ::overact::guard::reach(t65, "leg3")?;
+        let t66 = ::overact::math::sqrt(t65);
+        let t68 = 0.5 * t59 - t20 * t66;
+        let t72 = 0.5 * t20 + t59 * t66;
+        let t74 = 2.0833333333333335 * t68 - 3.608439182435161 * t72;
+        let t75 = t63 * t66;
         ::overact::guard::leg(t75, 0.05748423696979895, "leg3")?;
         let t76 = 0.24 / t75;
         let minus_g1_vy_leg3 = t74 * t76;
-        let t85 = 3.608439182435161 * t69 + 2.0833333333333335 * t72;
+        let t85 = 3.608439182435161 * t68 + 2.0833333333333335 * t72;
         let g1_vx_leg3 = t85 * t76;
         let t88 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -1335,20 +1332,20 @@ impl ThreeLegPoint {
         let t109 = (g1_vy_leg1 * actuator_velocities[0]
             + minus_minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
-        let t112 = t14 * 4.166666666666667 - t39;
-        let minus_g2_vx_leg2 = t112 * t41;
+        let t112 = t14 * 4.166666666666667 - t38;
+        let minus_g2_vx_leg2 = t112 * t40;
         let t116 = t88 / t98 + t99 * t109;
         let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
         let t119 = rate_2_leg2 * rate_2_leg2;
         let t120 = 0.24 * t119;
         let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
         let t124 = rate_1_leg2 * rate_1_leg2;
-        let t126 = 2.0833333333333335 * (t26 - 0.1152);
+        let t126 = 2.0833333333333335 * (t24 - 0.1152);
         let t127 = t124 * t126;
-        let rate_dot_1_leg2 = t41 * (t120 + t127);
+        let rate_dot_1_leg2 = t40 * (t120 + t127);
         let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
         let minus_g2_vx_leg1 = t9 * t12;
-        let minus_g2_vy_leg1 = t49 * t12;
+        let minus_g2_vy_leg1 = t48 * t12;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
         let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t138 = 0.0576 * t137;
@@ -1358,16 +1355,16 @@ impl ThreeLegPoint {
         let t145 = t142 * t144;
         let rate_dot_1_leg1 = t12 * (t138 + t145);
         let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t151 = t74 + t53;
+        let t151 = t74 + t52;
         let minus_g2_vy_leg3 = t151 * t76;
-        let t155 = t58 * 4.166666666666667 - t85;
+        let t155 = t57 * 4.166666666666667 - t85;
         let minus_g2_vx_leg3 = t155 * t76;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
         let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let t160 = 0.24 * t159;
         let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
         let t164 = rate_1_leg3 * rate_1_leg3;
-        let t166 = 2.0833333333333335 * (t64 - 0.1152);
+        let t166 = 2.0833333333333335 * (t63 - 0.1152);
         let t167 = t164 * t166;
         let rate_dot_1_leg3 = t76 * (t160 + t167);
         let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
@@ -1375,11 +1372,11 @@ impl ThreeLegPoint {
         let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
             - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
         let t183 = t172 / t98 + t99 * t181;
-        let t187 = t10 * t183 - t50 * t181 - t138;
+        let t187 = t10 * t183 - t49 * t181 - t138;
         let minus_rate_dot_1_leg1 = t12 * (t187 - t145);
         let t190 = minus_g1_vx_leg1 * minus_rate_dot_1_leg1;
         let t191 = g1_vy_leg1 * minus_rate_dot_1_leg1;
-        let t200 = t9 * t183 + t49 * t181 + 0.0576 * t142;
+        let t200 = t9 * t183 + t48 * t181 + 0.0576 * t142;
         let minus_rate_dot_2_leg1 = t12 * (t200 + t137 * t144);
         let t204 = minus_g2_vx_leg1 * minus_rate_dot_2_leg1;
         let t205 = minus_g2_vy_leg1 * minus_rate_dot_2_leg1;
@@ -1388,12 +1385,12 @@ impl ThreeLegPoint {
         let t214 = 4.166666666666667 * t200;
         let t216 = 4.166666666666667 * t187;
         let t225 = rate_1_leg1 + minus_rate_2_leg1;
-        let t232 = t54 * t181 + t39 * t183 + t120;
-        let minus_minus_rate_dot_1_leg2 = t41 * (t232 + t127);
+        let t232 = t53 * t181 + t38 * t183 + t120;
+        let minus_minus_rate_dot_1_leg2 = t40 * (t232 + t127);
         let t235 = g1_vx_leg2 * minus_minus_rate_dot_1_leg2;
         let t236 = minus_minus_g1_vy_leg2 * minus_minus_rate_dot_1_leg2;
-        let t245 = t112 * t183 - t45 * t181 + 0.24 * t124;
-        let minus_rate_dot_2_leg2 = t41 * (t245 + t119 * t126);
+        let t245 = t112 * t183 - t44 * t181 + 0.24 * t124;
+        let minus_rate_dot_2_leg2 = t40 * (t245 + t119 * t126);
         let t249 = minus_g2_vx_leg2 * minus_rate_dot_2_leg2;
         let t250 = g2_vy_leg2 * minus_rate_dot_2_leg2;
         let t266 = rate_2_leg2 - rate_1_leg2;
@@ -2227,7 +2224,7 @@ impl ThreeLegPoint {
     /// Output: 2 x 22.
     /// Columns: `BASE_PARAMETERS`.
     ///
-    /// 270 operations (100 additions, 159 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 242 intermediates.
+    /// 270 operations (99 additions, 160 multiplications, 11 divisions), 3 square roots, 0 trigonometric pairs, 12 signs, 242 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -2243,54 +2240,53 @@ impl ThreeLegPoint {
         let t3 = 0.5 * t2;
         let t4 = 0.8660254037844386 * t0 + t3;
         let t5 = 0.5 * pose[0];
-        let t7 = t5 + pose[1] * 0.8660254037844386;
-        let t8 = 0.5 * t7;
-        let t9 = t5 - t8;
-        let t10 = t9 + t9;
-        let t13 = t4 * t4 + t10 * t10;
-        let t15 = 0.0576 / t13 - 0.25;
-        ::overact::guard::reach(t15, "leg2")?;
-        let t16 = ::overact::math::sqrt(t15);
-        let t19 = t10 * t16 - 0.5 * t4;
-        let t23 = t9 + t4 * t16;
-        let t26 = 3.608439182435161 * (t4 + t19) + 2.0833333333333335 * (t10 - t23);
-        let t27 = t13 * t16;
-        ::overact::guard::leg(t27, 0.05748423696979895, "leg2")?;
-        let t28 = 0.24 / t27;
-        let g1_vx_leg2 = t26 * t28;
-        let t32 = 3.608439182435161 * t23 + 2.0833333333333335 * t19;
-        let g2_vy_leg2 = t32 * t28;
-        let t34 = pose[1] - 0.35;
-        let t38 = t34 * t34 + pose[0] * pose[0];
-        let t40 = 0.0576 / t38 - 0.25;
-        ::overact::guard::reach(t40, "leg1")?;
-        let t41 = ::overact::math::sqrt(t40);
-        let t43 = 0.5 * t34 - pose[0] * t41;
-        let t44 = t34 - t43;
-        let t45 = t38 * t41;
-        ::overact::guard::leg(t45, 0.05748423696979895, "leg1")?;
-        let t46 = 1.0 / t45;
-        let g1_vy_leg1 = t44 * t46;
-        let t49 = t2 * 4.166666666666667;
-        let t50 = t32 + t49;
-        let minus_minus_g1_vy_leg2 = t50 * t28;
-        let t54 = pose[0] - 0.3031088913245535;
-        let t56 = 0.8660254037844386 * t54 - t3;
-        let t60 = t56 * t56 + t7 * t7;
-        let t62 = 0.0576 / t60 - 0.25;
-        ::overact::guard::reach(t62, "leg3")?;
-        let t63 = ::overact::math::sqrt(t62);
-        let t65 = 0.5 * t56 - t7 * t63;
-        let t68 = t8 + t56 * t63;
-        let t70 = 2.0833333333333335 * t65 - 3.608439182435161 * t68;
-        let t71 = t60 * t63;
+        let t6 = pose[1] * 0.8660254037844386;
+        let t7 = t5 - t6;
+        let t10 = t4 * t4 + t7 * t7;
+        let t12 = 0.0576 / t10 - 0.25;
+        ::overact::guard::reach(t12, "leg2")?;
+        let t13 = ::overact::math::sqrt(t12);
+        let t16 = t7 * t13 - 0.5 * t4;
+        let t21 = 0.5 * t7 + t4 * t13;
+        let t24 = 3.608439182435161 * (t4 + t16) + 2.0833333333333335 * (t7 - t21);
+        let t25 = t10 * t13;
+        ::overact::guard::leg(t25, 0.05748423696979895, "leg2")?;
+        let t26 = 0.24 / t25;
+        let g1_vx_leg2 = t24 * t26;
+        let t30 = 3.608439182435161 * t21 + 2.0833333333333335 * t16;
+        let g2_vy_leg2 = t30 * t26;
+        let t32 = pose[1] - 0.35;
+        let t36 = t32 * t32 + pose[0] * pose[0];
+        let t38 = 0.0576 / t36 - 0.25;
+        ::overact::guard::reach(t38, "leg1")?;
+        let t39 = ::overact::math::sqrt(t38);
+        let t41 = 0.5 * t32 - pose[0] * t39;
+        let t42 = t32 - t41;
+        let t43 = t36 * t39;
+        ::overact::guard::leg(t43, 0.05748423696979895, "leg1")?;
+        let t44 = 1.0 / t43;
+        let g1_vy_leg1 = t42 * t44;
+        let t47 = t2 * 4.166666666666667;
+        let t48 = t30 + t47;
+        let minus_minus_g1_vy_leg2 = t48 * t26;
+        let t52 = pose[0] - 0.3031088913245535;
+        let t54 = 0.8660254037844386 * t52 - t3;
+        let t56 = t5 + t6;
+        let t59 = t54 * t54 + t56 * t56;
+        let t61 = 0.0576 / t59 - 0.25;
+        ::overact::guard::reach(t61, "leg3")?;
+        let t62 = ::overact::math::sqrt(t61);
+        let t64 = 0.5 * t54 - t56 * t62;
+        let t68 = 0.5 * t56 + t54 * t62;
+        let t70 = 2.0833333333333335 * t64 - 3.608439182435161 * t68;
+        let t71 = t59 * t62;
         ::overact::guard::leg(t71, 0.05748423696979895, "leg3")?;
         let t72 = 0.24 / t71;
         let minus_g1_vy_leg3 = t70 * t72;
-        let t78 = t5 + t34 * t41;
+        let t78 = t5 + t32 * t39;
         let t79 = t78 - pose[0];
-        let minus_g1_vx_leg1 = t79 * t46;
-        let t85 = 3.608439182435161 * t65 + 2.0833333333333335 * t68;
+        let minus_g1_vx_leg1 = t79 * t44;
+        let t85 = 3.608439182435161 * t64 + 2.0833333333333335 * t68;
         let g1_vx_leg3 = t85 * t72;
         let t88 = g1_vx_leg2 * actuator_velocities[1]
             - minus_g1_vx_leg1 * actuator_velocities[0]
@@ -2310,39 +2306,39 @@ impl ThreeLegPoint {
         let t109 = (g1_vy_leg1 * actuator_velocities[0]
             + minus_minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t88 * t99) / t108;
-        let t112 = t0 * 4.166666666666667 - t26;
-        let minus_g2_vx_leg2 = t112 * t28;
+        let t112 = t0 * 4.166666666666667 - t24;
+        let minus_g2_vx_leg2 = t112 * t26;
         let t116 = t88 / t98 + t99 * t109;
         let rate_2_leg2 = g2_vy_leg2 * t109 - minus_g2_vx_leg2 * t116;
         let t119 = rate_2_leg2 * rate_2_leg2;
         let t120 = 0.24 * t119;
         let rate_1_leg2 = g1_vx_leg2 * t116 + minus_minus_g1_vy_leg2 * t109;
         let t124 = rate_1_leg2 * rate_1_leg2;
-        let t126 = 2.0833333333333335 * (t13 - 0.1152);
+        let t126 = 2.0833333333333335 * (t10 - 0.1152);
         let t127 = t124 * t126;
-        let rate_dot_1_leg2 = t28 * (t120 + t127);
+        let rate_dot_1_leg2 = t26 * (t120 + t127);
         let t130 = actuator_accelerations[1] - rate_dot_1_leg2;
-        let minus_g2_vx_leg1 = t78 * t46;
-        let minus_g2_vy_leg1 = t43 * t46;
+        let minus_g2_vx_leg1 = t78 * t44;
+        let minus_g2_vy_leg1 = t41 * t44;
         let minus_rate_2_leg1 = minus_g2_vx_leg1 * t116 + minus_g2_vy_leg1 * t109;
         let t137 = minus_rate_2_leg1 * minus_rate_2_leg1;
         let t138 = 0.0576 * t137;
         let rate_1_leg1 = g1_vy_leg1 * t109 - minus_g1_vx_leg1 * t116;
         let t142 = rate_1_leg1 * rate_1_leg1;
-        let t144 = 0.5 * (t38 - 0.1152);
+        let t144 = 0.5 * (t36 - 0.1152);
         let t145 = t142 * t144;
-        let rate_dot_1_leg1 = t46 * (t138 + t145);
+        let rate_dot_1_leg1 = t44 * (t138 + t145);
         let t148 = actuator_accelerations[0] - rate_dot_1_leg1;
-        let t151 = t70 + t49;
+        let t151 = t70 + t47;
         let minus_g2_vy_leg3 = t151 * t72;
-        let t155 = t54 * 4.166666666666667 - t85;
+        let t155 = t52 * 4.166666666666667 - t85;
         let minus_g2_vx_leg3 = t155 * t72;
         let minus_rate_2_leg3 = minus_g2_vy_leg3 * t109 + minus_g2_vx_leg3 * t116;
         let t159 = minus_rate_2_leg3 * minus_rate_2_leg3;
         let t160 = 0.24 * t159;
         let rate_1_leg3 = g1_vx_leg3 * t116 - minus_g1_vy_leg3 * t109;
         let t164 = rate_1_leg3 * rate_1_leg3;
-        let t166 = 2.0833333333333335 * (t60 - 0.1152);
+        let t166 = 2.0833333333333335 * (t59 - 0.1152);
         let t167 = t164 * t166;
         let rate_dot_1_leg3 = t72 * (t160 + t167);
         let t170 = actuator_accelerations[2] - rate_dot_1_leg3;
@@ -2350,16 +2346,16 @@ impl ThreeLegPoint {
         let t181 = (g1_vy_leg1 * t148 + minus_minus_g1_vy_leg2 * t130
             - minus_g1_vy_leg3 * t170 + t99 * t172) / t108;
         let t183 = t172 / t98 + t99 * t181;
-        let t187 = t79 * t183 - t44 * t181 - t138;
-        let minus_rate_dot_1_leg1 = t46 * (t187 - t145);
-        let t195 = t50 * t181 + t26 * t183 + t120;
-        let minus_minus_rate_dot_1_leg2 = t28 * (t195 + t127);
+        let t187 = t79 * t183 - t42 * t181 - t138;
+        let minus_rate_dot_1_leg1 = t44 * (t187 - t145);
+        let t195 = t48 * t181 + t24 * t183 + t120;
+        let minus_minus_rate_dot_1_leg2 = t26 * (t195 + t127);
         let t203 = t85 * t183 - t70 * t181 + t160;
         let rate_dot_1_leg3_2 = t72 * (t203 + t167);
-        let t224 = t78 * t183 + t43 * t181 + 0.0576 * t142;
-        let minus_rate_dot_2_leg1 = t46 * (t224 + t137 * t144);
-        let t234 = t112 * t183 - t32 * t181 + 0.24 * t124;
-        let minus_rate_dot_2_leg2 = t28 * (t234 + t119 * t126);
+        let t224 = t78 * t183 + t41 * t181 + 0.0576 * t142;
+        let minus_rate_dot_2_leg1 = t44 * (t224 + t137 * t144);
+        let t234 = t112 * t183 - t30 * t181 + 0.24 * t124;
+        let minus_rate_dot_2_leg2 = t26 * (t234 + t119 * t126);
         let t244 = t151 * t181 + t155 * t183 + 0.24 * t164;
         let minus_rate_dot_2_leg3 = t72 * (t244 + t159 * t166);
         let t250 = 4.166666666666667 * t224;

@@ -106,12 +106,13 @@ fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
 }
 
 #[test]
-fn thorough_search_takes_no_more() -> Result<(), Failure> {
+fn quick_search_is_within_five_percent_of_the_thorough_one() -> Result<(), Failure> {
     let mut table = String::new();
     for work in &WORKS {
         let (_, quick) = line(work, Effort::Quick)?;
         let (line, operations) = line(work, Effort::Thorough)?;
         assert!(operations <= quick, "{line}");
+        assert!(100 * quick <= 105 * operations, "quick {quick}; {line}");
         writeln!(table, "{line}")?;
     }
     insta::assert_snapshot!(table);

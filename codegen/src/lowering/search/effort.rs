@@ -51,20 +51,21 @@ pub enum Reach {
     Nothing,
     /// Nodes that are one operation away from others.
     Singles,
-    /// Once, also those that are two operations away from nodes of the same heading, and operations
-    /// that serve several of these.
+    /// Once, in functions that are not too large, also those that are two operations away from nodes of
+    /// the same heading, and operations that serve several of these.
     Headings,
     /// These again until nothing is found, in small functions among the nodes of all headings.
     Everything,
 }
 
 impl Reach {
-    /// How often pairs are searched at most: a later round has only what the earlier ones opened up.
-    pub(super) const fn rounds(self) -> usize {
+    /// How often the pairs of a function of so many nodes are searched at most: a later round has only
+    /// what the earlier ones opened up.
+    pub(super) const fn rounds(self, nodes: usize) -> usize {
         match self {
-            Self::Nothing | Self::Singles => 0,
-            Self::Headings => 1,
+            Self::Headings if nodes <= 3000 => 1,
             Self::Everything => 4,
+            _ => 0,
         }
     }
 
@@ -72,8 +73,24 @@ impl Reach {
     pub(super) const fn steps(self, nodes: usize) -> usize {
         match self {
             Self::Everything => 40,
-            Self::Headings if nodes <= 1000 => 2,
+            Self::Headings if nodes <= 1000 => 10,
             _ => 0,
+        }
+    }
+
+    /// How often pairs are searched after a step.
+    pub(super) const fn rounds_after_a_step(self) -> usize {
+        match self {
+            Self::Everything => 1,
+            _ => 0,
+        }
+    }
+
+    /// How many steps in a row may bring nothing.
+    pub(super) const fn patience(self) -> usize {
+        match self {
+            Self::Everything => 3,
+            _ => 1,
         }
     }
 

@@ -49,25 +49,26 @@ pub fn search<'a>(
         return Overlay::default();
     }
     let mut graph = Graph::new(arena, entries, guards, states);
-    let known = singles::Known::new(&graph);
-    settle(&mut graph, known, reach, reach.rounds());
+    let mut known = singles::Known::new(&graph);
+    let rounds = reach.rounds(graph.len());
+    settle(&mut graph, &mut known, reach, rounds);
     repair::improve(&mut graph);
-    walk::improve(&mut graph, reach);
+    walk::improve(&mut graph, &mut known, reach);
     walk::come_home(&mut graph);
     repair::improve(&mut graph);
     graph.overlay()
 }
 
 /// Replaces nodes as long as that saves anything, with so many rounds of pairs at most.
-fn settle(graph: &mut Graph, mut known: singles::Known, reach: Reach, mut rounds: usize) {
+fn settle(graph: &mut Graph, known: &mut singles::Known, reach: Reach, mut rounds: usize) {
     loop {
-        let mut saved = singles::improve(graph, &mut known);
+        let mut saved = singles::improve(graph, known);
         if rounds > 0 {
             rounds -= 1;
             let by_pairs = pairs::improve(graph, reach.whole());
             if by_pairs > 0 {
                 // There are new nodes.
-                known = singles::Known::new(graph);
+                *known = singles::Known::new(graph);
             }
             saved += by_pairs;
         }

@@ -47,13 +47,18 @@ pub(super) fn states(
     known: &States<'_>,
 ) -> Vec<State> {
     let needed = graph.needed(guards.iter().map(|guard| guard.node()));
+    let constant = |node| match graph.op(arena, node) {
+        Some(Op::Constant(id)) => arena.constant_at(id).value(),
+        _ => f64::NAN,
+    };
+    let constants: Vec<f64> = (0..graph.len()).map(constant).collect();
     let mut stream = Stream::new(0);
     let mut states: Vec<State> = Vec::new();
     for (group, &count) in known.groups.iter().enumerate() {
         for number in 0..count {
             let value = |symbol: &str| (known.regular)(group, number, symbol);
             let at = |symbol: &str, any: f64| (value(symbol).unwrap_or(any), 0.0);
-            let ray = Ray::new(graph, arena, &at, &mut stream);
+            let ray = Ray::new(graph, arena, &constants, &at, &mut stream);
             states.push(ray.state(group, 0.0, &mut stream));
         }
     }
@@ -62,7 +67,7 @@ pub(super) fn states(
             Some(value) => (value, any),
             None => (any, 0.0),
         };
-        let ray = Ray::new(graph, arena, &from, &mut stream);
+        let ray = Ray::new(graph, arena, &constants, &from, &mut stream);
         if let Some((distance, guard)) = ray.end(&needed, guards) {
             let distance = distance * (1.0 - DISTANCE);
             let group = known.groups.len() + guard;
@@ -76,6 +81,8 @@ pub(super) fn states(
 struct Ray<'g> {
     graph: &'g Graph,
     arena: &'g Arena,
+    /// Of the nodes that are constants.
+    constants: &'g [f64],
     /// Start and direction of every symbol.
     symbols: HashMap<SymbolId, (f64, f64)>,
 }
@@ -85,6 +92,7 @@ impl<'g> Ray<'g> {
     fn new(
         graph: &'g Graph,
         arena: &'g Arena,
+        constants: &'g [f64],
         from: &dyn Fn(&str, f64) -> (f64, f64),
         stream: &mut Stream,
     ) -> Self {
@@ -95,6 +103,7 @@ impl<'g> Ray<'g> {
         Self {
             graph,
             arena,
+            constants,
             symbols: arena.symbols().map(&mut of).collect(),
         }
     }
@@ -128,7 +137,7 @@ impl<'g> Ray<'g> {
         let angle = |direction| angle_of(&self.arena.direction_at(direction), &symbol);
         match self.graph.op(self.arena, node) {
             Some(Op::Symbol(id)) => symbol(id),
-            Some(Op::Constant(id)) => self.arena.constant_at(id).value(),
+            Some(Op::Constant(_)) => self.constants[node],
             Some(Op::Cosine(id)) => angle(id).cos(),
             Some(Op::Sine(id)) => angle(id).sin(),
             _ => f64::NAN,

@@ -14,27 +14,26 @@ use crate::cas::Stream;
 /// How much larger than a node's own error that of a form of equal cost may be.
 const LOSS: f64 = 2.0;
 
-/// Steps in a row that may bring nothing.
-const PATIENCE: usize = 3;
-
 /// Improves a graph in which nothing can be saved by replacements one after the other.
-pub(super) fn improve(graph: &mut Graph, reach: Reach) {
+pub(super) fn improve(graph: &mut Graph, known: &mut Known, reach: Reach) {
     let mut stream = Stream::new(1);
     let mut best = graph.total();
     let mut fruitless = 0;
     for _ in 0..reach.steps(graph.len()) {
         let before = graph.clone();
-        let mut known = Known::new(graph);
-        step(graph, &mut known, &mut stream);
-        settle(graph, known, reach, 1);
+        step(graph, known, &mut stream);
+        settle(graph, known, reach, reach.rounds_after_a_step());
         repair::improve(graph);
         let total = graph.total();
         fruitless = if total < best { 0 } else { fruitless + 1 };
         if total > best {
+            if graph.len() > before.len() {
+                *known = Known::new(&before);
+            }
             *graph = before;
         }
         best = best.min(total);
-        if fruitless == PATIENCE {
+        if fruitless == reach.patience() {
             return;
         }
     }
