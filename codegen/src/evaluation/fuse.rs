@@ -23,6 +23,10 @@ pub(super) enum Kind {
     From(Arithmetic),
     /// (a ∘ b) ∘ (c ∘ d): first, middle, last
     Both(Arithmetic, Arithmetic, Arithmetic),
+    /// ((a ∘ b) ∘ c) ∘ d
+    Chain(Arithmetic, Arithmetic, Arithmetic),
+    /// d - ((a ∘ b) ∘ c)
+    FromChain(Arithmetic, Arithmetic),
     /// a × b and a × c
     TwoProducts,
     /// a × b, a × c and a × d
@@ -49,16 +53,18 @@ impl Kind {
             Self::From(a) => 3 + a as u8,
             Self::Then(a, b) => 6 + 3 * (a as u8) + b as u8,
             Self::Both(a, b, c) => 15 + 9 * (a as u8) + 3 * (b as u8) + c as u8,
-            Self::TwoProducts => 42,
-            Self::ThreeProducts => 43,
-            Self::Divide => 44,
-            Self::Negate => 45,
-            Self::Root => 46,
-            Self::Sign => 47,
-            Self::Signed => 48,
-            Self::ThreeSigned => 49,
-            Self::Direction => 50,
-            Self::Angle => 51,
+            Self::Chain(a, b, c) => 42 + 9 * (a as u8) + 3 * (b as u8) + c as u8,
+            Self::FromChain(a, b) => 69 + 3 * (a as u8) + b as u8,
+            Self::TwoProducts => 78,
+            Self::ThreeProducts => 79,
+            Self::Divide => 80,
+            Self::Negate => 81,
+            Self::Root => 82,
+            Self::Sign => 83,
+            Self::Signed => 84,
+            Self::ThreeSigned => 85,
+            Self::Direction => 86,
+            Self::Angle => 87,
         }
     }
 }
@@ -78,11 +84,6 @@ impl Value {
             Source::Input { array, index } => Self::Input { array, index },
             Source::Step(at) => Self::Step(at),
         }
-    }
-
-    /// Whether it is no constant and no input.
-    pub(super) const fn is_computed(self) -> bool {
-        matches!(self, Self::Step(_))
     }
 }
 
@@ -130,7 +131,38 @@ pub(super) fn drafts(program: &Program) -> Vec<Draft> {
         }
         drafts.push(fuse.draft(at, step.operation));
     }
-    sharing(drafts)
+    sharing(chains(program, drafts))
+}
+
+/// The same passes, where one of a single step is done with the pass of two that alone needs it.
+fn chains(program: &Program, drafts: Vec<Draft>) -> Vec<Draft> {
+    let entries = program.entries.iter().map(|entry| entry.source);
+    let kept = entries.chain(program.guards.iter().map(|guard| guard.source));
+    let operands = drafts.iter().flat_map(|draft| &draft.operands).copied();
+    let mut uses: HashMap<Value, usize> = HashMap::new();
+    for value in operands.chain(kept.map(Value::of)) {
+        *uses.entry(value).or_default() += 1;
+    }
+    let mut made: HashMap<Value, usize> = HashMap::new();
+    let mut chained: Vec<Option<Draft>> = Vec::new();
+    for draft in drafts {
+        let link = (0..draft.operands.len()).find_map(|place| {
+            let value = draft.operands[place];
+            let maker = *made.get(&value).filter(|_| uses[&value] == 1)?;
+            let longer = draft.after(chained[maker].as_ref()?, place)?;
+            Some((maker, longer))
+        });
+        let draft = match link {
+            Some((maker, longer)) => {
+                chained[maker] = None;
+                longer
+            }
+            None => draft,
+        };
+        made.extend(draft.results[0].map(|value| (value, chained.len())));
+        chained.push(Some(draft));
+    }
+    chained.into_iter().flatten().collect()
 }
 
 /// The steps that hold the sine and the cosine of each angle.
@@ -279,6 +311,31 @@ fn sharing(drafts: Vec<Draft>) -> Vec<Draft> {
 }
 
 impl Draft {
+    /// The pass together with that of a single step which makes its operand at `place`, where there is a
+    /// pass for all three steps.
+    fn after(&self, first: &Self, place: usize) -> Option<Self> {
+        let Kind::One(f) = first.kind else {
+            return None;
+        };
+        let (kind, g) = match self.kind {
+            Kind::Then(g, h) => (Kind::Chain(f, g, h), g),
+            Kind::From(g) => (Kind::FromChain(f, g), g),
+            _ => return None,
+        };
+        let other = match (place, g) {
+            (0, _) => self.operands[1],
+            // Sums and products may change sides.
+            (1, Arithmetic::Add | Arithmetic::Mul) => self.operands[0],
+            _ => return None,
+        };
+        let rest = [other, self.operands[2]];
+        Some(Self {
+            kind,
+            operands: first.operands.iter().copied().chain(rest).collect(),
+            results: self.results,
+        })
+    }
+
     /// The operands that it may share with others of its kind.
     fn common(&self) -> impl Iterator<Item = Value> {
         let count = match self.kind {

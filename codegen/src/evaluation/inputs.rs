@@ -36,7 +36,9 @@ pub(super) fn load(
 fn fill(loads: &[Load], values: &[f64], slots: &[Lanes]) {
     for load in loads {
         let value = values.get(load.index).copied().unwrap_or(0.0);
-        slots[load.slot].iter().for_each(|lane| lane.set(value));
+        slots[load.slot as usize]
+            .iter()
+            .for_each(|lane| lane.set(value));
     }
 }
 
@@ -54,7 +56,7 @@ fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
     let done = of_width!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
     let count = values.len() / width;
     for load in loads {
-        let lanes = &slots[load.slot];
+        let lanes = &slots[load.slot as usize];
         for (sample, lane) in lanes.iter().enumerate().take(count).skip(done) {
             lane.set(values[sample * width + load.index]);
         }
@@ -69,7 +71,7 @@ fn read(loads: &[Load], values: &[f64], width: usize, slots: &[Lanes]) {
 fn read_vectors<const N: usize>(loads: &[Load], values: &[f64], slots: &[Lanes]) -> usize {
     let vectors = values.as_chunks::<N>().0.as_chunks::<WIDTH>().0;
     for load in loads.iter().filter(|load| load.index < N) {
-        let parts = slots[load.slot].as_chunks::<WIDTH>().0;
+        let parts = slots[load.slot as usize].as_chunks::<WIDTH>().0;
         for (part, rows) in parts.iter().zip(vectors) {
             store(part, std::array::from_fn(|k| rows[k][load.index]));
         }

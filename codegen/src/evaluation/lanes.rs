@@ -95,7 +95,17 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
                     Kind::Then(F, G),
                     self.each(at, |[a, b, c]| g(f(a, b), c))
                 );
+                when!(
+                    at,
+                    Kind::FromChain(F, G),
+                    self.each(at, |[a, b, c, d]| d - g(f(a, b), c))
+                );
                 for_each!(H, h, {
+                    when!(
+                        at,
+                        Kind::Chain(F, G, H),
+                        self.each(at, |[a, b, c, d]| h(g(f(a, b), c), d))
+                    );
                     when!(
                         at,
                         Kind::Both(F, G, H),
@@ -118,7 +128,7 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
 
     #[inline(always)]
     fn block(&self, slot: Slot) -> &'a [[Cell<f64>; WIDTH]] {
-        self.blocks[slot].as_chunks().0
+        self.blocks[slot as usize].as_chunks().0
     }
 
     /// One result of N operands.
@@ -163,19 +173,40 @@ impl<'a, const FUSED: bool> Run<'a, FUSED> {
     fn angles(&self, at: &Pass) {
         let angles = self.block(at.operands[0]);
         let (sines, cosines) = (self.block(at.results[0]), self.block(at.results[1]));
-        // Asked for the whole block, so that the loop is free of branches.
-        let are_small = angles
-            .iter()
-            .fold(true, |all, part| all & are_small(&load(part)));
+        // Asked for the whole block, so that the loop is free of branches. What is no number gives no
+        // number either way.
+        let mut largest = [0.0_f64; WIDTH];
+        for part in angles {
+            let part = load(part);
+            largest = std::array::from_fn(|k| {
+                let angle = part[k].abs();
+                if angle > largest[k] {
+                    angle
+                } else {
+                    largest[k]
+                }
+            });
+        }
+        if !are_small(&largest) {
+            return self.large_angles(at);
+        }
         for part in 0..BLOCK / WIDTH {
-            let angles = load(&angles[part]);
-            let (sine, cosine) = if are_small {
-                sines_and_cosines::<WIDTH, FUSED>(angles)
-            } else {
-                (angles.map(f64::sin), angles.map(f64::cos))
-            };
+            let (sine, cosine) = sines_and_cosines::<WIDTH, FUSED>(load(&angles[part]));
             store(&sines[part], sine);
             store(&cosines[part], cosine);
+        }
+    }
+
+    /// Sines and cosines by the library, out of the way of what is usual.
+    #[cold]
+    #[inline(never)]
+    fn large_angles(&self, at: &Pass) {
+        let [angles, sines, cosines] =
+            [at.operands[0], at.results[0], at.results[1]].map(|slot| &self.blocks[slot as usize]);
+        for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
+            let angle = angle.get();
+            sine.set(angle.sin());
+            cosine.set(angle.cos());
         }
     }
 }

@@ -8,6 +8,7 @@
 //! several times as long: a model has hundreds of numbers, and each has to be moved.
 
 mod fuse;
+mod guards;
 mod inputs;
 mod lanes;
 mod plan;
@@ -18,7 +19,8 @@ mod tests;
 mod trigonometry;
 mod turn;
 
-use crate::lowering::{Condition, Guard, Program, SINGULAR};
+use crate::lowering::Program;
+use guards::check;
 use plan::Plan;
 use std::cell::Cell;
 
@@ -169,8 +171,8 @@ impl Evaluator {
                     take(Number {
                         index: output.index,
                         first,
-                        sign: if output.negative { -1.0 } else { 1.0 },
-                        values: &slots[output.slot][..count],
+                        sign: output.sign,
+                        values: &slots[output.slot as usize][..count],
                     });
                 }
             }
@@ -194,13 +196,13 @@ impl Memory {
     /// Memory for a program whose numbers are handed out when `together` of them are there.
     fn new(program: &Program, together: usize) -> Self {
         let plan = Plan::new(program, together);
-        let mut values = vec![0.0; plan.slots * BLOCK + LINE];
+        let mut values = vec![0.0; plan.slots as usize * BLOCK + LINE];
         // Vectors that lie across two lines of the cache take twice the time.
         let start = values.as_ptr().align_offset(LINE * size_of::<f64>());
         let start = start.min(LINE);
         let slots = values[start..].as_chunks_mut::<BLOCK>().0;
         for &(slot, value) in &plan.constants {
-            slots[slot].fill(value);
+            slots[slot as usize].fill(value);
         }
         Self {
             plan,
@@ -226,54 +228,6 @@ impl Memory {
 
     fn slots(&self) -> &[[f64; BLOCK]] {
         self.values[self.start..].as_chunks().0
-    }
-}
-
-/// The guards, whose values are in `places`, at `count` samples from number `start` on.
-fn check(
-    guards: &[Guard],
-    places: &[plan::Slot],
-    slots: &[[f64; BLOCK]],
-    start: usize,
-    count: usize,
-) -> Result<(), Failed> {
-    let mut first: Option<Failed> = None;
-    for (index, (guard, slot)) in guards.iter().zip(places).enumerate() {
-        let values = &slots[*slot][..count];
-        if guard.condition.holds_for_all(values) {
-            continue;
-        }
-        let failed = values.iter().position(|v| !guard.condition.holds(*v));
-        let earlier = |lane: &usize| first.as_ref().is_none_or(|f| start + lane < f.sample);
-        if let Some(lane) = failed.filter(earlier) {
-            first = Some(Failed {
-                sample: start + lane,
-                guard: index,
-                value: values[lane],
-            });
-        }
-    }
-    first.map_or(Ok(()), Err)
-}
-
-impl Condition {
-    /// Whether the condition holds for a value; never for NaN.
-    #[must_use]
-    pub fn holds(&self, value: f64) -> bool {
-        self.holds_for_all(&[value])
-    }
-
-    /// Whether the condition holds for all values.
-    #[must_use]
-    pub fn holds_for_all(&self, values: &[f64]) -> bool {
-        // Without an early end, so that several values are compared at a time.
-        match self {
-            Self::Reach { .. } => values.iter().fold(true, |all, v| all & (*v >= 0.0)),
-            Self::Leg { home, .. } | Self::Platform { home, .. } => {
-                let least = SINGULAR * home;
-                values.iter().fold(true, |all, v| all & (v.abs() > least))
-            }
-        }
     }
 }
 

@@ -8,8 +8,9 @@ use super::fuse::{Draft, RESULTS, Value, drafts};
 use crate::lowering::Program;
 use std::{collections::HashMap, ops::Range};
 
-/// A slot of the memory, which holds the values of one number over a block.
-pub(super) type Slot = usize;
+/// A slot of the memory, which holds the values of one number over a block. Half a word, so that a pass is
+/// half as long.
+pub(super) type Slot = u32;
 
 /// One pass over a block: one to three steps of the program.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,8 +35,8 @@ pub(super) struct Output {
     /// Which one it is.
     pub(super) index: usize,
     pub(super) slot: Slot,
-    /// Whether its negative is meant.
-    pub(super) negative: bool,
+    /// -1 where its negative is meant, else 1.
+    pub(super) sign: f64,
 }
 
 /// Some passes, and the numbers of the output that are handed out after them.
@@ -56,7 +57,7 @@ pub(super) struct Plan {
     pub(super) outputs: Vec<Output>,
     pub(super) guards: Vec<Slot>,
     /// Slots of the memory.
-    pub(super) slots: usize,
+    pub(super) slots: Slot,
 }
 
 impl Plan {
@@ -131,11 +132,12 @@ impl<'p> Planner<'p> {
         });
     }
 
-    /// A value is needed once less; where it is needed no more, its slot is free again.
+    /// A value is needed once less; where it is needed no more, its slot is free again. Inputs come again
+    /// with the next block, constants do not.
     fn used(&mut self, value: Value) {
         let needed = self.needed.entry(value).or_default();
         *needed = needed.saturating_sub(1);
-        if *needed == 0 && value.is_computed() {
+        if *needed == 0 && !matches!(value, Value::Constant(_)) {
             self.free.extend(self.slots.remove(&value));
         }
     }
@@ -186,7 +188,7 @@ impl<'p> Planner<'p> {
             self.plan.outputs.push(Output {
                 index,
                 slot,
-                negative: entry.negative,
+                sign: if entry.negative { -1.0 } else { 1.0 },
             });
             self.used(value);
         }

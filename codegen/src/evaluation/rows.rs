@@ -47,8 +47,9 @@ impl<T: Turn> NullaryFnOnce for Write<'_, T> {
         let (lines, rest) = block.outputs.as_chunks::<LINE>();
         let whole = block.samples / SIDE;
         for (line, outputs) in lines.iter().enumerate() {
-            let columns = outputs.map(|output| block.slots[output.slot].as_chunks::<SIDE>().0);
-            let signs = outputs.map(sign);
+            let columns =
+                outputs.map(|output| block.slots[output.slot as usize].as_chunks::<SIDE>().0);
+            let signs = outputs.map(|output| output.sign);
             for (group, rows) in rows.chunks_exact_mut(SIDE * width).enumerate().take(whole) {
                 let side = |k: usize| columns[k][group].map(|x| x * signs[k]);
                 let left = turn.turn(side(0), side(1), side(2), side(3));
@@ -87,17 +88,12 @@ fn number_by_number(
 ) {
     let width = block.outputs.len();
     for (at, output) in outputs.iter().enumerate() {
-        let values: &[f64; BLOCK] = &block.slots[output.slot];
+        let values: &[f64; BLOCK] = &block.slots[output.slot as usize];
         let Some(places) = rows.get_mut(first * width + column + at..) else {
             return;
         };
         for (place, value) in places.iter_mut().step_by(width).zip(&values[first..]) {
-            *place = value * sign(*output);
+            *place = value * output.sign;
         }
     }
-}
-
-#[inline(always)]
-const fn sign(output: Output) -> f64 {
-    if output.negative { -1.0 } else { 1.0 }
 }

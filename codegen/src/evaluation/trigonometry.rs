@@ -11,6 +11,9 @@ const LARGEST: f64 = 1e5;
 /// Adding and subtracting 1.5 × 2⁵² rounds to an integer, which then stands in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
+/// The bit of the sign.
+const SIGN: u64 = 1 << 63;
+
 /// π/2 in three parts: 33 bits, 33 bits, the rest.
 const HALF_PI: [f64; 3] = [
     f64::from_bits(0x3FF9_21FB_5440_0000),
@@ -83,14 +86,19 @@ fn sine_and_cosine<const FUSED: bool>(x: f64) -> (f64, f64) {
     let r = HALF_PI.into_iter().fold(x, reduced);
     let z = r * r;
     let sine = add::<FUSED>(r * z, polynomial::<FUSED>(z, SINE), r);
-    let cosine = add::<FUSED>(z * z, polynomial::<FUSED>(z, COSINE), 1.0 - 0.5 * z);
-    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    // Odd quadrants exchange sine and cosine.
-    let exchange = (sine ^ cosine) & 0_u64.wrapping_sub(quadrant & 1);
-    let turned = |quadrant: u64| (quadrant & 2) << 62;
+    let cosine = add::<FUSED>(z, polynomial::<FUSED>(z, COSINE), -0.5);
+    let cosine = add::<FUSED>(z, cosine, 1.0);
+    // Odd quadrants exchange sine and cosine; the second bit, or that of the next quadrant, is the sign.
+    let (sine, cosine) = if quadrant & 1 == 0 {
+        (sine, cosine)
+    } else {
+        (cosine, sine)
+    };
+    let sign = quadrant << 62;
+    let turned = |x: f64, sign: u64| f64::from_bits(x.to_bits() ^ (sign & SIGN));
     (
-        f64::from_bits((sine ^ exchange) ^ turned(quadrant)),
-        f64::from_bits((cosine ^ exchange) ^ turned(quadrant.wrapping_add(1))),
+        turned(sine, sign),
+        turned(cosine, sign.wrapping_add(SIGN >> 1)),
     )
 }
 

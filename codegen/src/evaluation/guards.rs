@@ -1,0 +1,99 @@
+//! The guards of a program over a block of samples.
+
+use super::plan::Slot;
+use super::{BLOCK, Failed};
+use crate::lowering::{Condition, Guard, SINGULAR};
+use pulp::NullaryFnOnce;
+
+/// The guards, whose values are in `places`, at `count` samples from number `start` on. Lanes beyond the
+/// last sample repeat it.
+pub(super) fn check(
+    guards: &[Guard],
+    places: &[Slot],
+    slots: &[[f64; BLOCK]],
+    start: usize,
+    count: usize,
+) -> Result<(), Failed> {
+    let all = All {
+        guards,
+        places,
+        slots,
+    };
+    if all.hold() {
+        return Ok(());
+    }
+    let mut first: Option<Failed> = None;
+    for (index, (guard, slot)) in guards.iter().zip(places).enumerate() {
+        let values = &slots[*slot as usize][..count];
+        let failed = values.iter().position(|v| !guard.condition.holds(*v));
+        let earlier = |lane: &usize| first.as_ref().is_none_or(|f| start + lane < f.sample);
+        if let Some(lane) = failed.filter(earlier) {
+            first = Some(Failed {
+                sample: start + lane,
+                guard: index,
+                value: values[lane],
+            });
+        }
+    }
+    first.map_or(Ok(()), Err)
+}
+
+/// All guards at all samples, which usually hold.
+struct All<'a> {
+    guards: &'a [Guard],
+    places: &'a [Slot],
+    slots: &'a [[f64; BLOCK]],
+}
+
+impl All<'_> {
+    fn hold(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = pulp::x86::V3::try_new() {
+            return simd.vectorize(self);
+        }
+        self.call()
+    }
+}
+
+impl NullaryFnOnce for All<'_> {
+    type Output = bool;
+
+    // Loops here and below: closures that iterators call would not be compiled for wide vectors.
+    #[inline(always)]
+    fn call(self) -> bool {
+        let mut hold = true;
+        for (guard, slot) in self.guards.iter().zip(self.places) {
+            hold &= guard.condition.holds_for_all(&self.slots[*slot as usize]);
+        }
+        hold
+    }
+}
+
+impl Condition {
+    /// Whether the condition holds for a value; never for NaN.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> bool {
+        self.holds_for_all(&[value])
+    }
+
+    /// Whether the condition holds for all values.
+    #[inline(always)]
+    fn holds_for_all<const N: usize>(&self, values: &[f64; N]) -> bool {
+        // Without an early end, so that several values are compared at a time.
+        let mut hold = true;
+        match self {
+            Self::Reach { .. } => {
+                for value in values {
+                    hold &= *value >= 0.0;
+                }
+            }
+            Self::Leg { home, .. } | Self::Platform { home, .. } => {
+                let least = SINGULAR * home;
+                for value in values {
+                    hold &= value.abs() > least;
+                }
+            }
+        }
+        hold
+    }
+}
