@@ -137,7 +137,7 @@ impl Delta4 {
                 "m_platform",
                 &[
                     ("mx_rod_leg1", 1.8867924528301887), ("mx_rod_leg2", 1.8867924528301887),
-                    ("mx_rod_leg3", 1.886792452830113), ("mx_rod_leg4", 1.88679245283027),
+                    ("mx_rod_leg3", 1.886792452830113), ("mx_rod_leg4", 1.8867924528302689),
                 ],
             ),
             BaseParameter::new(
@@ -160,14 +160,15 @@ impl Delta4 {
                 "zz_arm_leg3R",
                 "zz_arm_leg3",
                 &[
-                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.075471698113206), ("m_rod_leg3", 0.04),
+                    ("ia_arm_leg3", 1.0), ("mx_rod_leg3", -0.07547169811320602),
+                    ("m_rod_leg3", 0.04),
                 ],
             ),
             BaseParameter::new(
                 "zz_arm_leg4R",
                 "zz_arm_leg4",
                 &[
-                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.0754716981132096),
+                    ("ia_arm_leg4", 1.0), ("mx_rod_leg4", -0.0754716981132098),
                     ("m_rod_leg4", 0.04),
                 ],
             ),
@@ -184,12 +185,12 @@ impl Delta4 {
             BaseParameter::new(
                 "mx_arm_leg3R",
                 "mx_arm_leg3",
-                &[("mx_rod_leg3", -0.37735849056599946), ("m_rod_leg3", 0.2)],
+                &[("mx_rod_leg3", -0.37735849056599974), ("m_rod_leg3", 0.2)],
             ),
             BaseParameter::new(
                 "mx_arm_leg4R",
                 "mx_arm_leg4",
-                &[("mx_rod_leg4", -0.3773584905659805), ("m_rod_leg4", 0.2)],
+                &[("mx_rod_leg4", -0.3773584905659775), ("m_rod_leg4", 0.2)],
             ),
             BaseParameter::new("my_arm_leg1", "my_arm_leg1", &[]),
             BaseParameter::new("my_arm_leg2", "my_arm_leg2", &[]),
@@ -224,12 +225,12 @@ impl Delta4 {
             BaseParameter::new(
                 "yy_rod_leg3R",
                 "yy_rod_leg3",
-                &[("mx_rod_leg3", -0.5300000000000004)],
+                &[("mx_rod_leg3", -0.5300000000000001)],
             ),
             BaseParameter::new(
                 "yy_rod_leg4R",
                 "yy_rod_leg4",
-                &[("mx_rod_leg4", -0.5299999999999931)],
+                &[("mx_rod_leg4", -0.5299999999999937)],
             ),
             BaseParameter::new("yz_rod_leg1", "yz_rod_leg1", &[]),
             BaseParameter::new("yz_rod_leg2", "yz_rod_leg2", &[]),
@@ -239,8 +240,8 @@ impl Delta4 {
                 "zz_rod_leg1R",
                 "zz_rod_leg1",
                 &[
-                    ("zz_rod_leg3", 0.9999999999999353), ("mx_rod_leg1", -0.53),
-                    ("mx_rod_leg3", -0.5299999999999658),
+                    ("zz_rod_leg3", 0.999999999999935), ("mx_rod_leg1", -0.53),
+                    ("mx_rod_leg3", -0.5299999999999656),
                 ],
             ),
             BaseParameter::new(
@@ -248,7 +249,7 @@ impl Delta4 {
                 "zz_rod_leg2",
                 &[
                     ("zz_rod_leg4", 1.0000000000000808), ("mx_rod_leg2", -0.53),
-                    ("mx_rod_leg4", -0.5300000000000425),
+                    ("mx_rod_leg4", -0.5300000000000427),
                 ],
             ),
             BaseParameter::new("my_rod_leg1", "my_rod_leg1", &[]),
@@ -9151,7 +9152,7 @@ impl Delta4 {
     ///
     /// Output: 4.
     ///
-    /// 909 operations (363 additions, 535 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 933 intermediates.
+    /// 907 operations (362 additions, 534 multiplications, 11 divisions), 0 square roots, 12 trigonometric pairs, 4 signs, 931 intermediates.
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
@@ -9373,216 +9374,216 @@ impl Delta4 {
             - (t389 * t397 + t411 + t411) - t399 * t426 + t407 * t430;
         let t433 = 1.8867924528301887 * t432;
         let t434 = t379 * t433;
-        let t436 = minus_rate_rod_leg3 * (1.8867924528301887 * t409);
+        let t435 = 1.8867924528301887 * t409;
+        let t436 = minus_rate_rod_leg3 * t435;
         let t437 = t434 - t436;
         let t439 = 1.8867924528301887 * t411;
         let t440 = t439 + t433;
         let t441 = t439 + t440;
-        let t444 = t379 * t409;
-        let t446 = 3.5599857600569598 * (t444 * t444);
-        let t447 = t419 - t446;
-        let t448 = t379 * t447;
+        let t444 = t435 * t435;
+        let t445 = t379 * t444;
         let minus_rate_dot_rod_leg3 = minus_grod_vy_leg3 * t430;
-        let t450 = t448 - minus_rate_dot_rod_leg3;
-        let t457 = parameters[41] * t437 + parameters[42] * t441 + parameters[43] * t450
-            + parameters[44] * t436 + parameters[45] * (t447 - t418);
-        let t460 = 9.81 * s_arm_leg3;
-        let t462 = t460 + 0.2 * t397;
+        let t447 = t445 - minus_rate_dot_rod_leg3;
+        let t454 = parameters[41] * t437 + parameters[42] * t441 + parameters[43] * t447
+            + parameters[44] * t436 + parameters[45] * (t444 - t418);
+        let t457 = 9.81 * s_arm_leg3;
+        let t459 = t457 + 0.2 * t397;
         let rate_dot_arm_leg3 = t390 * (t426 - t379 * t430);
-        let t468 = 9.81 * c_arm_leg3;
-        let t469 = 0.2 * rate_dot_arm_leg3 - t468;
-        let t471 = s_cross_leg3 * t462 + c_cross_leg3 * t469;
-        let t476 = s_cross_leg3 * t469 - c_cross_leg3 * t462;
-        let t477 = s_rod_leg3 * t476;
-        let t481 = t437 - t436;
-        let t490 = t448 + minus_rate_dot_rod_leg3;
-        let t492 = parameters[42] * t481 - parameters[41] * t439
-            + parameters[43] * (t418 - t446) + parameters[44] * t440
-            - parameters[45] * t490;
-        let t497 = c_rod_leg3 * t476;
-        let t501 = s_rod_leg3
-            * (t457 - parameters[46] * t436 - parameters[48] * t471
-                + parameters[49] * t477)
+        let t465 = 9.81 * c_arm_leg3;
+        let t466 = 0.2 * rate_dot_arm_leg3 - t465;
+        let t468 = s_cross_leg3 * t459 + c_cross_leg3 * t466;
+        let t473 = s_cross_leg3 * t466 - c_cross_leg3 * t459;
+        let t474 = s_rod_leg3 * t473;
+        let t478 = t437 - t436;
+        let t482 = t379 * t445;
+        let t488 = t445 + minus_rate_dot_rod_leg3;
+        let t490 = parameters[42] * t478 - parameters[41] * t439
+            + parameters[43] * (t418 - t482) + parameters[44] * t440
+            - parameters[45] * t488;
+        let t495 = c_rod_leg3 * t473;
+        let t499 = s_rod_leg3
+            * (t454 - parameters[46] * t436 - parameters[48] * t468
+                + parameters[49] * t474)
             + c_rod_leg3
-                * (t492 + parameters[46] * t439 + parameters[47] * t471
-                    + parameters[49] * t497);
+                * (t490 + parameters[46] * t439 + parameters[47] * t468
+                    + parameters[49] * t495);
         let minus_garm_vx_leg3 = c_armcross_leg3 * t390;
-        let t515 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t468
-            + parameters[36] * t460 + parameters[37] * rate_dot_arm_leg3
+        let t513 = parameters[34] * rate_dot_arm_leg3 - parameters[35] * t465
+            + parameters[36] * t457 + parameters[37] * rate_dot_arm_leg3
             - parameters[38] * minus_rate_arm_leg3
             - ::overact::math::signed(parameters[39], minus_rate_arm_leg3)
             + parameters[40];
-        let t525 = c_rod_leg3 * t389
-            * (parameters[48] * t490 - parameters[47] * (t447 + t418)
-                + parameters[49] * t433 + parameters[50] * t497);
-        let t535 = t389 * s_rod_leg3
-            * (parameters[47] * t450 - parameters[48] * (t446 + t418)
-                - parameters[49] * t434 - parameters[50] * t477);
-        let t545 = t525 - t535
+        let t523 = c_rod_leg3 * t389
+            * (parameters[48] * t488 - parameters[47] * (t444 + t418)
+                + parameters[49] * t433 + parameters[50] * t495);
+        let t533 = t389 * s_rod_leg3
+            * (parameters[47] * t447 - parameters[48] * (t482 + t418)
+                - parameters[49] * t434 - parameters[50] * t474);
+        let t543 = t523 - t533
             - t405
-                * (parameters[48] * t481 - parameters[47] * t441 - parameters[49] * t419
-                    - parameters[50] * t471);
-        let t546 = t515 + t545;
-        let t552 = 1.0 / s_cross_leg4;
-        let t553 = 5.0 * t552;
-        let t556 = 1.0 / c_rod_leg4;
-        let t557 = s_rod_leg4 * t556;
-        let garm_vx_leg4 = t553 * t557;
-        let t559 = 0.2 * c_cross_leg4;
-        let t560 = t557 * twist[0];
+                * (parameters[48] * t478 - parameters[47] * t441 - parameters[49] * t419
+                    - parameters[50] * t468);
+        let t544 = t513 + t543;
+        let t550 = 1.0 / s_cross_leg4;
+        let t551 = 5.0 * t550;
+        let t554 = 1.0 / c_rod_leg4;
+        let t555 = s_rod_leg4 * t554;
+        let garm_vx_leg4 = t551 * t555;
+        let t557 = 0.2 * c_cross_leg4;
+        let t558 = t555 * twist[0];
         let c_armcross_leg4 = c_arm_leg4 * c_cross_leg4 - s_arm_leg4 * s_cross_leg4;
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4 + c_arm_leg4 * s_cross_leg4;
-        let t571 = c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2];
-        let rate_arm_leg4 = t553 * (t560 - t571);
-        let t574 = rate_arm_leg4 * rate_arm_leg4;
-        let grod_vx_leg4 = 1.8867924528301887 * t556;
+        let t569 = c_armcross_leg4 * twist[1] + s_armcross_leg4 * twist[2];
+        let rate_arm_leg4 = t551 * (t558 - t569);
+        let t572 = rate_arm_leg4 * rate_arm_leg4;
+        let grod_vx_leg4 = 1.8867924528301887 * t554;
         let rate_rod_leg4 = grod_vx_leg4 * twist[0];
-        let t579 = rate_rod_leg4 * rate_rod_leg4;
-        let t580 = c_cross_leg4 * t552;
-        let t586 = t559 * garm_vx_leg4;
-        let t588 = t580 * t571 + s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
-            - t586 * twist[0];
-        let rate_cross_leg4 = grod_vx_leg4 * t588;
-        let t590 = rate_cross_leg4 * rate_cross_leg4;
-        let t597 = t559 * t574 + 0.53 * c_rod_leg4 * (t579 + t590)
+        let t577 = rate_rod_leg4 * rate_rod_leg4;
+        let t578 = c_cross_leg4 * t550;
+        let t584 = t557 * garm_vx_leg4;
+        let t586 = t578 * t569 + s_armcross_leg4 * twist[1] - c_armcross_leg4 * twist[2]
+            - t584 * twist[0];
+        let rate_cross_leg4 = grod_vx_leg4 * t586;
+        let t588 = rate_cross_leg4 * rate_cross_leg4;
+        let t595 = t557 * t572 + 0.53 * c_rod_leg4 * (t577 + t588)
             - (c_armcross_leg4 * acceleration[1] + s_armcross_leg4 * acceleration[2]);
-        let t599 = acceleration[0] + t560 * rate_rod_leg4;
-        let rate_dot_arm_leg4 = t553 * (t597 + t557 * t599);
-        let t604 = 9.81 * c_arm_leg4;
-        let t607 = 9.81 * s_arm_leg4;
-        let t616 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t604
-            + parameters[53] * t607 + parameters[54] * rate_dot_arm_leg4
+        let t597 = acceleration[0] + t558 * rate_rod_leg4;
+        let rate_dot_arm_leg4 = t551 * (t595 + t555 * t597);
+        let t602 = 9.81 * c_arm_leg4;
+        let t605 = 9.81 * s_arm_leg4;
+        let t614 = parameters[51] * rate_dot_arm_leg4 - parameters[52] * t602
+            + parameters[53] * t605 + parameters[54] * rate_dot_arm_leg4
             + parameters[55] * rate_arm_leg4
             + ::overact::math::signed(parameters[56], rate_arm_leg4) + parameters[57];
-        let t617 = 0.2 * s_cross_leg4;
-        let t619 = 1.8867924528301887 * t588;
-        let t620 = t619 * t619;
-        let t621 = t557 * t620;
-        let rate_dot_rod_leg4 = grod_vx_leg4 * t599;
-        let t623 = t621 - rate_dot_rod_leg4;
-        let t632 = t560 * rate_cross_leg4;
-        let t639 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
-            - (t617 * t574 - t632 - t632) - t580 * t597 - t586 * t599;
-        let t640 = 1.8867924528301887 * t639;
-        let t644 = 0.2 * rate_dot_arm_leg4 - t604;
-        let t647 = t607 + 0.2 * t574;
-        let t649 = s_cross_leg4 * t644 - c_cross_leg4 * t647;
-        let t650 = c_rod_leg4 * t649;
-        let t653 = c_rod_leg4 * t617
-            * (parameters[65] * t623 - parameters[64] * (t620 + t579)
-                + parameters[66] * t640 + parameters[67] * t650);
-        let t655 = t621 + rate_dot_rod_leg4;
-        let t657 = t557 * t621;
-        let t661 = t557 * t640;
-        let t664 = s_rod_leg4 * t649;
-        let t667 = t617 * s_rod_leg4
-            * (parameters[64] * t655 - parameters[65] * (t657 + t579)
-                - parameters[66] * t661 - parameters[67] * t664);
-        let t669 = 1.8867924528301887 * t632;
-        let t670 = t640 - t669;
-        let t671 = t669 - t670;
-        let t673 = rate_rod_leg4 * t619;
-        let t674 = t661 + t673;
-        let t675 = t673 + t674;
-        let t682 = s_cross_leg4 * t647 + c_cross_leg4 * t644;
-        let t686 = t653 - t667
-            - t559
-                * (parameters[64] * t671 + parameters[65] * t675 - parameters[66] * t590
-                    - parameters[67] * t682);
-        let t687 = t616 + t686;
-        let minus_gcross_vx_leg4 = grod_vx_leg4 * t586;
-        let t699 = parameters[58] * t674 - parameters[59] * t671 + parameters[60] * t655
-            - parameters[61] * t673 + parameters[62] * (t620 - t579);
-        let t716 = parameters[58] * t669 + parameters[59] * t675
-            + parameters[60] * (t579 - t657) + parameters[61] * t670
-            - parameters[62] * t623;
-        let t724 = s_rod_leg4
-            * (t699 + parameters[63] * t673 - parameters[65] * t682
-                + parameters[66] * t664)
+        let t615 = 0.2 * s_cross_leg4;
+        let t617 = 1.8867924528301887 * t586;
+        let t618 = t617 * t617;
+        let t619 = t555 * t618;
+        let rate_dot_rod_leg4 = grod_vx_leg4 * t597;
+        let t621 = t619 - rate_dot_rod_leg4;
+        let t630 = t558 * rate_cross_leg4;
+        let t637 = s_armcross_leg4 * acceleration[1] - c_armcross_leg4 * acceleration[2]
+            - (t615 * t572 - t630 - t630) - t578 * t595 - t584 * t597;
+        let t638 = 1.8867924528301887 * t637;
+        let t642 = 0.2 * rate_dot_arm_leg4 - t602;
+        let t645 = t605 + 0.2 * t572;
+        let t647 = s_cross_leg4 * t642 - c_cross_leg4 * t645;
+        let t648 = c_rod_leg4 * t647;
+        let t651 = c_rod_leg4 * t615
+            * (parameters[65] * t621 - parameters[64] * (t618 + t577)
+                + parameters[66] * t638 + parameters[67] * t648);
+        let t653 = t619 + rate_dot_rod_leg4;
+        let t655 = t555 * t619;
+        let t659 = t555 * t638;
+        let t662 = s_rod_leg4 * t647;
+        let t665 = t615 * s_rod_leg4
+            * (parameters[64] * t653 - parameters[65] * (t655 + t577)
+                - parameters[66] * t659 - parameters[67] * t662);
+        let t667 = 1.8867924528301887 * t630;
+        let t668 = t638 - t667;
+        let t669 = t667 - t668;
+        let t671 = rate_rod_leg4 * t617;
+        let t672 = t659 + t671;
+        let t673 = t671 + t672;
+        let t680 = s_cross_leg4 * t645 + c_cross_leg4 * t642;
+        let t684 = t651 - t665
+            - t557
+                * (parameters[64] * t669 + parameters[65] * t673 - parameters[66] * t588
+                    - parameters[67] * t680);
+        let t685 = t614 + t684;
+        let minus_gcross_vx_leg4 = grod_vx_leg4 * t584;
+        let t697 = parameters[58] * t672 - parameters[59] * t669 + parameters[60] * t653
+            - parameters[61] * t671 + parameters[62] * (t618 - t577);
+        let t714 = parameters[58] * t667 + parameters[59] * t673
+            + parameters[60] * (t577 - t655) + parameters[61] * t668
+            - parameters[62] * t621;
+        let t722 = s_rod_leg4
+            * (t697 + parameters[63] * t671 - parameters[65] * t680
+                + parameters[66] * t662)
             + c_rod_leg4
-                * (t716 - parameters[63] * t669 + parameters[64] * t682
-                    + parameters[66] * t650);
-        let t736 = parameters[59] * (t657 - t620) - parameters[58] * t621
-            + parameters[60] * t661 + parameters[61] * t621 + parameters[62] * t640;
-        let t744 = garm_vx_leg4 * t687 - minus_gcross_vx_leg4 * t724
+                * (t714 - parameters[63] * t667 + parameters[64] * t680
+                    + parameters[66] * t648);
+        let t734 = parameters[59] * (t655 - t618) - parameters[58] * t619
+            + parameters[60] * t659 + parameters[61] * t619 + parameters[62] * t638;
+        let t742 = garm_vx_leg4 * t685 - minus_gcross_vx_leg4 * t722
             + grod_vx_leg4
-                * (t736 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t664
-                    - parameters[65] * t650);
-        let t749 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169 + t366
-            + gcross_vx_leg3 * t501 - minus_garm_vx_leg3 * t546 + t744
+                * (t734 + parameters[63] * rate_dot_rod_leg4 - parameters[64] * t662
+                    - parameters[65] * t648);
+        let t747 = garm_vx_leg1 * t131 - minus_gcross_vx_leg1 * t169 + t366
+            + gcross_vx_leg3 * t499 - minus_garm_vx_leg3 * t544 + t742
             + acceleration[0] * parameters[68] + acceleration[0] * parameters[69];
-        let t756 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
+        let t754 = garm_vx_leg1 * garm_vx_leg1 + minus_garm_vx_leg2 * minus_garm_vx_leg2
             + minus_garm_vx_leg3 * minus_garm_vx_leg3 + garm_vx_leg4 * garm_vx_leg4;
-        ::overact::guard::platform(t756, 22.533170865545557, "actuators")?;
-        let t757 = 1.0 / t756;
+        ::overact::guard::platform(t754, 22.533170865545557, "actuators")?;
+        let t755 = 1.0 / t754;
         let garm_vy_leg1 = t11 * t23;
         let garm_vy_leg2 = c_armcross_leg2 * t180;
-        let minus_garm_vy_leg4 = c_armcross_leg4 * t553;
-        let t768 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
+        let minus_garm_vy_leg4 = c_armcross_leg4 * t551;
+        let t766 = garm_vy_leg1 * garm_vx_leg1 - minus_garm_vx_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vx_leg3
             - garm_vx_leg4 * minus_garm_vy_leg4;
-        let t769 = t768 * t757;
-        let t778 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
+        let t767 = t766 * t755;
+        let t776 = garm_vy_leg1 * garm_vy_leg1 + garm_vy_leg2 * garm_vy_leg2
             + minus_garm_vy_leg3 * minus_garm_vy_leg3
-            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t768 * t769;
-        ::overact::guard::platform(t778, 22.53317086554555, "actuators")?;
-        let t779 = 1.0 / t778;
+            + minus_garm_vy_leg4 * minus_garm_vy_leg4 - t766 * t767;
+        ::overact::guard::platform(t776, 22.53317086554555, "actuators")?;
+        let t777 = 1.0 / t776;
         let minus_gcross_vy_leg1 = grod_vy_leg1 * (t16 * garm_vy_leg1);
-        let t794 = parameters[8] * (t101 - t66) - parameters[7] * t67
+        let t792 = parameters[8] * (t101 - t66) - parameters[7] * t67
             - parameters[9] * t105 + parameters[10] * t67 - parameters[11] * t85;
-        let t802 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
+        let t800 = garm_vy_leg1 * t131 - minus_gcross_vy_leg1 * t169
             + grod_vy_leg1
-                * (t794 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
+                * (t792 + parameters[12] * rate_dot_rod_leg1 - parameters[13] * t108
                     - parameters[14] * t94);
         let minus_gcross_vy_leg2 = minus_grod_vx_leg2 * (t179 * c_arm_leg2);
         let gcross_vy_leg3 = minus_grod_vy_leg3 * t407;
-        let t822 = parameters[42] * (t446 - t447) - parameters[41] * t448
-            + parameters[43] * t434 + parameters[44] * t448 + parameters[45] * t433;
-        let t830 = gcross_vy_leg3 * t501 - minus_garm_vy_leg3 * t546
+        let t820 = parameters[42] * (t482 - t444) - parameters[41] * t445
+            + parameters[43] * t434 + parameters[44] * t445 + parameters[45] * t433;
+        let t828 = gcross_vy_leg3 * t499 - minus_garm_vy_leg3 * t544
             - minus_grod_vy_leg3
-                * (t822 - parameters[46] * minus_rate_dot_rod_leg3
-                    - parameters[47] * t477 - parameters[48] * t497);
-        let gcross_vy_leg4 = grod_vx_leg4 * (t552 * c_arm_leg4);
-        let t841 = t802 + garm_vy_leg2 * t346 - minus_gcross_vy_leg2 * t302 + t830
-            + gcross_vy_leg4 * t724 - minus_garm_vy_leg4 * t687
+                * (t820 - parameters[46] * minus_rate_dot_rod_leg3
+                    - parameters[47] * t474 - parameters[48] * t495);
+        let gcross_vy_leg4 = grod_vx_leg4 * (t550 * c_arm_leg4);
+        let t839 = t800 + garm_vy_leg2 * t346 - minus_gcross_vy_leg2 * t302 + t828
+            + gcross_vy_leg4 * t722 - minus_garm_vy_leg4 * t685
             + acceleration[1] * parameters[68] + acceleration[1] * parameters[69];
-        let t843 = t841 - t749 * t769;
+        let t841 = t839 - t747 * t767;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t390;
         let minus_garm_vz_leg1 = s_armcross_leg1 * t11;
         let minus_garm_vz_leg2 = s_armcross_leg2 * t180;
-        let minus_garm_vz_leg4 = s_armcross_leg4 * t553;
-        let t862 = minus_garm_vx_leg2 * minus_garm_vz_leg2
+        let minus_garm_vz_leg4 = s_armcross_leg4 * t551;
+        let t860 = minus_garm_vx_leg2 * minus_garm_vz_leg2
             - garm_vx_leg1 * minus_garm_vz_leg1 + minus_garm_vx_leg3 * minus_garm_vz_leg3
             - garm_vx_leg4 * minus_garm_vz_leg4;
-        let t863 = t862 * t757;
-        let t865 = minus_garm_vy_leg3 * minus_garm_vz_leg3
+        let t861 = t860 * t755;
+        let t863 = minus_garm_vy_leg3 * minus_garm_vz_leg3
             - (garm_vy_leg1 * minus_garm_vz_leg1 + garm_vy_leg2 * minus_garm_vz_leg2)
-            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t768 * t863;
-        let t866 = t865 * t779;
+            + minus_garm_vy_leg4 * minus_garm_vz_leg4 - t766 * t861;
+        let t864 = t863 * t777;
         let gcross_vz_leg2 = minus_grod_vx_leg2 * (t179 * s_arm_leg2);
         let minus_minus_gcross_vz_leg1 = grod_vy_leg1 * (t10 * s_arm_leg1);
         let gcross_vz_leg3 = minus_grod_vy_leg3 * (t374 * s_arm_leg3);
-        let t883 = gcross_vz_leg2 * t302 - minus_garm_vz_leg2 * t346
+        let t881 = gcross_vz_leg2 * t302 - minus_garm_vz_leg2 * t346
             - (minus_garm_vz_leg1 * t131 - minus_minus_gcross_vz_leg1 * t169)
-            + gcross_vz_leg3 * t501 - minus_garm_vz_leg3 * t546;
-        let gcross_vz_leg4 = grod_vx_leg4 * (t552 * s_arm_leg4);
-        let t890 = acceleration[2] + 9.81;
-        let t896 = t883 + gcross_vz_leg4 * t724 - minus_garm_vz_leg4 * t687
-            + parameters[68] * t890 + parameters[69] * t890 - t749 * t863;
-        let t909 = minus_garm_vz_leg1 * minus_garm_vz_leg1
+            + gcross_vz_leg3 * t499 - minus_garm_vz_leg3 * t544;
+        let gcross_vz_leg4 = grod_vx_leg4 * (t550 * s_arm_leg4);
+        let t888 = acceleration[2] + 9.81;
+        let t894 = t881 + gcross_vz_leg4 * t722 - minus_garm_vz_leg4 * t685
+            + parameters[68] * t888 + parameters[69] * t888 - t747 * t861;
+        let t907 = minus_garm_vz_leg1 * minus_garm_vz_leg1
             + minus_garm_vz_leg2 * minus_garm_vz_leg2
             + minus_garm_vz_leg3 * minus_garm_vz_leg3
-            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t862 * t863 - t865 * t866;
-        ::overact::guard::platform(t909, 66.40191223716292, "actuators")?;
-        let t910 = (t896 - t866 * t843) / t909;
-        let t912 = t779 * t843 - t866 * t910;
-        let t916 = t749 * t757 - t769 * t912 - t863 * t910;
+            + minus_garm_vz_leg4 * minus_garm_vz_leg4 - t860 * t861 - t863 * t864;
+        ::overact::guard::platform(t907, 66.40191223716292, "actuators")?;
+        let t908 = (t894 - t864 * t841) / t907;
+        let t910 = t777 * t841 - t864 * t908;
+        let t914 = t747 * t755 - t767 * t910 - t861 * t908;
         Ok([
-            garm_vx_leg1 * t916 + garm_vy_leg1 * t912 - minus_garm_vz_leg1 * t910,
-            garm_vy_leg2 * t912 - minus_garm_vx_leg2 * t916 - minus_garm_vz_leg2 * t910,
-            -(minus_garm_vx_leg3 * t916 + minus_garm_vy_leg3 * t912
-                + minus_garm_vz_leg3 * t910),
-            garm_vx_leg4 * t916 - minus_garm_vy_leg4 * t912 - minus_garm_vz_leg4 * t910,
+            garm_vx_leg1 * t914 + garm_vy_leg1 * t910 - minus_garm_vz_leg1 * t908,
+            garm_vy_leg2 * t910 - minus_garm_vx_leg2 * t914 - minus_garm_vz_leg2 * t908,
+            -(minus_garm_vx_leg3 * t914 + minus_garm_vy_leg3 * t910
+                + minus_garm_vz_leg3 * t908),
+            garm_vx_leg4 * t914 - minus_garm_vy_leg4 * t910 - minus_garm_vz_leg4 * t908,
         ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).

@@ -107,28 +107,28 @@ impl Planar3Rrr {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("mx_2_leg1", 0.05), ("mx_2_leg2", 0.049999999999999926),
-                    ("mx_2_leg3", 0.050000000000000114),
+                    ("mx_2_leg1", 0.05), ("mx_2_leg2", 0.04999999999999968),
+                    ("mx_2_leg3", 0.05000000000000015),
                 ],
             ),
             BaseParameter::new(
                 "mx_platformR",
                 "mx_platform",
-                &[("mx_2_leg2", -0.43301270189221863), ("mx_2_leg3", 0.4330127018922205)],
+                &[("mx_2_leg2", -0.4330127018922192), ("mx_2_leg3", 0.4330127018922204)],
             ),
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
                 &[
-                    ("mx_2_leg1", 0.5), ("mx_2_leg2", -0.24999999999999972),
-                    ("mx_2_leg3", -0.2500000000000002),
+                    ("mx_2_leg1", 0.5), ("mx_2_leg2", -0.25000000000000056),
+                    ("mx_2_leg3", -0.25000000000000006),
                 ],
             ),
             BaseParameter::new(
                 "m_platformR",
                 "m_platform",
                 &[
-                    ("mx_2_leg1", 5.0), ("mx_2_leg2", 5.0), ("mx_2_leg3", 5.000000000000001),
+                    ("mx_2_leg1", 5.0), ("mx_2_leg2", 5.0), ("mx_2_leg3", 5.000000000000002),
                 ],
             ),
             BaseParameter::new(
@@ -140,7 +140,7 @@ impl Planar3Rrr {
                 "zz_1_leg2R",
                 "zz_1_leg2",
                 &[
-                    ("ia_1_leg2", 1.0), ("mx_2_leg2", -0.19999999999999996), ("m_2_leg2", 0.04),
+                    ("ia_1_leg2", 1.0), ("mx_2_leg2", -0.20000000000000004), ("m_2_leg2", 0.04),
                 ],
             ),
             BaseParameter::new(
@@ -160,16 +160,8 @@ impl Planar3Rrr {
             BaseParameter::new("off_1_leg2", "off_1_leg2", &[]),
             BaseParameter::new("off_1_leg3", "off_1_leg3", &[]),
             BaseParameter::new("zz_2_leg1R", "zz_2_leg1", &[("mx_2_leg1", -0.2)]),
-            BaseParameter::new(
-                "zz_2_leg2R",
-                "zz_2_leg2",
-                &[("mx_2_leg2", -0.19999999999999993)],
-            ),
-            BaseParameter::new(
-                "zz_2_leg3R",
-                "zz_2_leg3",
-                &[("mx_2_leg3", -0.2000000000000001)],
-            ),
+            BaseParameter::new("zz_2_leg2R", "zz_2_leg2", &[("mx_2_leg2", -0.2)]),
+            BaseParameter::new("zz_2_leg3R", "zz_2_leg3", &[("mx_2_leg3", -0.2)]),
             BaseParameter::new("my_2_leg1", "my_2_leg1", &[]),
             BaseParameter::new("my_2_leg2", "my_2_leg2", &[]),
             BaseParameter::new("my_2_leg3", "my_2_leg3", &[]),

@@ -70,14 +70,14 @@ impl ScotchYoke {
                 "zz_crank_leftR",
                 "zz_crank_left",
                 &[
-                    ("zz_crank_right", 1.0000000000000004), ("ia_crank_left", 1.0),
-                    ("ia_crank_right", 1.0000000000000004),
+                    ("zz_crank_right", 0.9999999999999994), ("ia_crank_left", 1.0),
+                    ("ia_crank_right", 0.9999999999999994),
                 ],
             ),
             BaseParameter::new(
                 "fv_crank_leftR",
                 "fv_crank_left",
-                &[("fv_crank_right", 1.0000000000000002)],
+                &[("fv_crank_right", 1.0000000000000007)],
             ),
             BaseParameter::new(
                 "fs_crank_leftR",
@@ -87,7 +87,7 @@ impl ScotchYoke {
             BaseParameter::new(
                 "off_crank_leftR",
                 "off_crank_left",
-                &[("off_crank_right", -1.0000000000000004)],
+                &[("off_crank_right", -1.0000000000000002)],
             ),
         ]
     };

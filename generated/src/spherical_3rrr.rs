@@ -115,7 +115,7 @@ impl Spherical3Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999995213), ("zz_distal_leg2", 0.9999999999886361),
+                    ("zz_distal_leg1", 0.999999999999521), ("zz_distal_leg2", 0.9999999999886359),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -124,7 +124,7 @@ impl Spherical3Rrr {
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg2", 0.9999999999962865), ("zz_distal_leg3", 0.99999999999494),
+                    ("zz_distal_leg2", 0.9999999999962865), ("zz_distal_leg3", 0.9999999999949399),
                 ],
             ),
             BaseParameter::new("yz_platform", "yz_platform", &[]),
@@ -132,7 +132,7 @@ impl Spherical3Rrr {
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999914265), ("zz_distal_leg3", 0.9999999999967926),
+                    ("zz_distal_leg1", 0.9999999999914263), ("zz_distal_leg3", 0.9999999999967921),
                 ],
             ),
             BaseParameter::new(
@@ -143,7 +143,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
-                &[("my_distal_leg1", -1.0000000000095053)],
+                &[("my_distal_leg1", -1.000000000009505)],
             ),
             BaseParameter::new(
                 "mz_platformR",
@@ -194,7 +194,7 @@ impl Spherical3Rrr {
             BaseParameter::new(
                 "xx_distal_leg2R",
                 "xx_distal_leg2",
-                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999877053)],
+                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999877047)],
             ),
             BaseParameter::new(
                 "xx_distal_leg3R",

@@ -134,8 +134,8 @@ impl Spherical4Rrr {
                 "xx_platformR",
                 "xx_platform",
                 &[
-                    ("zz_distal_leg1", 0.49999999999638706), ("zz_distal_leg2", 0.999999999987673),
-                    ("zz_distal_leg3", 0.49999999999730255), ("zz_distal_leg4", 0.9999999999920782),
+                    ("zz_distal_leg1", 0.499999999996387), ("zz_distal_leg2", 0.999999999987673),
+                    ("zz_distal_leg3", 0.49999999999730227), ("zz_distal_leg4", 0.9999999999920786),
                 ],
             ),
             BaseParameter::new("xy_platform", "xy_platform", &[]),
@@ -143,54 +143,52 @@ impl Spherical4Rrr {
                 "xz_platformR",
                 "xz_platform",
                 &[
-                    ("zz_distal_leg1", 0.5000000000063526),
-                    ("zz_distal_leg3", -0.49999999999613975),
+                    ("zz_distal_leg1", 0.5000000000063525), ("zz_distal_leg3", -0.4999999999961396),
                 ],
             ),
             BaseParameter::new(
                 "yy_platformR",
                 "yy_platform",
                 &[
-                    ("zz_distal_leg1", 0.9999999999932572), ("zz_distal_leg2", 0.4999999999903216),
-                    ("zz_distal_leg3", 0.9999999999978918), ("zz_distal_leg4", 0.49999999999568795),
+                    ("zz_distal_leg1", 0.9999999999932567), ("zz_distal_leg2", 0.4999999999903216),
+                    ("zz_distal_leg3", 0.9999999999978917), ("zz_distal_leg4", 0.4999999999956878),
                 ],
             ),
             BaseParameter::new(
                 "yz_platformR",
                 "yz_platform",
                 &[
-                    ("zz_distal_leg2", 0.4999999999961872),
-                    ("zz_distal_leg4", -0.49999999999380507),
+                    ("zz_distal_leg2", 0.4999999999961873), ("zz_distal_leg4", -0.4999999999938053),
                 ],
             ),
             BaseParameter::new(
                 "zz_platformR",
                 "zz_platform",
                 &[
-                    ("zz_distal_leg1", 0.4999999999967213), ("zz_distal_leg2", 0.4999999999811522),
-                    ("zz_distal_leg3", 0.49999999999979167), ("zz_distal_leg4", 0.4999999999889669),
+                    ("zz_distal_leg1", 0.4999999999967213), ("zz_distal_leg2", 0.49999999998115213),
+                    ("zz_distal_leg3", 0.49999999999979133), ("zz_distal_leg4", 0.499999999988967),
                 ],
             ),
             BaseParameter::new(
                 "mx_platformR",
                 "mx_platform",
                 &[
-                    ("my_distal_leg1", -0.7071067811903052), ("my_distal_leg3", 0.7071067811646614),
+                    ("my_distal_leg1", -0.7071067811903056), ("my_distal_leg3", 0.7071067811646615),
                 ],
             ),
             BaseParameter::new(
                 "my_platformR",
                 "my_platform",
                 &[
-                    ("my_distal_leg2", -0.7071067811764505), ("my_distal_leg4", 0.7071067811620885),
+                    ("my_distal_leg2", -0.7071067811764508), ("my_distal_leg4", 0.7071067811620885),
                 ],
             ),
             BaseParameter::new(
                 "mz_platformR",
                 "mz_platform",
                 &[
-                    ("my_distal_leg1", 0.7071067811824931), ("my_distal_leg2", 0.7071067811839649),
-                    ("my_distal_leg3", 0.7071067811852733), ("my_distal_leg4", 0.7071067811880264),
+                    ("my_distal_leg1", 0.7071067811824934), ("my_distal_leg2", 0.707106781183965),
+                    ("my_distal_leg3", 0.7071067811852734), ("my_distal_leg4", 0.7071067811880271),
                 ],
             ),
             BaseParameter::new(
@@ -252,22 +250,22 @@ impl Spherical4Rrr {
             BaseParameter::new(
                 "xx_distal_leg1R",
                 "xx_distal_leg1",
-                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906478)],
+                &[("yy_distal_leg1", -1.0), ("zz_distal_leg1", -0.9999999999906477)],
             ),
             BaseParameter::new(
                 "xx_distal_leg2R",
                 "xx_distal_leg2",
-                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.999999999992131)],
+                &[("yy_distal_leg2", -1.0), ("zz_distal_leg2", -0.9999999999921314)],
             ),
             BaseParameter::new(
                 "xx_distal_leg3R",
                 "xx_distal_leg3",
-                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781504)],
+                &[("yy_distal_leg3", -1.0), ("zz_distal_leg3", -0.9999999999781495)],
             ),
             BaseParameter::new(
                 "xx_distal_leg4R",
                 "xx_distal_leg4",
-                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908568)],
+                &[("yy_distal_leg4", -1.0), ("zz_distal_leg4", -0.9999999999908566)],
             ),
             BaseParameter::new("xy_distal_leg1", "xy_distal_leg1", &[]),
             BaseParameter::new("xy_distal_leg2", "xy_distal_leg2", &[]),

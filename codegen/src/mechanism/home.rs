@@ -74,6 +74,9 @@ const SINGULAR: f64 = 1e7;
 /// shared rows are zero.
 const ROUNDING: f64 = 1e-10;
 const STEPS: usize = 200;
+/// Steps in which the gap has to become smaller, and by how much: elsewhere a leg is out of reach.
+const PATIENCE: usize = 20;
+const PROGRESS: f64 = 0.99;
 
 impl Home {
     /// Closes all legs by Newton's iteration, starting from the rough joint positions.
@@ -121,14 +124,18 @@ fn iterate(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -> (Vec<
     let mut q = start.to_vec();
     let mut gap = f64::INFINITY;
     let mut damping = 1e-6;
-    for _ in 0..STEPS {
+    let (mut best, mut since) = (f64::INFINITY, 0);
+    for step in 0..STEPS {
         let error = leg.closure_error(&q, target);
         gap = error.amax();
         // The maximum of numbers passes over NaN.
         if error.iter().any(|e| !e.is_finite()) {
             return (q, f64::INFINITY);
         }
-        if gap < CLOSED {
+        if gap < PROGRESS * best {
+            (best, since) = (gap, step);
+        }
+        if gap < CLOSED || step > since + PATIENCE {
             break;
         }
         let jacobian = leg.closure_jacobian(&q);

@@ -5,9 +5,10 @@
 //! is singular; the state just before it is taken.
 
 use super::digits::{NOISE, State, evaluate};
-use super::graph::{Definition, Graph, Signed};
+use super::graph::{Graph, Signed};
 use crate::cas::arena::Op;
 use crate::cas::calculus::angle_of;
+use crate::cas::direction::Direction;
 use crate::cas::{Arena, Stream, SymbolId};
 use std::collections::HashMap;
 
@@ -47,6 +48,7 @@ pub(super) fn states(
     known: &States<'_>,
 ) -> Vec<State> {
     let needed = graph.needed(guards.iter().map(|guard| guard.node()));
+    let needed: Vec<usize> = (0..graph.len()).filter(|&node| needed[node]).collect();
     let constant = |node| match graph.op(arena, node) {
         Some(Op::Constant(id)) => arena.constant_at(id).value(),
         _ => f64::NAN,
@@ -80,19 +82,38 @@ pub(super) fn states(
 /// A way through the states.
 struct Ray<'g> {
     graph: &'g Graph,
-    arena: &'g Arena,
-    /// Of the nodes that are constants.
-    constants: &'g [f64],
-    /// Start and direction of every symbol.
-    symbols: HashMap<SymbolId, (f64, f64)>,
+    /// All nodes, of which those that are no leaves are to be evaluated.
+    leaves: Vec<Leaf>,
+}
+
+/// A node without operands on a ray.
+enum Leaf {
+    /// An input, a constant.
+    Number(Line),
+    Cosine(Line),
+    Sine(Line),
+    /// Another node.
+    None,
+}
+
+/// A number that grows evenly with the distance.
+struct Line {
+    start: f64,
+    slope: f64,
+}
+
+impl Line {
+    fn at(&self, distance: f64) -> f64 {
+        self.start + distance * self.slope
+    }
 }
 
 impl<'g> Ray<'g> {
-    /// `from` gives a symbol's start and direction, for a random number.
+    /// `from` gives a symbol's start and slope, for a random number.
     fn new(
         graph: &'g Graph,
-        arena: &'g Arena,
-        constants: &'g [f64],
+        arena: &Arena,
+        constants: &[f64],
         from: &dyn Fn(&str, f64) -> (f64, f64),
         stream: &mut Stream,
     ) -> Self {
@@ -100,54 +121,50 @@ impl<'g> Ray<'g> {
             let number = stream.number();
             (symbol, from(&arena.symbol_name(symbol), number))
         };
+        let symbols: HashMap<SymbolId, (f64, f64)> = arena.symbols().map(&mut of).collect();
+        let start = |symbol: SymbolId| symbols.get(&symbol).map_or(f64::NAN, |line| line.0);
+        let slope = |symbol: SymbolId| symbols.get(&symbol).map_or(f64::NAN, |line| line.1);
+        let angle = |id| {
+            let direction = arena.direction_at(id);
+            let (start, slope) = (angle_of(&direction, &start), slope_of(&direction, &slope));
+            Line { start, slope }
+        };
+        let leaf = |node: usize| match graph.op(arena, node) {
+            Some(Op::Symbol(id)) => Leaf::Number(Line {
+                start: start(id),
+                slope: slope(id),
+            }),
+            Some(Op::Constant(_)) => Leaf::Number(Line {
+                start: constants[node],
+                slope: 0.0,
+            }),
+            Some(Op::Cosine(id)) => Leaf::Cosine(angle(id)),
+            Some(Op::Sine(id)) => Leaf::Sine(angle(id)),
+            _ => Leaf::None,
+        };
         Self {
             graph,
-            arena,
-            constants,
-            symbols: arena.symbols().map(&mut of).collect(),
+            leaves: (0..graph.len()).map(leaf).collect(),
         }
     }
 
-    /// The values of nodes at a distance from home, each times its factor; zero for those that are not
-    /// `needed`.
-    fn at(
-        &self,
-        distance: f64,
-        needed: Option<&[bool]>,
-        factor: &dyn Fn(usize) -> f64,
-    ) -> Vec<f64> {
-        let mut values = Vec::with_capacity(self.graph.len());
-        for (node, &definition) in self.graph.definitions.iter().enumerate() {
-            let value = match definition {
-                _ if needed.is_some_and(|needed| !needed[node]) => 0.0,
-                Definition::Leaf => self.leaf(node, distance),
-                _ => evaluate(definition, &values),
-            };
-            values.push(value * factor(node));
-        }
-        values
-    }
-
-    /// The value of an input, a constant, a sine or a cosine.
-    fn leaf(&self, node: usize, distance: f64) -> f64 {
-        let symbol = |symbol: SymbolId| {
-            let known = self.symbols.get(&symbol);
-            known.map_or(f64::NAN, |(start, direction)| start + distance * direction)
-        };
-        let angle = |direction| angle_of(&self.arena.direction_at(direction), &symbol);
-        match self.graph.op(self.arena, node) {
-            Some(Op::Symbol(id)) => symbol(id),
-            Some(Op::Constant(_)) => self.constants[node],
-            Some(Op::Cosine(id)) => angle(id).cos(),
-            Some(Op::Sine(id)) => angle(id).sin(),
-            _ => f64::NAN,
+    /// The value of a node at a distance from home, the nodes before it being known.
+    fn value(&self, node: usize, distance: f64, values: &[f64]) -> f64 {
+        match &self.leaves[node] {
+            Leaf::Number(line) => line.at(distance),
+            Leaf::Cosine(line) => line.at(distance).cos(),
+            Leaf::Sine(line) => line.at(distance).sin(),
+            Leaf::None => evaluate(self.graph.definitions[node], values),
         }
     }
 
-    /// Where the first guard fails on the way, and which.
-    fn end(&self, needed: &[bool], guards: &[Signed]) -> Option<(f64, usize)> {
-        let signs = |distance: f64| -> Vec<f64> {
-            let values = self.at(distance, Some(needed), &|_| 1.0);
+    /// Where the first guard fails on the way, and which. `needed` are the nodes that guards need.
+    fn end(&self, needed: &[usize], guards: &[Signed]) -> Option<(f64, usize)> {
+        let mut values = vec![0.0; self.graph.len()];
+        let mut signs = |distance: f64| -> Vec<f64> {
+            for &node in needed {
+                values[node] = self.value(node, distance, &values);
+            }
             let signs = guards.iter().map(|guard| values[guard.node()].signum());
             signs.collect()
         };
@@ -156,7 +173,7 @@ impl<'g> Ray<'g> {
         }
         let home = signs(0.0);
         // No number is no sign either.
-        let fails = |distance: f64| {
+        let mut fails = |distance: f64| {
             let there = signs(distance);
             (0..guards.len()).find(|&guard| there[guard] != home[guard])
         };
@@ -181,19 +198,33 @@ impl<'g> Ray<'g> {
 
     /// The state at a distance from home. Inputs and constants have no errors.
     fn state(&self, group: usize, distance: f64, stream: &mut Stream) -> State {
-        let mut factor = |node| {
-            let op = self.graph.op(self.arena, node);
-            let is_given = matches!(op, Some(Op::Symbol(_) | Op::Constant(_)));
+        let mut factor = |leaf: &Leaf| {
             let error = NOISE * stream.number();
-            if is_given { 1.0 } else { 1.0 + error }
+            match leaf {
+                Leaf::Number(_) => 1.0,
+                _ => 1.0 + error,
+            }
         };
-        let factors: Vec<f64> = (0..self.graph.len()).map(&mut factor).collect();
+        let factors: Vec<f64> = self.leaves.iter().map(&mut factor).collect();
+        let (mut values, mut noisy) = (Vec::new(), Vec::new());
+        for (node, factor) in factors.iter().enumerate() {
+            values.push(self.value(node, distance, &values));
+            noisy.push(self.value(node, distance, &noisy) * factor);
+        }
         State {
             group,
-            values: self.at(distance, None, &|_| 1.0),
-            noisy: self.at(distance, None, &|node| factors[node]),
+            values,
+            noisy,
             factors,
             squares: Vec::new(),
         }
     }
+}
+
+/// How fast an angle grows along a ray, if its symbols do as `slope` says.
+fn slope_of(direction: &Direction, slope: &dyn Fn(SymbolId) -> f64) -> f64 {
+    let terms = direction.terms().iter();
+    terms.fold(0.0, |sum, (symbol, factor)| {
+        sum + slope(*symbol) * factor.value()
+    })
 }
