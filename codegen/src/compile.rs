@@ -11,7 +11,7 @@ use crate::lowering::{Effort, Reach};
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
-use crate::states::{State, outer_states, random_states};
+use crate::states::{Spread, spread_states};
 
 /// States of each kind by which the search compares the digits of forms.
 const STATES: usize = 16;
@@ -73,9 +73,6 @@ pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<RobotModel
     model_with(mechanism, &request).map_err(|e| mechanism::locate(&description, &e))
 }
 
-/// A way of spreading random states, by their number and a seed.
-type Spread = fn(&Mechanism, usize, u64) -> Vec<State>;
-
 /// The model of a checked mechanism.
 ///
 /// # Errors
@@ -108,8 +105,8 @@ pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotMo
     let joints = joints_by(&mechanism, &selection)?;
     selection.reach = request.effort.unwrap_or(request.otherwise).reach();
     if selection.reach > Reach::Nothing {
-        let ways: [Spread; 2] = [random_states, outer_states];
-        selection.states = parallel::map(&ways, |states| states(&mechanism, STATES, 7));
+        let of = |&spread: &Spread| spread_states(&mechanism, STATES, 7, spread);
+        selection.states = parallel::map(&[Spread::NEAR, Spread::FAR], of);
     }
     let tree = mechanism.platform.is_none();
     let mut all = Family::all(&mechanism, joints);

@@ -21,35 +21,40 @@ pub struct State {
 
 /// How states spread around home: in units of the robot's length scale, and in radians.
 #[derive(Debug, Clone, Copy)]
-struct Spread {
+pub(crate) struct Spread {
     /// At first.
     most: f64,
     /// What it is multiplied by for a state that no leg's Newton iteration follows.
     shrink: f64,
 }
 
+impl Spread {
+    /// Around home.
+    pub(crate) const NEAR: Self = Self {
+        most: 0.4,
+        shrink: 0.5,
+    };
+    /// As far as legs reach, but for a fifth of the way.
+    pub(crate) const FAR: Self = Self {
+        most: 1.6,
+        shrink: 0.8,
+    };
+}
+
 /// `count` random states. The spread around home is halved for a state that no leg's Newton iteration
 /// follows; a state that stays out of reach is home itself with random rates.
 #[must_use]
 pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
-    let spread = Spread {
-        most: 0.4,
-        shrink: 0.5,
-    };
-    spread_states(mechanism, count, seed, spread)
+    spread_states(mechanism, count, seed, Spread::NEAR)
 }
 
-/// `count` random states as far from home as legs reach, but for a fifth of the way.
-#[must_use]
-pub fn outer_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<State> {
-    let spread = Spread {
-        most: 1.6,
-        shrink: 0.8,
-    };
-    spread_states(mechanism, count, seed, spread)
-}
-
-fn spread_states(mechanism: &Mechanism, count: usize, seed: u64, by: Spread) -> Vec<State> {
+/// The same, spread as `by` says.
+pub(crate) fn spread_states(
+    mechanism: &Mechanism,
+    count: usize,
+    seed: u64,
+    by: Spread,
+) -> Vec<State> {
     let mut stream = Stream::new(seed);
     let dof = mechanism.dof();
     let mut states = Vec::with_capacity(count);

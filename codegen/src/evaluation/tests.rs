@@ -49,6 +49,17 @@ fn program() -> Program {
             operations.push(two(last, x, Source::Constant(0.75)));
             operations.push(two(middle, at(inner), at(inner + 1)));
             outputs.push(inner + 2);
+            // Three in a row, the second and the third step on either side.
+            for sides in 0..4 {
+                let chain = operations.len();
+                let on = |side: bool, a: Source, b: Source| if side { (a, b) } else { (b, a) };
+                operations.push(two(first, at(0), y));
+                let (a, b) = on(sides & 1 == 0, at(chain), x);
+                operations.push(two(middle, a, b));
+                let (a, b) = on(sides & 2 == 0, at(chain + 1), p);
+                operations.push(two(last, a, b));
+                outputs.push(chain + 2);
+            }
         }
     }
     let sources = outputs.iter().map(|&o| at(o));
@@ -112,6 +123,24 @@ fn blocks_give_what_single_samples_give() {
                 assert!(close, "{samples} samples, number {column}: {a} for {b}");
             }
         }
+    }
+}
+
+#[test]
+fn one_large_angle_of_a_block_is_the_library_s() {
+    let program = program();
+    let width = program.entries.len();
+    for large in [1e300, -2e5, f64::INFINITY, f64::NAN] {
+        let mut states = states(BLOCK);
+        states[2 * 5 + 1] = large;
+        let inputs = [rows(&states, false), rows(&[1.7], true)];
+        let mut found = vec![f64::NAN; BLOCK * width];
+        let done = program.evaluate(BLOCK, &inputs, &mut found);
+        assert_eq!(done, Ok(()));
+        // The second output is the cosine of the second input, its negative.
+        let cosine = -found[5 * width + 1];
+        let exact = large.cos();
+        assert!(cosine.to_bits() == exact.to_bits() || cosine.is_nan() && exact.is_nan());
     }
 }
 

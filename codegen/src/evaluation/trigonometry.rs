@@ -1,6 +1,6 @@
 //! Sines and cosines of several angles at once, as loops that become vectors.
 //!
-//! The same functions as those of the runtime crate, which generated code calls: the angle is reduced to
+//! As in the runtime crate, which generated code calls, but for the last digit: the angle is reduced to
 //! [-π/4, π/4] by a multiple n of π/2 in three parts (Cody and Waite), of which the first two have 33
 //! bits, so that their products with n are exact; what remains goes into the minimax polynomials of
 //! fdlibm; the two lowest bits of n exchange sine and cosine and turn their signs.

@@ -74,8 +74,9 @@ const SINGULAR: f64 = 1e7;
 /// shared rows are zero.
 const ROUNDING: f64 = 1e-10;
 const STEPS: usize = 200;
-/// Steps in which the gap has to become smaller, and by how much: elsewhere a leg is out of reach.
+/// Steps in which the gap has to become smaller; where it does not, the leg is out of reach.
 const PATIENCE: usize = 20;
+/// By this factor, at least.
 const PROGRESS: f64 = 0.99;
 
 impl Home {

@@ -35,8 +35,7 @@ pub use rays::States;
 use crate::cas::{Arena, Expr};
 use graph::Graph;
 
-/// Other definitions for some of the nodes that the entries need. At the `states`
-/// forms are compared.
+/// Other definitions for some of the nodes that the entries need. Forms are compared at the `states`.
 #[must_use]
 pub fn search<'a>(
     arena: &'a Arena,

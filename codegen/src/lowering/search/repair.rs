@@ -1,8 +1,8 @@
 //! Entries whose errors have grown too much get forms of the derivation back.
 //!
 //! A form is taken if it keeps the digits of its own node. What is computed from several such nodes can lose
-//! more than each of them: where their errors were the same in the derivation's form, they cancelled. So in the end the
-//! entries themselves are looked at, and what makes one of them worse is undone for good.
+//! more than each of them: where their errors were the same in the derivation's form, they cancelled. So in
+//! the end the entries themselves are looked at, and what makes one of them worse is undone for good.
 
 use super::graph::{Definition, Graph};
 
