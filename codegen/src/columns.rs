@@ -10,7 +10,7 @@ use crate::derivation::{
     Underivable, derive,
 };
 use crate::evaluation::{BLOCK, Evaluator, Rows};
-use crate::lowering::{Program, Reach, Source};
+use crate::lowering::{Operand, Program, Reach};
 use crate::mechanism::{BaseColumns, Mechanism};
 use crate::states::{State, random_states};
 use nalgebra::DMatrix;
@@ -106,7 +106,7 @@ fn operations(
 fn shares(program: &Program, columns: usize) -> Vec<f64> {
     let mut needed: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); program.steps.len()];
     for (at, entry) in program.entries.iter().enumerate() {
-        if let Source::Step(step) = entry.source {
+        if let Operand::Step(step) = entry.operand {
             needed[step].insert(at % columns);
         }
     }
@@ -114,7 +114,7 @@ fn shares(program: &Program, columns: usize) -> Vec<f64> {
     for (at, step) in program.steps.iter().enumerate().rev() {
         let by = std::mem::take(&mut needed[at]);
         for operand in step.operation.operands() {
-            if let Source::Step(step) = operand {
+            if let Operand::Step(step) = operand {
                 needed[step].extend(&by);
             }
         }

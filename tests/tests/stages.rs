@@ -6,7 +6,7 @@ use overact_codegen::cas::Arena;
 use overact_codegen::derivation::{Columns, Derived, Family, From, derive};
 use overact_codegen::description::{self, Description};
 use overact_codegen::emission;
-use overact_codegen::lowering::{Operation, Program, Source};
+use overact_codegen::lowering::{Operand, Operation, Program};
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::model::Function;
 use overact_codegen::states::random_states;
@@ -136,10 +136,10 @@ fn listing(program: &Program) -> Result<String, Failure> {
     for input in &program.inputs {
         writeln!(text, "input {} {:?}", input.name, input.shape)?;
     }
-    let of = |source: &Source| match *source {
-        Source::Constant(value) => format!("{value:?}"),
-        Source::Input { array, index } => format!("{}[{index}]", program.inputs[array].name),
-        Source::Step(at) => format!("${at}"),
+    let of = |operand: &Operand| match *operand {
+        Operand::Constant(value) => format!("{value:?}"),
+        Operand::Input { array, index } => format!("{}[{index}]", program.inputs[array].name),
+        Operand::Step(at) => format!("${at}"),
     };
     for (at, step) in program.steps.iter().enumerate() {
         let operands: Vec<String> = step.operation.operands().iter().map(of).collect();
@@ -152,7 +152,7 @@ fn listing(program: &Program) -> Result<String, Failure> {
         writeln!(text, "{}", line.trim_end())?;
     }
     for guard in &program.guards {
-        writeln!(text, "guard {} {:?}", of(&guard.source), guard.condition)?;
+        writeln!(text, "guard {} {:?}", of(&guard.operand), guard.condition)?;
     }
     writeln!(
         text,
@@ -161,7 +161,7 @@ fn listing(program: &Program) -> Result<String, Failure> {
     )?;
     for entry in &program.entries {
         let sign = if entry.negative { "-" } else { "" };
-        writeln!(text, "  {sign}{}", of(&entry.source))?;
+        writeln!(text, "  {sign}{}", of(&entry.operand))?;
     }
     Ok(text)
 }

@@ -1,6 +1,6 @@
-//! The graph: nodes, their meaning in the field, and the tables that share them.
+//! The graph: nodes, their fingerprints in the field, and the tables that share them.
 
-mod meaning;
+mod fingerprint;
 mod placeholders;
 
 use super::direction::{Direction, SymbolId};
@@ -68,7 +68,7 @@ const POINTS: usize = 2;
 
 /// What a node evaluates to at these points.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Meaning {
+pub(crate) struct Fingerprint {
     pub(crate) image: [Element; POINTS],
     pub(crate) sample: Sample,
 }
@@ -76,7 +76,7 @@ pub(crate) struct Meaning {
 #[derive(Debug)]
 struct Node {
     op: Op,
-    meaning: Meaning,
+    fingerprint: Fingerprint,
     scope: u32,
     /// The set of placeholders that it is written with.
     placeholders: u32,
@@ -100,7 +100,7 @@ struct Tables {
     direction_ids: HashMap<Direction, u32>,
     sets: placeholders::Sets,
     by_shape: HashMap<Op, Handle>,
-    by_meaning: HashMap<[Element; POINTS], Handle>,
+    by_fingerprint: HashMap<[Element; POINTS], Handle>,
     by_ratio: HashMap<Element, u32>,
     names: HashMap<usize, String>,
     scopes: Vec<String>,
@@ -187,8 +187,8 @@ impl Arena {
     }
 
     /// What a node evaluates to.
-    pub(crate) fn meaning_at(&self, index: usize) -> Meaning {
-        self.tables.borrow().nodes[index].meaning
+    pub(crate) fn fingerprint_at(&self, index: usize) -> Fingerprint {
+        self.tables.borrow().nodes[index].fingerprint
     }
 
     /// The number of a node's heading.
@@ -333,69 +333,76 @@ impl Arena {
         if let Some(&handle) = self.tables.borrow().by_shape.get(&op) {
             return handle;
         }
-        let meaning = self.tables.borrow().meaning(&op);
+        let fingerprint = self.tables.borrow().fingerprint(&op);
         let known = match &op {
             Op::Constant(_) | Op::Symbol(_) => None,
             _ => {
-                let same = || self.same(&meaning).filter(|h| self.fits(&op, *h));
-                self.folded(&op, &meaning).or_else(same)
+                let same = || self.same(&fingerprint).filter(|h| self.fits(&op, *h));
+                self.folded(&op, &fingerprint).or_else(same)
             }
         };
-        let handle = known.unwrap_or_else(|| self.multiple_or_new(op.clone(), meaning));
+        let handle = known.unwrap_or_else(|| self.multiple_or_new(op.clone(), fingerprint));
         self.tables.borrow_mut().by_shape.insert(op, handle);
         handle
     }
 
     /// The constant that the node is, if its value is the same fraction at every point.
-    fn folded(&self, op: &Op, meaning: &Meaning) -> Option<Handle> {
-        if meaning.image[0] != meaning.image[1] {
+    fn folded(&self, op: &Op, fingerprint: &Fingerprint) -> Option<Handle> {
+        if fingerprint.image[0] != fingerprint.image[1] {
             return None;
         }
-        let (n, d) = meaning.image[0].to_rational()?;
+        let (n, d) = fingerprint.image[0].to_rational()?;
         let value = n as f64 / d as f64;
         let size = self.tables.borrow().operand_size(op);
-        if (Sample::real(value) - meaning.sample).size() > 1e-9 * (1.0 + size) {
+        if (Sample::real(value) - fingerprint.sample).size() > 1e-9 * (1.0 + size) {
             return None;
         }
         Some(self.constant(Number::ratio(Ratio::new(n.into(), d.into())?)))
     }
 
     /// The node that has this value or its negative.
-    fn same(&self, meaning: &Meaning) -> Option<Handle> {
-        let (key, negative) = canonical(meaning.image);
+    fn same(&self, fingerprint: &Fingerprint) -> Option<Handle> {
+        let (key, negative) = canonical(fingerprint.image);
         let tables = self.tables.borrow();
-        let found = tables.by_meaning.get(&key)?.with_sign_of(negative);
-        tables.sample(found).agrees(meaning.sample).then_some(found)
+        let found = tables.by_fingerprint.get(&key)?.with_sign_of(negative);
+        tables
+            .sample(found)
+            .agrees(fingerprint.sample)
+            .then_some(found)
     }
 
     /// The rational multiple of a node that this one is, or else a node of its own.
-    fn multiple_or_new(&self, op: Op, meaning: Meaning) -> Handle {
+    fn multiple_or_new(&self, op: Op, fingerprint: Fingerprint) -> Handle {
         let scaled = match op {
             Op::Mul(a, b) => self.is_constant(a) || self.is_constant(b),
             Op::Constant(_) => true,
             _ => false,
         };
-        let key = if scaled { None } else { ratio_key(&meaning) };
+        let key = if scaled {
+            None
+        } else {
+            ratio_key(&fingerprint)
+        };
         let multiple = match op {
             Op::Symbol(_) => None,
-            _ => key.and_then(|key| self.proportional(key, &meaning)),
+            _ => key.and_then(|key| self.proportional(key, &fingerprint)),
         };
         let multiple = multiple.filter(|h| self.fits(&op, *h));
-        multiple.unwrap_or_else(|| self.push(op, meaning, key))
+        multiple.unwrap_or_else(|| self.push(op, fingerprint, key))
     }
 
     /// The node of which this one is a rational multiple.
-    fn proportional(&self, key: Element, meaning: &Meaning) -> Option<Handle> {
+    fn proportional(&self, key: Element, fingerprint: &Fingerprint) -> Option<Handle> {
         let (other, ratio) = {
             let tables = self.tables.borrow();
             let other = *tables.by_ratio.get(&key)?;
-            let theirs = tables.nodes[other as usize].meaning;
-            let ratio = meaning.image[0] * theirs.image[0].inverse();
-            if ratio * theirs.image[1] != meaning.image[1] {
+            let theirs = tables.nodes[other as usize].fingerprint;
+            let ratio = fingerprint.image[0] * theirs.image[0].inverse();
+            if ratio * theirs.image[1] != fingerprint.image[1] {
                 return None;
             }
             let (n, d) = ratio.to_rational()?;
-            if !(theirs.sample * Sample::real(n as f64 / d as f64)).agrees(meaning.sample) {
+            if !(theirs.sample * Sample::real(n as f64 / d as f64)).agrees(fingerprint.sample) {
                 return None;
             }
             (other, Number::ratio(Ratio::new(n.into(), d.into())?))
@@ -420,22 +427,24 @@ impl Arena {
     }
 
     /// A new node; it is found by its ratio key if it has one.
-    fn push(&self, op: Op, meaning: Meaning, ratio: Option<Element>) -> Handle {
+    fn push(&self, op: Op, fingerprint: Fingerprint, ratio: Option<Element>) -> Handle {
         let mut tables = self.tables.borrow_mut();
         let index = tables.nodes.len();
         let (scope, placeholders) = (tables.scope, tables.placeholders(&op));
         tables.nodes.push(Node {
             op,
-            meaning,
+            fingerprint,
             scope,
             placeholders,
         });
-        // The first node of a meaning stands for it; one written with more placeholders gives way.
+        // The first node with a fingerprint stands for it; one written with more placeholders gives way.
         let stands = |tables: &Tables, index: usize| tables.may_stand(index, placeholders);
-        let (key, negative) = canonical(meaning.image);
-        let known = tables.by_meaning.get(&key).copied();
+        let (key, negative) = canonical(fingerprint.image);
+        let known = tables.by_fingerprint.get(&key).copied();
         if !known.is_some_and(|k| stands(&tables, k.index())) {
-            tables.by_meaning.insert(key, Handle::new(index, negative));
+            tables
+                .by_fingerprint
+                .insert(key, Handle::new(index, negative));
         }
         if let Some(ratio) = ratio {
             let known = tables.by_ratio.get(&ratio).copied();
@@ -458,6 +467,7 @@ fn canonical(image: [Element; POINTS]) -> ([Element; POINTS], bool) {
 }
 
 /// The ratio of the values at the two points, equal for nodes that differ by a constant factor.
-fn ratio_key(meaning: &Meaning) -> Option<Element> {
-    (meaning.image[1] != Element::ZERO).then(|| meaning.image[0] * meaning.image[1].inverse())
+fn ratio_key(fingerprint: &Fingerprint) -> Option<Element> {
+    (fingerprint.image[1] != Element::ZERO)
+        .then(|| fingerprint.image[0] * fingerprint.image[1].inverse())
 }

@@ -1,13 +1,13 @@
 //! The angles that a function knows from its inputs alone: their sines and cosines are evaluated
 //! together, so that they fill vector registers.
 
-use crate::lowering::{Operation, Program, Source};
+use crate::lowering::{Operand, Operation, Program};
 
 /// Sine and cosine of one angle, as steps of a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// The angle.
-    pub angle: Source,
+    pub angle: Operand,
     /// The step of its sine, if the program has one.
     pub sine: Option<usize>,
     /// The step of its cosine, if the program has one.
@@ -63,9 +63,9 @@ pub fn early(program: &Program) -> Early {
         return Early::default();
     }
     let mut wanted = vec![false; program.steps.len()];
-    let mut open: Vec<Source> = pairs.iter().map(|p| p.angle).collect();
-    while let Some(source) = open.pop() {
-        if let Source::Step(at) = source
+    let mut open: Vec<Operand> = pairs.iter().map(|p| p.angle).collect();
+    while let Some(operand) = open.pop() {
+        if let Operand::Step(at) = operand
             && !std::mem::replace(&mut wanted[at], true)
         {
             open.extend(program.steps[at].operation.operands());
@@ -82,9 +82,9 @@ const fn is_arithmetic(operation: Operation) -> bool {
     )
 }
 
-fn is_known(source: Source, simple: &[bool]) -> bool {
-    match source {
-        Source::Constant(_) | Source::Input { .. } => true,
-        Source::Step(at) => simple[at],
+fn is_known(operand: Operand, simple: &[bool]) -> bool {
+    match operand {
+        Operand::Constant(_) | Operand::Input { .. } => true,
+        Operand::Step(at) => simple[at],
     }
 }

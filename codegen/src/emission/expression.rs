@@ -4,7 +4,7 @@
 //! stays short; every other value is a `let` with the name that the derivation gave it, or a number.
 
 use super::angles;
-use crate::lowering::{Condition, Operation, Program, Source};
+use crate::lowering::{Condition, Operand, Operation, Program};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::quote;
 use std::collections::HashSet;
@@ -94,7 +94,7 @@ impl<'p> Body<'p> {
         let mut names = Vec::new();
         let mut values = Vec::new();
         for pair in &early.pairs {
-            values.push(self.source(pair.angle).tokens);
+            values.push(self.operand(pair.angle).tokens);
             let mut name = |step: Option<usize>| match step {
                 Some(at) => {
                     self.written[at] = true;
@@ -126,7 +126,7 @@ impl<'p> Body<'p> {
             .program
             .guards
             .iter()
-            .any(|g| g.source == Source::Step(at));
+            .any(|g| g.operand == Operand::Step(at));
         if self.uses[at] == 1 && !named && !guarded && text.size < LONGEST {
             self.inlined[at] = Some(text);
         } else {
@@ -139,7 +139,7 @@ impl<'p> Body<'p> {
     }
 
     /// The angle, if steps `at` and `at + 1` are its cosine and sine in whatever order.
-    fn pair(&self, at: usize) -> Option<Source> {
+    fn pair(&self, at: usize) -> Option<Operand> {
         let operation = |i: usize| self.program.steps.get(i).map(|s| s.operation);
         match (operation(at)?, operation(at + 1)?) {
             (Operation::Cosine(a), Operation::Sine(b))
@@ -152,8 +152,8 @@ impl<'p> Body<'p> {
         }
     }
 
-    fn sine_and_cosine(&mut self, at: usize, angle: Source) -> usize {
-        let angle = self.source(angle).tokens;
+    fn sine_and_cosine(&mut self, at: usize, angle: Operand) -> usize {
+        let angle = self.operand(angle).tokens;
         let (first, second) = (self.declare(at), self.declare(at + 1));
         let cosine_first = matches!(self.program.steps[at].operation, Operation::Cosine(_));
         let (sine, cosine) = if cosine_first {
@@ -173,9 +173,9 @@ impl<'p> Body<'p> {
             .program
             .guards
             .iter()
-            .filter(|g| g.source == Source::Step(at))
+            .filter(|g| g.operand == Operand::Step(at))
         {
-            let value = self.source(guard.source).tokens;
+            let value = self.operand(guard.operand).tokens;
             self.statements.extend(match &guard.condition {
                 Condition::Reach { leg } => quote!(::overact::guard::reach(#value, #leg)?;),
                 Condition::Leg { leg, home } => {
@@ -207,9 +207,9 @@ impl<'p> Body<'p> {
         ident
     }
 
-    fn source(&mut self, source: Source) -> Text {
-        match source {
-            Source::Constant(value) => {
+    fn operand(&mut self, operand: Operand) -> Text {
+        match operand {
+            Operand::Constant(value) => {
                 let literal = number(value);
                 let binding = if value < 0.0 {
                     Binding::Product
@@ -222,12 +222,12 @@ impl<'p> Body<'p> {
                     size: 0,
                 }
             }
-            Source::Input { array, index } => {
+            Operand::Input { array, index } => {
                 let name = Ident::new(&self.program.inputs[array].name, Span::call_site());
                 let index = Literal::usize_unsuffixed(index);
                 Text::atom(quote!(#name[#index]))
             }
-            Source::Step(at) => match (&self.names[at], self.inlined[at].take()) {
+            Operand::Step(at) => match (&self.names[at], self.inlined[at].take()) {
                 (Some(name), _) => Text::atom(quote!(#name)),
                 (None, Some(text)) => text,
                 (None, None) => Text::atom(quote!(f64::NAN)),
@@ -242,7 +242,7 @@ impl<'p> Body<'p> {
             Operation::Mul(a, b) => self.binary(a, b, &quote!(*), Binding::Product, Binding::Atom),
             Operation::Div(a, b) => self.binary(a, b, &quote!(/), Binding::Product, Binding::Atom),
             Operation::Neg(a) => {
-                let inner = self.source(a);
+                let inner = self.operand(a);
                 let tokens = inner.within(Binding::Atom);
                 Text {
                     tokens: quote!(-#tokens),
@@ -262,13 +262,13 @@ impl<'p> Body<'p> {
 
     fn binary(
         &mut self,
-        a: Source,
-        b: Source,
+        a: Operand,
+        b: Operand,
         operator: &TokenStream,
         binding: Binding,
         right: Binding,
     ) -> Text {
-        let (a, b) = (self.source(a), self.source(b));
+        let (a, b) = (self.operand(a), self.operand(b));
         let (left, right) = (a.within(binding), b.within(right));
         Text {
             tokens: quote!(#left #operator #right),
@@ -277,8 +277,8 @@ impl<'p> Body<'p> {
         }
     }
 
-    fn call(&mut self, function: &TokenStream, arguments: &[Source]) -> Text {
-        let arguments: Vec<Text> = arguments.iter().map(|&a| self.source(a)).collect();
+    fn call(&mut self, function: &TokenStream, arguments: &[Operand]) -> Text {
+        let arguments: Vec<Text> = arguments.iter().map(|&a| self.operand(a)).collect();
         let size = arguments.iter().map(|a| a.size).sum::<usize>() + 1;
         let tokens = arguments.iter().map(|a| &a.tokens);
         let tokens = quote!(::overact::math::#function(#(#tokens),*));
@@ -289,8 +289,8 @@ impl<'p> Body<'p> {
         }
     }
 
-    fn part(&mut self, angle: Source, index: &TokenStream) -> Text {
-        let angle = self.source(angle).tokens;
+    fn part(&mut self, angle: Operand, index: &TokenStream) -> Text {
+        let angle = self.operand(angle).tokens;
         Text {
             tokens: quote!(::overact::math::sin_cos(#angle).#index),
             binding: Binding::Atom,
@@ -304,7 +304,7 @@ impl<'p> Body<'p> {
             .entries
             .iter()
             .map(|entry| {
-                let text = self.source(entry.source);
+                let text = self.operand(entry.operand);
                 if entry.negative {
                     let inner = text.within(Binding::Atom);
                     quote!(-#inner)

@@ -1,7 +1,7 @@
 //! The steps of a program as passes over a block, two or three steps at once where a value is used once
 //! or where several steps share an operand.
 
-use crate::lowering::{Operation, Program, Source, peephole};
+use crate::lowering::{Operand, Operation, Program, peephole};
 use std::collections::HashMap;
 
 /// What can be fused.
@@ -78,11 +78,11 @@ pub(super) enum Value {
 }
 
 impl Value {
-    pub(super) const fn of(source: Source) -> Self {
-        match source {
-            Source::Constant(value) => Self::Constant(value.to_bits()),
-            Source::Input { array, index } => Self::Input { array, index },
-            Source::Step(at) => Self::Step(at),
+    pub(super) const fn of(operand: Operand) -> Self {
+        match operand {
+            Operand::Constant(value) => Self::Constant(value.to_bits()),
+            Operand::Input { array, index } => Self::Input { array, index },
+            Operand::Step(at) => Self::Step(at),
         }
     }
 }
@@ -100,10 +100,10 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    fn new(kind: Kind, operands: &[Source], result: Value) -> Self {
+    fn new(kind: Kind, operands: &[Operand], result: Value) -> Self {
         Self {
             kind,
-            operands: operands.iter().map(|&source| Value::of(source)).collect(),
+            operands: operands.iter().map(|&operand| Value::of(operand)).collect(),
             results: [Some(result), None, None],
         }
     }
@@ -136,8 +136,8 @@ pub(super) fn drafts(program: &Program) -> Vec<Draft> {
 
 /// The same passes, where one of a single step is done with the pass of two that alone needs it.
 fn chains(program: &Program, drafts: Vec<Draft>) -> Vec<Draft> {
-    let entries = program.entries.iter().map(|entry| entry.source);
-    let kept = entries.chain(program.guards.iter().map(|guard| guard.source));
+    let entries = program.entries.iter().map(|entry| entry.operand);
+    let kept = entries.chain(program.guards.iter().map(|guard| guard.operand));
     let operands = drafts.iter().flat_map(|draft| &draft.operands).copied();
     let mut uses: HashMap<Value, usize> = HashMap::new();
     for value in operands.chain(kept.map(Value::of)) {
@@ -180,7 +180,7 @@ fn angles(program: &Program) -> HashMap<Value, [Option<usize>; 2]> {
 }
 
 /// The arithmetic of a step, and its operands.
-fn arithmetic(operation: Operation) -> Option<(Arithmetic, Source, Source)> {
+fn arithmetic(operation: Operation) -> Option<(Arithmetic, Operand, Operand)> {
     match operation {
         Operation::Add(a, b) => Some((Arithmetic::Add, a, b)),
         Operation::Sub(a, b) => Some((Arithmetic::Sub, a, b)),
@@ -200,12 +200,12 @@ impl<'p> Fuse<'p> {
         let count = program.steps.len();
         let mut kept = vec![false; count];
         for entry in &program.entries {
-            if let Source::Step(at) = entry.source {
+            if let Operand::Step(at) = entry.operand {
                 kept[at] = true;
             }
         }
         for guard in &program.guards {
-            if let Source::Step(at) = guard.source {
+            if let Operand::Step(at) = guard.operand {
                 kept[at] = true;
             }
         }
@@ -214,8 +214,8 @@ impl<'p> Fuse<'p> {
         // From the end, so that a step which is fused into another one takes none into itself.
         for at in (0..count).rev() {
             let operands = arithmetic(program.steps[at].operation).filter(|_| !fused[at]);
-            for source in operands.into_iter().flat_map(|(_, a, b)| [a, b]) {
-                if let Source::Step(inner) = source {
+            for operand in operands.into_iter().flat_map(|(_, a, b)| [a, b]) {
+                if let Operand::Step(inner) = operand {
                     let is_arithmetic = arithmetic(program.steps[inner].operation).is_some();
                     fused[inner] = is_arithmetic && uses[inner] == 1 && !kept[inner];
                 }
@@ -225,15 +225,15 @@ impl<'p> Fuse<'p> {
     }
 
     /// The step that is computed with the one that needs it.
-    fn inner(&self, source: Source) -> Option<(Arithmetic, Source, Source)> {
-        match source {
-            Source::Step(at) if self.fused[at] => arithmetic(self.program.steps[at].operation),
+    fn inner(&self, operand: Operand) -> Option<(Arithmetic, Operand, Operand)> {
+        match operand {
+            Operand::Step(at) if self.fused[at] => arithmetic(self.program.steps[at].operation),
             _ => None,
         }
     }
 
     fn draft(&self, at: usize, operation: Operation) -> Draft {
-        let of = |kind: Kind, operands: &[Source]| Draft::new(kind, operands, Value::Step(at));
+        let of = |kind: Kind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
         match operation {
             Operation::Div(a, b) => of(Kind::Divide, &[a, b]),
             Operation::Signed(a, b) => of(Kind::Signed, &[b, a]),
@@ -248,8 +248,8 @@ impl<'p> Fuse<'p> {
         }
     }
 
-    fn arithmetic(&self, at: usize, middle: Arithmetic, left: Source, right: Source) -> Draft {
-        let of = |kind: Kind, operands: &[Source]| Draft::new(kind, operands, Value::Step(at));
+    fn arithmetic(&self, at: usize, middle: Arithmetic, left: Operand, right: Operand) -> Draft {
+        let of = |kind: Kind, operands: &[Operand]| Draft::new(kind, operands, Value::Step(at));
         match (self.inner(left), self.inner(right)) {
             (None, None) => of(Kind::One(middle), &[left, right]),
             (Some((first, a, b)), None) => of(Kind::Then(first, middle), &[a, b, right]),

@@ -67,7 +67,7 @@ impl Plan {
         let mut planner = Planner::new(program, &drafts);
         let mut outputs: HashMap<Value, Vec<usize>> = HashMap::new();
         for (index, entry) in program.entries.iter().enumerate() {
-            let value = Value::of(entry.source);
+            let value = Value::of(entry.operand);
             outputs.entry(value).or_default().push(index);
         }
         for draft in &drafts {
@@ -101,8 +101,8 @@ struct Planner<'p> {
 impl<'p> Planner<'p> {
     fn new(program: &'p Program, drafts: &[Draft]) -> Self {
         let operands = drafts.iter().flat_map(|draft| &draft.operands).copied();
-        let entries = program.entries.iter().map(|e| e.source);
-        let kept = entries.chain(program.guards.iter().map(|g| g.source));
+        let entries = program.entries.iter().map(|e| e.operand);
+        let kept = entries.chain(program.guards.iter().map(|g| g.operand));
         let mut needed = HashMap::new();
         for value in operands.chain(kept.map(Value::of)) {
             *needed.entry(value).or_default() += 1;
@@ -183,7 +183,7 @@ impl<'p> Planner<'p> {
         self.waiting.sort_unstable();
         for index in std::mem::take(&mut self.waiting) {
             let entry = self.program.entries[index];
-            let value = Value::of(entry.source);
+            let value = Value::of(entry.operand);
             let slot = self.slot(value);
             self.plan.outputs.push(Output {
                 index,
@@ -199,7 +199,7 @@ impl<'p> Planner<'p> {
     }
 
     fn finish(mut self) -> Plan {
-        let guards = self.program.guards.iter().map(|g| Value::of(g.source));
+        let guards = self.program.guards.iter().map(|g| Value::of(g.operand));
         self.plan.guards = guards.map(|value| self.slot(value)).collect();
         // Inputs of one array are loaded together.
         self.plan.loads.sort_by_key(|load| (load.array, load.index));

@@ -2,7 +2,7 @@
 //! depends on the last.
 
 use super::{Failed, Rows, signed};
-use crate::lowering::{Operation, Program, Source};
+use crate::lowering::{Operand, Operation, Program};
 
 /// Evaluates a program at a single sample.
 pub(super) fn evaluate(
@@ -13,7 +13,7 @@ pub(super) fn evaluate(
 ) -> Result<(), Failed> {
     steps.clear();
     for step in &program.steps {
-        let value = |source: Source| fetch(source, inputs, steps);
+        let value = |operand: Operand| fetch(operand, inputs, steps);
         let result = match step.operation {
             Operation::Add(a, b) => value(a) + value(b),
             Operation::Sub(a, b) => value(a) - value(b),
@@ -30,7 +30,7 @@ pub(super) fn evaluate(
         steps.push(result);
     }
     for (guard, checked) in program.guards.iter().enumerate() {
-        let value = fetch(checked.source, inputs, steps);
+        let value = fetch(checked.operand, inputs, steps);
         if !checked.condition.holds(value) {
             return Err(Failed {
                 sample: 0,
@@ -40,18 +40,18 @@ pub(super) fn evaluate(
         }
     }
     for (slot, entry) in output.iter_mut().zip(&program.entries) {
-        let value = fetch(entry.source, inputs, steps);
+        let value = fetch(entry.operand, inputs, steps);
         *slot = if entry.negative { -value } else { value };
     }
     Ok(())
 }
 
 #[inline]
-fn fetch(source: Source, inputs: &[Rows<'_>], steps: &[f64]) -> f64 {
-    match source {
-        Source::Constant(value) => value,
-        Source::Step(at) => steps[at],
-        Source::Input { array, index } => {
+fn fetch(operand: Operand, inputs: &[Rows<'_>], steps: &[f64]) -> f64 {
+    match operand {
+        Operand::Constant(value) => value,
+        Operand::Step(at) => steps[at],
+        Operand::Input { array, index } => {
             let values = inputs
                 .get(array)
                 .map(|rows| rows.values)

@@ -1,7 +1,7 @@
 //! Blocks against single samples, on a program of every operation in every fused form.
 
 use super::{BLOCK, Evaluator, Rows};
-use crate::lowering::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
+use crate::lowering::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
 
 fn array(name: &str, len: usize) -> Array {
     Array {
@@ -10,21 +10,21 @@ fn array(name: &str, len: usize) -> Array {
     }
 }
 
-const fn input(array: usize, index: usize) -> Source {
-    Source::Input { array, index }
+const fn input(array: usize, index: usize) -> Operand {
+    Operand::Input { array, index }
 }
 
 /// A program of two inputs, the second shared, whose outputs hold every kind of number.
 fn program() -> Program {
     use Operation::{Add, Atan2, Cosine, Div, Mul, Neg, Sign, Signed, Sine, Sqrt, Sub};
-    let at = Source::Step;
+    let at = Operand::Step;
     let (x, y, p) = (input(0, 0), input(0, 1), input(1, 0));
     let mut operations = vec![
         Sine(x),
         Cosine(x),
         Cosine(y),
         Neg(at(0)),
-        Sqrt(Source::Constant(2.0)),
+        Sqrt(Operand::Constant(2.0)),
         Sign(y),
         Signed(x, y),
         Atan2(y, x),
@@ -35,7 +35,7 @@ fn program() -> Program {
     ];
     let mut outputs: Vec<usize> = (1..operations.len()).collect();
     // Every pair of fused operations, on either side and on both.
-    let two = |kind: usize, a: Source, b: Source| [Add(a, b), Sub(a, b), Mul(a, b)][kind];
+    let two = |kind: usize, a: Operand, b: Operand| [Add(a, b), Sub(a, b), Mul(a, b)][kind];
     for (first, middle) in (0..9).map(|k| (k / 3, k % 3)) {
         let inner = operations.len();
         operations.push(two(first, at(0), x));
@@ -46,13 +46,13 @@ fn program() -> Program {
         for last in 0..3 {
             let inner = operations.len();
             operations.push(two(first, at(0), y));
-            operations.push(two(last, x, Source::Constant(0.75)));
+            operations.push(two(last, x, Operand::Constant(0.75)));
             operations.push(two(middle, at(inner), at(inner + 1)));
             outputs.push(inner + 2);
             // Three in a row, the second and the third step on either side.
             for sides in 0..4 {
                 let chain = operations.len();
-                let on = |side: bool, a: Source, b: Source| if side { (a, b) } else { (b, a) };
+                let on = |side: bool, a: Operand, b: Operand| if side { (a, b) } else { (b, a) };
                 operations.push(two(first, at(0), y));
                 let (a, b) = on(sides & 1 == 0, at(chain), x);
                 operations.push(two(middle, a, b));
@@ -62,12 +62,12 @@ fn program() -> Program {
             }
         }
     }
-    let sources = outputs.iter().map(|&o| at(o));
-    let plain = sources.chain([x, p, Source::Constant(3.0), Source::Constant(0.0)]);
+    let operands = outputs.iter().map(|&o| at(o));
+    let plain = operands.chain([x, p, Operand::Constant(3.0), Operand::Constant(0.0)]);
     let entries: Vec<Entry> = plain
         .enumerate()
-        .map(|(k, source)| Entry {
-            source,
+        .map(|(k, operand)| Entry {
+            operand,
             negative: k % 3 == 1,
         })
         .collect();
@@ -84,7 +84,7 @@ fn program() -> Program {
             })
             .collect(),
         guards: vec![Guard {
-            source: at(1),
+            operand: at(1),
             condition: Condition::Leg {
                 leg: "leg".to_owned(),
                 home: 1.0,

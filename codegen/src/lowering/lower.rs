@@ -1,6 +1,6 @@
 //! From the graph to the program: reachable nodes in an order in which operands come first.
 
-use super::program::{Array, Condition, Entry, Guard, Operation, Program, Source, Step};
+use super::program::{Array, Condition, Entry, Guard, Operand, Operation, Program, Step};
 use super::search::{Overlay, Place, Reach, Rewritten, States, search};
 use super::trigonometry::{Plan, plan};
 use crate::cas::arena::{Handle, Op};
@@ -47,10 +47,10 @@ pub fn lower<'a>(
     }
     let entries: Vec<Entry> = found.into_iter().flatten().collect();
     // A condition matters where its value is divided by or has its root taken.
-    let matters = |source: Source| {
+    let matters = |operand: Operand| {
         lowering.steps.iter().any(|step| match step.operation {
-            Operation::Div(_, by) => by == source,
-            Operation::Sqrt(of) => of == source,
+            Operation::Div(_, by) => by == operand,
+            Operation::Sqrt(of) => of == operand,
             _ => false,
         })
     };
@@ -58,9 +58,9 @@ pub fn lower<'a>(
         .iter()
         .filter_map(|guard| {
             let place = Place::Arena(guard.value.handle().index());
-            let source = lowering.done.get(&place)?.source;
+            let operand = lowering.done.get(&place)?.operand;
             let condition = guard.condition.clone();
-            matters(source).then_some(Guard { source, condition })
+            matters(operand).then_some(Guard { operand, condition })
         })
         .collect();
     let program = Program {
@@ -80,7 +80,7 @@ struct Lowering<'a> {
     done: HashMap<Place, Entry>,
     overlay: Overlay,
     angles: Vec<(Direction, Plan)>,
-    units: HashMap<usize, (Source, Source)>,
+    units: HashMap<usize, (Operand, Operand)>,
     by_operation: Vec<(Operation, usize)>,
 }
 
@@ -105,20 +105,20 @@ impl<'a> Lowering<'a> {
 
     /// A node or its negative; the sign of a constant is the constant's.
     fn signed(&mut self, place: Place, negative: bool) -> Entry {
-        let Entry { source, negative } = self.node(place).times(negative);
-        match source {
-            Source::Constant(value) if negative => Entry::positive(Source::Constant(-value)),
-            _ => Entry { source, negative },
+        let Entry { operand, negative } = self.node(place).times(negative);
+        match operand {
+            Operand::Constant(value) if negative => Entry::positive(Operand::Constant(-value)),
+            _ => Entry { operand, negative },
         }
     }
 
     /// The operand that a handle is; a negative one is negated first.
-    fn operand(&mut self, handle: Handle) -> Source {
+    fn operand(&mut self, handle: Handle) -> Operand {
         let entry = self.entry(handle);
         if entry.negative {
-            self.push(Operation::Neg(entry.source), None, String::new())
+            self.push(Operation::Neg(entry.operand), None, String::new())
         } else {
-            entry.source
+            entry.operand
         }
     }
 
@@ -130,7 +130,7 @@ impl<'a> Lowering<'a> {
             (Some((rewritten, scope)), _) => self.rewritten(place, rewritten, scope),
             (None, Place::Arena(index)) => self.original(index),
             // A node of the search's own is always defined by it.
-            (None, Place::New(_)) => Entry::positive(Source::Constant(f64::NAN)),
+            (None, Place::New(_)) => Entry::positive(Operand::Constant(f64::NAN)),
         };
         self.done.insert(place, entry);
         entry
@@ -157,8 +157,8 @@ impl<'a> Lowering<'a> {
                 name
             }
         });
-        let source = self.push(operation, name, self.arena.scope_name(scope));
-        Entry { source, negative }
+        let operand = self.push(operation, name, self.arena.scope_name(scope));
+        Entry { operand, negative }
     }
 
     /// A node as the arena has it.
@@ -166,18 +166,18 @@ impl<'a> Lowering<'a> {
         let (operation, negative) = match self.arena.op(index) {
             Op::Constant(id) => {
                 let value = self.arena.constant_at(id).value();
-                return Entry::positive(Source::Constant(value));
+                return Entry::positive(Operand::Constant(value));
             }
             Op::Symbol(id) => {
                 return Entry::positive(self.input(&self.arena.symbol_name(id)));
             }
             Op::Cosine(id) => {
-                let source = self.unit_of(&self.arena.direction_at(id)).0;
-                return self.named(index, source);
+                let operand = self.unit_of(&self.arena.direction_at(id)).0;
+                return self.named(index, operand);
             }
             Op::Sine(id) => {
-                let source = self.unit_of(&self.arena.direction_at(id)).1;
-                return self.named(index, source);
+                let operand = self.unit_of(&self.arena.direction_at(id)).1;
+                return self.named(index, operand);
             }
             Op::Add(a, b) => sum(self.entry(a), self.entry(b)),
             Op::Sub(a, b) => sum(self.entry(a), self.entry(b).times(true)),
@@ -195,47 +195,47 @@ impl<'a> Lowering<'a> {
                 name
             }
         });
-        let source = self.push(operation, name, self.arena.scope(index));
-        Entry { source, negative }
+        let operand = self.push(operation, name, self.arena.scope(index));
+        Entry { operand, negative }
     }
 
     /// Sines and cosines are steps already; the node's name goes to the step.
-    fn named(&mut self, index: usize, source: Source) -> Entry {
-        if let Source::Step(at) = source {
+    fn named(&mut self, index: usize, operand: Operand) -> Entry {
+        if let Operand::Step(at) = operand {
             let step = &mut self.steps[at];
             if step.name.is_none() {
                 step.name = self.arena.name_of(index);
                 step.scope = self.arena.scope(index);
             }
         }
-        Entry::positive(source)
+        Entry::positive(operand)
     }
 
-    fn push(&mut self, operation: Operation, name: Option<String>, scope: String) -> Source {
+    fn push(&mut self, operation: Operation, name: Option<String>, scope: String) -> Operand {
         self.steps.push(Step {
             operation,
             name,
             scope,
         });
-        Source::Step(self.steps.len() - 1)
+        Operand::Step(self.steps.len() - 1)
     }
 
     /// The input element of a symbol `name[index]`. A symbol that is none is a bug of the caller's
     /// and becomes NaN, which no test survives.
-    fn input(&self, symbol: &str) -> Source {
+    fn input(&self, symbol: &str) -> Operand {
         let parts = symbol.strip_suffix(']').and_then(|s| s.split_once('['));
         let found = parts.and_then(|(name, index)| {
             let array = self.inputs.iter().position(|a| a.name == name)?;
-            Some(Source::Input {
+            Some(Operand::Input {
                 array,
                 index: index.parse().ok()?,
             })
         });
         debug_assert!(found.is_some(), "`{symbol}` is no input");
-        found.unwrap_or(Source::Constant(f64::NAN))
+        found.unwrap_or(Operand::Constant(f64::NAN))
     }
 
-    fn unit_of(&mut self, direction: &Direction) -> (Source, Source) {
+    fn unit_of(&mut self, direction: &Direction) -> (Operand, Operand) {
         match self.angles.iter().position(|(d, _)| d == direction) {
             Some(at) => self.unit(at),
             None => self.direct(direction),
@@ -243,7 +243,7 @@ impl<'a> Lowering<'a> {
     }
 
     /// Cosine and sine of a planned angle.
-    fn unit(&mut self, at: usize) -> (Source, Source) {
+    fn unit(&mut self, at: usize) -> (Operand, Operand) {
         if let Some(&unit) = self.units.get(&at) {
             return unit;
         }
@@ -270,8 +270,8 @@ impl<'a> Lowering<'a> {
                 if !rest.offset().is_zero() {
                     let (cosine, sine) = rest.offset().cosine_and_sine();
                     let constant = (
-                        Source::Constant(cosine.value()),
-                        Source::Constant(sine.value()),
+                        Operand::Constant(cosine.value()),
+                        Operand::Constant(sine.value()),
                     );
                     unit = self.sum(
                         unit,
@@ -288,15 +288,15 @@ impl<'a> Lowering<'a> {
         unit
     }
 
-    fn direct(&mut self, direction: &Direction) -> (Source, Source) {
+    fn direct(&mut self, direction: &Direction) -> (Operand, Operand) {
         let angle = self.angle_value(direction);
         let cosine = self.push(Operation::Cosine(angle), None, String::new());
         let sine = self.push(Operation::Sine(angle), None, String::new());
         (cosine, sine)
     }
 
-    fn angle_value(&mut self, direction: &Direction) -> Source {
-        let mut sum: Option<Source> = None;
+    fn angle_value(&mut self, direction: &Direction) -> Operand {
+        let mut sum: Option<Operand> = None;
         for (symbol, factor) in direction.terms() {
             let input = self.input(&self.arena.symbol_name(*symbol));
             let size = factor.value().abs();
@@ -304,7 +304,7 @@ impl<'a> Lowering<'a> {
                 input
             } else {
                 self.push(
-                    Operation::Mul(Source::Constant(size), input),
+                    Operation::Mul(Operand::Constant(size), input),
                     None,
                     String::new(),
                 )
@@ -320,11 +320,11 @@ impl<'a> Lowering<'a> {
         let offset = direction.offset();
         match sum {
             Some(sum) if !offset.is_zero() => {
-                let constant = Source::Constant(offset.value());
+                let constant = Operand::Constant(offset.value());
                 self.push(Operation::Add(sum, constant), None, String::new())
             }
             Some(sum) => sum,
-            None => Source::Constant(offset.value()),
+            None => Operand::Constant(offset.value()),
         }
     }
 
@@ -358,19 +358,19 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    fn product(&mut self, x: Source, y: Source) -> Source {
+    fn product(&mut self, x: Operand, y: Operand) -> Operand {
         let operation = Operation::Mul(x, y);
         if let Some((_, at)) = self.by_operation.iter().find(|(o, _)| *o == operation) {
-            return Source::Step(*at);
+            return Operand::Step(*at);
         }
-        let source = self.push(operation, None, String::new());
-        if let Source::Step(at) = source {
+        let operand = self.push(operation, None, String::new());
+        if let Operand::Step(at) = operand {
             self.by_operation.push((operation, at));
         }
-        source
+        operand
     }
 
-    fn resolved(&mut self, turned: Turned) -> (Source, Source) {
+    fn resolved(&mut self, turned: Turned) -> (Operand, Operand) {
         let (cosine, sine) = turned.unit;
         if !turned.mirrored {
             return (cosine, sine);
@@ -382,27 +382,27 @@ impl<'a> Lowering<'a> {
 /// ±a ± b as an operation, and whether its negative is meant.
 fn sum(a: Entry, b: Entry) -> (Operation, bool) {
     match (a.negative, b.negative) {
-        (false, false) => (Operation::Add(a.source, b.source), false),
-        (false, true) => (Operation::Sub(a.source, b.source), false),
-        (true, false) => (Operation::Sub(b.source, a.source), false),
-        (true, true) => (Operation::Add(a.source, b.source), true),
+        (false, false) => (Operation::Add(a.operand, b.operand), false),
+        (false, true) => (Operation::Sub(a.operand, b.operand), false),
+        (true, false) => (Operation::Sub(b.operand, a.operand), false),
+        (true, true) => (Operation::Add(a.operand, b.operand), true),
     }
 }
 
 fn product(a: Entry, b: Entry) -> (Operation, bool) {
-    let operation = Operation::Mul(a.source, b.source);
+    let operation = Operation::Mul(a.operand, b.operand);
     (operation, a.negative != b.negative)
 }
 
 fn quotient(a: Entry, b: Entry) -> (Operation, bool) {
-    let operation = Operation::Div(a.source, b.source);
+    let operation = Operation::Div(a.operand, b.operand);
     (operation, a.negative != b.negative)
 }
 
 /// A cosine and sine, perhaps of the opposite angle.
 #[derive(Clone, Copy)]
 struct Turned {
-    unit: (Source, Source),
+    unit: (Operand, Operand),
     mirrored: bool,
 }
 

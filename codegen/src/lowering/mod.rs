@@ -13,6 +13,6 @@ pub mod trigonometry;
 
 pub use lower::{GuardedExpr, lower};
 pub use program::{
-    Array, Condition, Cost, Entry, Guard, Operation, Program, SINGULAR, Source, Step,
+    Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, SINGULAR, Step,
 };
 pub use search::{Effort, Reach, States};

@@ -1,7 +1,7 @@
 //! Small improvements of a finished program: selections for products with a sign, quotients for
 //! products with a reciprocal that is used once, and no step that nothing needs.
 
-use super::program::{Entry, Guard, Operation, Program, Source, Step};
+use super::program::{Entry, Guard, Operand, Operation, Program, Step};
 
 /// Improves a program without changing what it computes.
 #[must_use]
@@ -15,8 +15,8 @@ pub fn improve(mut program: Program) -> Program {
 #[must_use]
 pub fn uses(program: &Program) -> Vec<usize> {
     let mut uses = vec![0; program.steps.len()];
-    let mut count = |source: Source| {
-        if let Source::Step(at) = source {
+    let mut count = |operand: Operand| {
+        if let Operand::Step(at) = operand {
             uses[at] += 1;
         }
     };
@@ -25,14 +25,14 @@ pub fn uses(program: &Program) -> Vec<usize> {
         .iter()
         .flat_map(|s| s.operation.operands())
         .for_each(&mut count);
-    program.entries.iter().for_each(|e| count(e.source));
-    program.guards.iter().for_each(|g| count(g.source));
+    program.entries.iter().for_each(|e| count(e.operand));
+    program.guards.iter().for_each(|g| count(g.operand));
     uses
 }
 
 /// x × sign(y) is x with the sign of y: a selection, not a multiplication.
 fn select_signs(program: &mut Program) {
-    let signs: Vec<Option<Source>> = program
+    let signs: Vec<Option<Operand>> = program
         .steps
         .iter()
         .map(|s| match s.operation {
@@ -40,8 +40,8 @@ fn select_signs(program: &mut Program) {
             _ => None,
         })
         .collect();
-    let sign_of = |source: Source| match source {
-        Source::Step(at) => signs[at],
+    let sign_of = |operand: Operand| match operand {
+        Operand::Step(at) => signs[at],
         _ => None,
     };
     for step in &mut program.steps {
@@ -58,17 +58,17 @@ fn select_signs(program: &mut Program) {
 /// x × (1 / y) is x / y where nothing else needs the reciprocal.
 fn merge_reciprocals(program: &mut Program) {
     let uses = uses(program);
-    let reciprocals: Vec<Option<Source>> = program
+    let reciprocals: Vec<Option<Operand>> = program
         .steps
         .iter()
         .zip(&uses)
         .map(|(s, uses)| match s.operation {
-            Operation::Div(Source::Constant(one), of) if one == 1.0 && *uses == 1 => Some(of),
+            Operation::Div(Operand::Constant(one), of) if one == 1.0 && *uses == 1 => Some(of),
             _ => None,
         })
         .collect();
-    let reciprocal_of = |source: Source| match source {
-        Source::Step(at) => reciprocals[at],
+    let reciprocal_of = |operand: Operand| match operand {
+        Operand::Step(at) => reciprocals[at],
         _ => None,
     };
     for step in &mut program.steps {
@@ -85,19 +85,19 @@ fn merge_reciprocals(program: &mut Program) {
 /// Drops steps that no entry and no guard needs, and renumbers the rest.
 fn remove_unused(program: Program) -> Program {
     let mut needed = vec![false; program.steps.len()];
-    let mark = |needed: &mut Vec<bool>, source: Source| {
-        if let Source::Step(at) = source {
+    let mark = |needed: &mut Vec<bool>, operand: Operand| {
+        if let Operand::Step(at) = operand {
             needed[at] = true;
         }
     };
     program
         .entries
         .iter()
-        .for_each(|e| mark(&mut needed, e.source));
+        .for_each(|e| mark(&mut needed, e.operand));
     program
         .guards
         .iter()
-        .for_each(|g| mark(&mut needed, g.source));
+        .for_each(|g| mark(&mut needed, g.operand));
     for at in (0..program.steps.len()).rev() {
         if needed[at] {
             for operand in program.steps[at].operation.operands() {
@@ -111,8 +111,8 @@ fn remove_unused(program: Program) -> Program {
         number[at] = next;
         next += usize::from(*needed);
     }
-    let moved = |source: Source| match source {
-        Source::Step(at) => Source::Step(number[at]),
+    let moved = |operand: Operand| match operand {
+        Operand::Step(at) => Operand::Step(number[at]),
         other => other,
     };
     let steps = program
@@ -130,7 +130,7 @@ fn remove_unused(program: Program) -> Program {
             .entries
             .iter()
             .map(|e| Entry {
-                source: moved(e.source),
+                operand: moved(e.operand),
                 ..*e
             })
             .collect(),
@@ -138,7 +138,7 @@ fn remove_unused(program: Program) -> Program {
             .guards
             .into_iter()
             .map(|g| Guard {
-                source: moved(g.source),
+                operand: moved(g.operand),
                 ..g
             })
             .collect(),
@@ -149,7 +149,7 @@ fn remove_unused(program: Program) -> Program {
 
 /// The operation with its operands replaced.
 #[must_use]
-pub fn map_operands(operation: Operation, f: &dyn Fn(Source) -> Source) -> Operation {
+pub fn map_operands(operation: Operation, f: &dyn Fn(Operand) -> Operand) -> Operation {
     match operation {
         Operation::Add(a, b) => Operation::Add(f(a), f(b)),
         Operation::Sub(a, b) => Operation::Sub(f(a), f(b)),

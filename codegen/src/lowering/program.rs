@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Where an operand comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Source {
+pub enum Operand {
     /// A constant.
     Constant(f64),
     /// Element of an input array.
@@ -22,20 +22,20 @@ pub enum Source {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(missing_docs, reason = "the variants say it")]
 pub enum Operation {
-    Add(Source, Source),
-    Sub(Source, Source),
-    Mul(Source, Source),
-    Div(Source, Source),
-    Neg(Source),
-    Sqrt(Source),
+    Add(Operand, Operand),
+    Sub(Operand, Operand),
+    Mul(Operand, Operand),
+    Div(Operand, Operand),
+    Neg(Operand),
+    Sqrt(Operand),
     /// Sine of an angle in radians; the cosine of the same angle follows or precedes it.
-    Sine(Source),
-    Cosine(Source),
+    Sine(Operand),
+    Cosine(Operand),
     /// -1, 0 or 1.
-    Sign(Source),
+    Sign(Operand),
     /// The first operand with the sign of the second: a × sign(b), as a selection.
-    Signed(Source, Source),
-    Atan2(Source, Source),
+    Signed(Operand, Operand),
+    Atan2(Operand, Operand),
 }
 
 impl Operation {
@@ -50,7 +50,7 @@ impl Operation {
 
     /// The operands.
     #[must_use]
-    pub fn operands(&self) -> Vec<Source> {
+    pub fn operands(&self) -> Vec<Operand> {
         match *self {
             Self::Add(a, b)
             | Self::Sub(a, b)
@@ -80,7 +80,7 @@ pub struct Step {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
     /// The value.
-    pub source: Source,
+    pub operand: Operand,
     /// Whether its negative is meant.
     pub negative: bool,
 }
@@ -88,9 +88,9 @@ pub struct Entry {
 impl Entry {
     /// The value itself.
     #[must_use]
-    pub const fn positive(source: Source) -> Self {
+    pub const fn positive(operand: Operand) -> Self {
         Self {
-            source,
+            operand,
             negative: false,
         }
     }
@@ -99,7 +99,7 @@ impl Entry {
     #[must_use]
     pub const fn times(self, negative: bool) -> Self {
         Self {
-            source: self.source,
+            operand: self.operand,
             negative: self.negative != negative,
         }
     }
@@ -159,7 +159,7 @@ pub const SINGULAR: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guard {
     /// The value.
-    pub source: Source,
+    pub operand: Operand,
     /// The condition.
     pub condition: Condition,
 }
@@ -234,8 +234,8 @@ impl Program {
     pub fn used_inputs(&self) -> Vec<bool> {
         let mut used = vec![false; self.inputs.len()];
         let operands = self.steps.iter().flat_map(|s| s.operation.operands());
-        for source in operands.chain(self.entries.iter().map(|e| e.source)) {
-            if let Source::Input { array, .. } = source {
+        for operand in operands.chain(self.entries.iter().map(|e| e.operand)) {
+            if let Operand::Input { array, .. } = operand {
                 used[array] = true;
             }
         }
@@ -246,7 +246,7 @@ impl Program {
     #[must_use]
     pub fn cost(&self) -> Cost {
         let mut cost = Cost::default();
-        let mut angles: Vec<Source> = Vec::new();
+        let mut angles: Vec<Operand> = Vec::new();
         for step in &self.steps {
             match step.operation {
                 Operation::Add(..) | Operation::Sub(..) => cost.additions += 1,
@@ -267,7 +267,7 @@ impl Program {
         cost.negations += self.entries.iter().filter(|e| e.negative).count();
         let mut is_output = vec![false; self.steps.len()];
         for entry in &self.entries {
-            if let Source::Step(at) = entry.source {
+            if let Operand::Step(at) = entry.operand {
                 is_output[at] = true;
             }
         }

@@ -1,7 +1,7 @@
 //! Programs in arithmetic of 128 bits: what an evaluation in double precision is measured against.
 
 use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
-use overact_codegen::lowering::{Operation, Program, Source};
+use overact_codegen::lowering::{Operand, Operation, Program};
 
 /// Bits of a number's mantissa.
 const BITS: usize = 128;
@@ -29,7 +29,7 @@ impl Precise {
     pub fn evaluate(&mut self, program: &Program, inputs: &[Vec<f64>]) -> Vec<BigFloat> {
         let mut steps: Vec<BigFloat> = Vec::with_capacity(program.steps.len());
         for step in &program.steps {
-            let value = |source: Source| fetch(source, inputs, &steps);
+            let value = |operand: Operand| fetch(operand, inputs, &steps);
             let result = match step.operation {
                 Operation::Add(a, b) => value(a).add(&value(b), BITS, ROUNDING),
                 Operation::Sub(a, b) => value(a).sub(&value(b), BITS, ROUNDING),
@@ -46,7 +46,7 @@ impl Precise {
             steps.push(result);
         }
         let entry = |e: &overact_codegen::lowering::Entry| {
-            let value = fetch(e.source, inputs, &steps);
+            let value = fetch(e.operand, inputs, &steps);
             if e.negative { value.neg() } else { value }
         };
         program.entries.iter().map(entry).collect()
@@ -87,11 +87,11 @@ fn signed(value: &BigFloat, sign: &BigFloat) -> BigFloat {
     }
 }
 
-fn fetch(source: Source, inputs: &[Vec<f64>], steps: &[BigFloat]) -> BigFloat {
-    match source {
-        Source::Constant(value) => BigFloat::from_f64(value, BITS),
-        Source::Input { array, index } => BigFloat::from_f64(inputs[array][index], BITS),
-        Source::Step(at) => steps[at].clone(),
+fn fetch(operand: Operand, inputs: &[Vec<f64>], steps: &[BigFloat]) -> BigFloat {
+    match operand {
+        Operand::Constant(value) => BigFloat::from_f64(value, BITS),
+        Operand::Input { array, index } => BigFloat::from_f64(inputs[array][index], BITS),
+        Operand::Step(at) => steps[at].clone(),
     }
 }
 

@@ -99,7 +99,8 @@ impl Graph {
 
     /// Whether a definition means the node, by the second point and the sample as well.
     pub(super) fn means(&self, definition: Definition, node: usize) -> bool {
-        self.meaning_of(definition).agrees(&self.meanings[node])
+        self.fingerprint_of(definition)
+            .agrees(&self.fingerprints[node])
     }
 
     /// The nodes that quotients are divided by: each is guarded, or never zero.

@@ -2,7 +2,7 @@
 
 use super::digits::Digits;
 use super::rays::{self, States};
-use crate::cas::arena::{Handle, Meaning, Op};
+use crate::cas::arena::{Fingerprint, Handle, Op};
 use crate::cas::field::Element;
 use crate::cas::{Arena, Expr};
 use std::collections::{BTreeMap, HashMap};
@@ -98,7 +98,7 @@ pub(super) type ByValue<T> = HashMap<Key, T, BuildHasherDefault<FieldHasher>>;
 #[derive(Clone)]
 pub(super) struct Graph {
     pub(super) definitions: Vec<Definition>,
-    pub(super) meanings: Vec<Meaning>,
+    pub(super) fingerprints: Vec<Fingerprint>,
     /// Heading of each node.
     pub(super) scopes: Vec<u32>,
     /// How often each node is used, by other nodes that are used and by the entries.
@@ -107,7 +107,7 @@ pub(super) struct Graph {
     pub(super) depths: Vec<u32>,
     /// Node of each value.
     by_value: ByValue<Signed>,
-    /// What the nodes are looked up by: the first point of their meanings.
+    /// What the nodes are looked up by: the first point of their fingerprints.
     values: Vec<Element>,
     inverses: Vec<Element>,
     /// The arena's index of each node; new ones have none.
@@ -131,7 +131,7 @@ impl Graph {
     ) -> Self {
         let mut graph = Self {
             definitions: Vec::new(),
-            meanings: Vec::new(),
+            fingerprints: Vec::new(),
             scopes: Vec::new(),
             uses: Vec::new(),
             depths: Vec::new(),
@@ -204,25 +204,29 @@ impl Graph {
             Op::Sign(a) => Definition::Sign(operand(a)),
             Op::Atan2(a, b) => Definition::ArcTangent(operand(a), operand(b)),
         };
-        let node = self.push(definition, arena.meaning_at(index), arena.scope_at(index));
+        let node = self.push(
+            definition,
+            arena.fingerprint_at(index),
+            arena.scope_at(index),
+        );
         self.arena_index[node] = Some(index);
         numbers.insert(index, node);
         node
     }
 
-    fn push(&mut self, definition: Definition, meaning: Meaning, scope: u32) -> usize {
+    fn push(&mut self, definition: Definition, fingerprint: Fingerprint, scope: u32) -> usize {
         let node = self.definitions.len();
         self.depths.push(self.depth_of(definition));
         self.definitions.push(definition);
-        self.meanings.push(meaning);
+        self.fingerprints.push(fingerprint);
         self.scopes.push(scope);
         self.uses.push(0);
         self.arena_index.push(None);
         self.own_forms.push(Some(definition));
         self.is_kept.push(false);
-        self.inverses.push(meaning.value().inverse());
-        self.values.push(meaning.value());
-        let (key, negative) = canonical(meaning.value());
+        self.inverses.push(fingerprint.value().inverse());
+        self.values.push(fingerprint.value());
+        let (key, negative) = canonical(fingerprint.value());
         let known = self.by_value.get(&key);
         if known.is_none_or(|k| !self.is_live(k.node())) {
             self.by_value.insert(key, Signed::new(node, negative));
@@ -232,8 +236,8 @@ impl Graph {
 
     /// Adds a node that nothing uses yet.
     pub(super) fn add(&mut self, definition: Definition, scope: u32) -> usize {
-        let meaning = self.meaning_of(definition);
-        let node = self.push(definition, meaning, scope);
+        let fingerprint = self.fingerprint_of(definition);
+        let node = self.push(definition, fingerprint, scope);
         self.own_forms[node] = None;
         self.digits.push(definition);
         node
@@ -257,7 +261,7 @@ impl Graph {
     /// Takes the last node away again, which nothing uses.
     pub(super) fn remove_last(&mut self) {
         let last = self.len() - 1;
-        let (key, _) = canonical(self.meanings[last].value());
+        let (key, _) = canonical(self.fingerprints[last].value());
         if self
             .by_value
             .get(&key)
@@ -266,7 +270,7 @@ impl Graph {
             self.by_value.remove(&key);
         }
         self.definitions.pop();
-        self.meanings.pop();
+        self.fingerprints.pop();
         self.values.pop();
         self.inverses.pop();
         self.scopes.pop();
@@ -315,21 +319,25 @@ impl Graph {
         self.inverses[node]
     }
 
-    fn meaning(&self, of: Signed) -> Meaning {
-        let meaning = self.meanings[of.node()];
-        if of.is_negative() { -meaning } else { meaning }
+    fn fingerprint(&self, of: Signed) -> Fingerprint {
+        let fingerprint = self.fingerprints[of.node()];
+        if of.is_negative() {
+            -fingerprint
+        } else {
+            fingerprint
+        }
     }
 
     /// What a definition evaluates to.
-    pub(super) fn meaning_of(&self, definition: Definition) -> Meaning {
+    pub(super) fn fingerprint_of(&self, definition: Definition) -> Fingerprint {
         match definition {
-            Definition::Sum(a, b) => self.meaning(a) + self.meaning(b),
-            Definition::Product(a, b) => self.meaning(a) * self.meaning(b),
-            Definition::Quotient(a, b) => self.meaning(a).over(self.meaning(b)),
+            Definition::Sum(a, b) => self.fingerprint(a) + self.fingerprint(b),
+            Definition::Product(a, b) => self.fingerprint(a) * self.fingerprint(b),
+            Definition::Quotient(a, b) => self.fingerprint(a).over(self.fingerprint(b)),
             Definition::Leaf
             | Definition::Root(_)
             | Definition::Sign(_)
-            | Definition::ArcTangent(..) => Meaning::NONE,
+            | Definition::ArcTangent(..) => Fingerprint::NONE,
         }
     }
 
@@ -349,7 +357,7 @@ impl Graph {
         }
     }
 
-    /// Gives a node another definition of the same meaning; uses are the caller's business.
+    /// Gives a node another definition of the same value; uses are the caller's business.
     pub(super) fn redefine(&mut self, node: usize, definition: Definition) {
         self.definitions[node] = definition;
     }

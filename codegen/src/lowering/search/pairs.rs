@@ -191,7 +191,7 @@ fn apply(graph: &mut Graph, requests: &[Request], hit: &Hit) -> Option<i32> {
     if definition.operands().any(|o| !graph.is_live(o)) {
         return None;
     }
-    let value = graph.meaning_of(definition).value();
+    let value = graph.fingerprint_of(definition).value();
     if graph.find(value).is_some() {
         return None;
     }

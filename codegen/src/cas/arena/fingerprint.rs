@@ -2,17 +2,17 @@
 
 use super::super::field::{CIRCLE, Element, mix, mix_name};
 use super::super::sample::Sample;
-use super::{Handle, Meaning, Op, Tables, canonical};
+use super::{Fingerprint, Handle, Op, Tables, canonical};
 use std::ops::{Add, Mul, Neg};
 
 impl Tables {
     fn image(&self, handle: Handle, point: usize) -> Element {
-        let image = self.nodes[handle.index()].meaning.image[point];
+        let image = self.nodes[handle.index()].fingerprint.image[point];
         if handle.is_negative() { -image } else { image }
     }
 
     pub(super) fn sample(&self, handle: Handle) -> Sample {
-        let sample = self.nodes[handle.index()].meaning.sample;
+        let sample = self.nodes[handle.index()].fingerprint.sample;
         if handle.is_negative() {
             -sample
         } else {
@@ -28,8 +28,8 @@ impl Tables {
         }
     }
 
-    pub(super) fn meaning(&self, op: &Op) -> Meaning {
-        Meaning {
+    pub(super) fn fingerprint(&self, op: &Op) -> Fingerprint {
+        Fingerprint {
             image: std::array::from_fn(|point| self.image_of(op, point)),
             sample: self.sample_of(op),
         }
@@ -117,7 +117,7 @@ fn free(tag: u64, arguments: &[Element]) -> Element {
     Element::from_bits(bits)
 }
 
-impl Meaning {
+impl Fingerprint {
     /// Of what has none.
     pub(crate) const NONE: Self = Self {
         image: [Element::ZERO; super::POINTS],
@@ -156,7 +156,7 @@ impl Meaning {
     }
 }
 
-impl Neg for Meaning {
+impl Neg for Fingerprint {
     type Output = Self;
     fn neg(self) -> Self {
         Self {
@@ -166,14 +166,14 @@ impl Neg for Meaning {
     }
 }
 
-impl Add for Meaning {
+impl Add for Fingerprint {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         self.with(other, |a, b| a + b, self.sample + other.sample)
     }
 }
 
-impl Mul for Meaning {
+impl Mul for Fingerprint {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         self.with(other, |a, b| a * b, self.sample * other.sample)
