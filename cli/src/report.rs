@@ -8,11 +8,8 @@ use crate::{
     output,
 };
 use overact::Info;
-use overact_identification::{
-    Identification,
-    identify::figures::Figures,
-    report::{Attachment, Contents, Published, Units, numbers, page},
-};
+use overact_identification::{Identification, identify::figures::Figures};
+use overact_report::{Attachment, Contents, Published, Units, numbers, page};
 use serde::Serialize;
 use std::{
     fs,

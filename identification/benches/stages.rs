@@ -16,7 +16,6 @@ use overact_identification::{
     data::read_csv,
     filters::{Decimator, ZeroPhase, butterworth},
     identify::{estimate_projection, identify, prepare},
-    report::{Contents, Units, page},
 };
 
 const SAMPLES: usize = 50_000;
@@ -108,21 +107,6 @@ fn stages(criterion: &mut Criterion) {
     };
     group.bench_function("everything, with a held-out run", |bench| {
         bench.iter(|| identify(&robot, &experiment, &settings, &|_| {}).expect("a result"));
-    });
-    let result = identify(&robot, &experiment, &settings, &|_| {}).expect("a result");
-    let units = Units::new(&robot.info());
-    group.bench_function("the page of the report", |bench| {
-        bench.iter(|| {
-            page(&Contents {
-                identification: black_box(&result),
-                units: &units,
-                summary: None,
-                source: None,
-                drawing: None,
-                published: None,
-                attachments: &[],
-            })
-        });
     });
     group.finish();
 }

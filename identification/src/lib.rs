@@ -13,7 +13,7 @@
 //! 6. [`mod@estimate`]: ordinary or weighted least squares with standard deviations (44)-(48).
 //! 7. [`mod@essential`]: backward elimination of parameters that the data do not determine.
 //! 8. [`validation`]: prediction against measurement, on any run.
-//! 9. [`mod@identify`]: all of it, and its [`report`].
+//! 9. [`mod@identify`]: all of it.
 //!
 //! Robots are seen through [`overact::Model`] only, so compiled and interpreted ones are served
 //! alike.
@@ -36,8 +36,8 @@ pub mod identify;
 pub mod kinematics;
 mod observation;
 pub mod regression;
-pub mod report;
 pub mod settings;
+mod significant;
 mod sink;
 pub mod states;
 pub mod validation;
@@ -61,4 +61,5 @@ pub use identify::{
 pub use kinematics::{Motion, Motions, motion};
 pub use regression::{Part, PartitionCondition, Projection, Stretch, System};
 pub use settings::{Normalisation, Settings};
+pub use significant::significant;
 pub use validation::{Series, TorqueComparison, Validation};

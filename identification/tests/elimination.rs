@@ -44,7 +44,7 @@ fn the_nine_parameters_of_table_2_are_left_whatever_the_rotation() {
     for (rotation, largest) in [(1.0, 2.0), (0.15, 6.0)] {
         let result = identified(&robot, rotation);
         for estimate in essential(&result) {
-            println!("{}", overact_identification::report::estimate(estimate));
+            println!("{estimate:#?}");
             let names: Vec<&str> = estimate
                 .parameters
                 .iter()

@@ -5,7 +5,7 @@ mod common;
 use common::EMPS;
 use overact_identification::{
     Experiment, Gain, Identification, Log, Mapping, Normalisation, Settings, Stage, data::read_mat,
-    identify, report::report,
+    identify,
 };
 
 /// Reads one of the benchmark's files.
@@ -62,7 +62,7 @@ fn symmetric_friction_is_the_published_table() {
         }) else {
             return;
         };
-        println!("{}", report(&result));
+        println!("{:#?}", result.estimates);
         let base = &result.estimates[0];
         assert_eq!((base.model, base.stage), ("joints", Stage::Base));
         let expected = [
@@ -120,7 +120,7 @@ fn asymmetric_friction_is_the_published_one() {
     let Some(result) = identified(&asymmetric) else {
         return;
     };
-    println!("{}", report(&result));
+    println!("{:#?}", result.estimates);
     let base = &result.estimates[0];
     let value = |name: &str| {
         base.parameters

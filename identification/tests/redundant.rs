@@ -13,7 +13,6 @@ use overact_identification::{
     columns::ColumnSet,
     identify::{estimate_projection, identify, prepare},
     motion,
-    report::report,
 };
 
 /// Values of the robot's parameters and the payload's, in column order.
@@ -143,7 +142,7 @@ fn both_cases_and_the_payload_recover_the_truth() {
                 ..settings()
             },
         );
-        println!("{}", report(&result));
+        println!("{:#?}", result.estimates);
         let models: Vec<(&str, Stage)> = result
             .estimates
             .iter()

@@ -11,7 +11,7 @@ use crate::{
     report as files,
 };
 use overact::Model;
-use overact_identification::{Experiment, Identification, identify, report};
+use overact_identification::{Experiment, Identification, identify};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         output::json(&result)?
     } else {
         let beside = reports.published();
-        report::report(&result) + &report::beside(&result, beside)
+        overact_report::report(&result) + &overact_report::beside(&result, beside)
     };
     // All files are written together, so that none is there without the others.
     let mut written = reports.written(&robot, &served.info(), &result)?;

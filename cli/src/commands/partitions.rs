@@ -12,7 +12,7 @@ use overact::Model;
 use overact_identification::{
     Experiment,
     identify::{Choice, Study, study},
-    report::significant,
+    significant,
 };
 use std::path::PathBuf;
 

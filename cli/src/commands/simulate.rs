@@ -10,7 +10,7 @@ use crate::{
 };
 use overact::Model;
 use overact_codegen::diagnostic::did_you_mean;
-use overact_identification::report::significant;
+use overact_identification::significant;
 use overact_simulation::{Experiment, Record, simulate, write_csv};
 use serde::Serialize;
 use std::{

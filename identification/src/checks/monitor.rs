@@ -271,7 +271,7 @@ impl Monitor {
             let samples: usize = found.iter().map(|(count, _)| count).sum();
             let levels: Vec<String> = found
                 .iter()
-                .map(|(_, value)| crate::report::significant(*value, 5))
+                .map(|(_, value)| crate::significant(*value, 5))
                 .collect();
             findings.push(clipping(
                 run,

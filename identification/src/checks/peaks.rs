@@ -37,7 +37,7 @@ pub(crate) fn findings(run: &str, names: &[&str], torques: &[f64]) -> Vec<Findin
         let ends = [(low, -extreme(&mirrored)), (high, extreme(&own))];
         let levels = ends.iter().filter(|(part, _)| *part > 0.0);
         let levels: Vec<String> = levels
-            .map(|(_, level)| format!("about {}", crate::report::significant(*level, 3)))
+            .map(|(_, level)| format!("about {}", crate::significant(*level, 3)))
             .collect();
         Some(clipping(run, name, high + low, &levels))
     };

@@ -10,7 +10,7 @@ use super::{
     result::{CrossValidation, Estimate, Stage},
     verdict::{Finding, FindingKind, Thresholds, Verdict},
 };
-use crate::{checks::torques, data::Log, error::Error, report::significant, settings::Settings};
+use crate::{checks::torques, data::Log, error::Error, settings::Settings, significant};
 
 /// Relative error of the base parameters (percent) above which faults of the data are looked for.
 const SUSPICIOUS_PERCENT: f64 = 5.0;

@@ -254,7 +254,7 @@ fn warning(row: &Choice, platform: &Choice) -> Option<String> {
     } else {
         format!(
             "{names}: the condition number reaches {} ({}, t = {:.3} s), above {}",
-            crate::report::significant(partition.largest, 3),
+            crate::significant(partition.largest, 3),
             partition.run,
             partition.time,
             Thresholds::default().partition_condition

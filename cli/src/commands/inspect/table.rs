@@ -2,7 +2,8 @@
 
 use super::document::{Base, Document};
 use crate::output::{counted, table};
-use overact_identification::report::{coefficient, significant};
+use overact_identification::significant;
+use overact_report::coefficient;
 use std::fmt::Write;
 
 pub(super) fn text(document: &Document) -> String {

@@ -7,10 +7,11 @@ use super::{
     header::base64,
     markup::{Cell, Section, Table, escape, paragraph},
 };
-use crate::{
+
+use overact_identification::{
     identify::Identification,
-    report::terminal::significant,
     settings::{Normalisation, Settings},
+    significant,
 };
 
 /// The runs and the settings.

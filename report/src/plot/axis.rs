@@ -11,7 +11,7 @@ const MOST_DECADES: f64 = 9.0;
 
 /// How values are laid out along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::report) enum Kind {
+pub(crate) enum Kind {
     /// In proportion.
     Linear,
     /// By their logarithm; values that are not positive are left out.
@@ -20,18 +20,18 @@ pub(in crate::report) enum Kind {
 
 /// An axis.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Axis {
+pub(crate) struct Axis {
     /// What it shows, with its unit.
-    pub(in crate::report) label: String,
+    pub(crate) label: String,
     /// How.
-    pub(in crate::report) kind: Kind,
+    pub(crate) kind: Kind,
     /// Values that are inside in any case.
-    pub(in crate::report) includes: Vec<f64>,
+    pub(crate) includes: Vec<f64>,
 }
 
 impl Axis {
     /// A linear axis.
-    pub(in crate::report) fn linear(label: impl Into<String>) -> Self {
+    pub(crate) fn linear(label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
             kind: Kind::Linear,
@@ -40,7 +40,7 @@ impl Axis {
     }
 
     /// A logarithmic axis.
-    pub(in crate::report) fn logarithmic(label: impl Into<String>) -> Self {
+    pub(crate) fn logarithmic(label: impl Into<String>) -> Self {
         Self {
             kind: Kind::Logarithmic,
             ..Self::linear(label)
@@ -48,7 +48,7 @@ impl Axis {
     }
 
     /// The same axis, on which these values lie.
-    pub(in crate::report) fn including(mut self, values: &[f64]) -> Self {
+    pub(crate) fn including(mut self, values: &[f64]) -> Self {
         self.includes.extend_from_slice(values);
         self
     }
@@ -172,7 +172,7 @@ fn scientific(value: f64) -> String {
 }
 
 /// `10⁻⁵` from `-5`.
-pub(in crate::report) fn power_of_ten(exponent: &str) -> String {
+pub(crate) fn power_of_ten(exponent: &str) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raised = exponent.chars().map(|c| match c.to_digit(10) {
         Some(digit) => DIGITS[digit as usize % 10],

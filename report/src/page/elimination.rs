@@ -7,14 +7,8 @@ use super::{
     markup::{Cell, Section, Table, details, escape, figure, key, paragraph},
     select::{case_heading, finals},
 };
-use crate::{
-    essential::Removal,
-    identify::Estimate,
-    report::{
-        plot::{Axis, Chart, Line, Look, Rule},
-        terminal::significant,
-    },
-};
+use crate::plot::{Axis, Chart, Line, Look, Rule};
+use overact_identification::{essential::Removal, identify::Estimate, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -7,7 +7,7 @@ use super::{
     markup::{Cell, Section, Table, escape, paragraph},
     select::{case, is_final},
 };
-use crate::identify::{CrossValidation, Identification};
+use overact_identification::identify::{CrossValidation, Identification};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

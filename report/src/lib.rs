@@ -17,5 +17,5 @@ pub use beside::beside;
 pub use numbers::numbers;
 pub use page::{Attachment, Contents, page};
 pub use published::Published;
-pub use terminal::{base_parameters, coefficient, cross_validation, estimate, report, significant};
+pub use terminal::{base_parameters, coefficient, cross_validation, estimate, report};
 pub use units::Units;

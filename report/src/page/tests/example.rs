@@ -1,6 +1,11 @@
 //! A made-up identification whose names are as hostile as names can be.
 
 use crate::{
+    Published, Units,
+    published::{PublishedEstimate, PublishedParameter, PublishedTorques, PublishedTracking},
+};
+use overact::{Info, Sizes};
+use overact_identification::{
     essential::{Drift, Removal},
     estimate::LineError,
     identify::{
@@ -13,14 +18,9 @@ use crate::{
         verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
     },
     regression::PartitionCondition,
-    report::{
-        Published, Units,
-        published::{PublishedEstimate, PublishedParameter, PublishedTorques, PublishedTracking},
-    },
     settings::{Normalisation, Settings},
     validation::{Series, TorqueComparison},
 };
-use overact::{Info, Sizes};
 
 /// A name that breaks whatever does not escape it.
 pub(super) const HOSTILE: &str = "a<b>&\"'\u{1}</table><script>x</script>";

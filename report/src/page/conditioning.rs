@@ -5,12 +5,10 @@ use super::{
     markup::{Cell, Section, Table, escape, figure, key, paragraph},
     select::case_heading,
 };
-use crate::{
-    identify::{
-        Identification,
-        figures::{ConditionSeries, RunFigures},
-    },
-    report::plot::{Axis, Chart, Line, Look, Rule},
+use crate::plot::{Axis, Chart, Line, Look, Rule};
+use overact_identification::identify::{
+    Identification,
+    figures::{ConditionSeries, RunFigures},
 };
 
 /// The section.

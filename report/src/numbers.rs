@@ -1,9 +1,9 @@
 //! All numbers of an identification as one flat table: one number a row, so that any program reads it
 //! without knowing what there is. Series over time are not among them; they are in the document of
-//! [`Figures`](crate::identify::figures::Figures).
+//! [`Figures`](overact_identification::identify::figures::Figures).
 
-use crate::{
-    error::{Error, Problem},
+use overact_identification::{
+    Error, Problem,
     estimate::LineError,
     identify::{Estimate, Identification},
 };

@@ -7,7 +7,7 @@ use super::{
     markup::{escape, paragraph},
     select::{case_heading, finals},
 };
-use crate::report::terminal::significant;
+use overact_identification::significant;
 
 /// The head of the page.
 pub(super) fn header(contents: &Contents<'_>) -> String {

@@ -3,11 +3,12 @@
 
 use std::fmt::Write;
 
-use crate::report::{plot::power_of_ten, terminal::significant};
+use crate::plot::power_of_ten;
+use overact_identification::significant;
 
 /// A text as it may stand in an element or an attribute. Control characters, which a page may not
 /// hold, become the replacement character.
-pub(in crate::report) fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

@@ -6,12 +6,12 @@ use super::{
     select::{case, case_heading, is_final, look},
 };
 use crate::{
+    Units,
+    plot::{Axis, Chart, Line, Look, Rule},
+};
+use overact_identification::{
     identify::figures::{LineResidual, ResidualFigures, ResidualSeries},
-    report::{
-        Units,
-        plot::{Axis, Chart, Line, Look, Rule},
-        terminal::significant,
-    },
+    significant,
 };
 
 /// A white residual has this part of its autocorrelations within the bound; chance leaves it a little

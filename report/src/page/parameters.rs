@@ -9,12 +9,13 @@ use super::{
     select::{case, case_heading, finals, look, projection},
 };
 use crate::{
+    plot::{Axis, Bar, Forest},
+    published::PublishedEstimate,
+    terminal::signed_term,
+};
+use overact_identification::{
     identify::{Estimate, Identification, ParameterEstimate, Stage},
-    report::{
-        plot::{Axis, Bar, Forest},
-        published::PublishedEstimate,
-        terminal::{signed_term, significant},
-    },
+    significant,
 };
 
 /// Error bars longer than this (percent) are told of and not drawn: they would hide all others.

@@ -3,11 +3,9 @@
 mod example;
 
 use super::{Attachment, Contents, page};
-use crate::{
-    identify::{Identification, figures::Figures, verdict::Thresholds},
-    report::{Units, numbers},
-};
+use crate::{Units, numbers};
 use example::{HOSTILE, identification, published, series, settings, units};
+use overact_identification::identify::{Identification, figures::Figures, verdict::Thresholds};
 use roxmltree::{Document, ParsingOptions};
 
 /// The page of an identification; everything that can be shown is.

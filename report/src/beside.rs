@@ -2,12 +2,12 @@
 //! tracking errors (Table 4). Without published results, the tables that only they complete are left
 //! out.
 
-use crate::identify::{CrossValidation, Estimate, Identification, Stage};
-
-use super::{
-    published::Published,
-    terminal::{significant, table},
+use overact_identification::{
+    identify::{CrossValidation, Estimate, Identification, Stage},
+    significant,
 };
+
+use super::{published::Published, terminal::table};
 
 /// The tables; empty where there is nothing to compare.
 #[must_use]

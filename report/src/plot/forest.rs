@@ -8,7 +8,7 @@ use super::{
     chart::{Look, opening},
     short,
 };
-use crate::report::page::markup::escape;
+use crate::page::markup::escape;
 
 /// Where the rows begin at the left, and where they end.
 const LEFT: f64 = 112.0;
@@ -22,35 +22,35 @@ const FOOT: f64 = 40.0;
 
 /// One estimate of a quantity.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Bar {
+pub(crate) struct Bar {
     /// Whose it is.
-    pub(in crate::report) look: Look,
+    pub(crate) look: Look,
     /// Its value.
-    pub(in crate::report) value: f64,
+    pub(crate) value: f64,
     /// Half the length of the inner, bold bar.
-    pub(in crate::report) inner: f64,
+    pub(crate) inner: f64,
     /// Half the length of the outer, thin bar.
-    pub(in crate::report) outer: f64,
+    pub(crate) outer: f64,
     /// What it says, for those who can't see it or point at it.
-    pub(in crate::report) label: String,
+    pub(crate) label: String,
 }
 
 /// A forest plot.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Forest {
+pub(crate) struct Forest {
     /// Written above it.
-    pub(in crate::report) title: String,
+    pub(crate) title: String,
     /// What it shows, for those who can't see it.
-    pub(in crate::report) description: String,
+    pub(crate) description: String,
     /// The horizontal axis.
-    pub(in crate::report) x: Axis,
+    pub(crate) x: Axis,
     /// Name of the quantity and its estimates.
-    pub(in crate::report) rows: Vec<(String, Vec<Bar>)>,
+    pub(crate) rows: Vec<(String, Vec<Bar>)>,
 }
 
 impl Forest {
     /// The plot as an SVG element.
-    pub(in crate::report) fn svg(&self) -> String {
+    pub(crate) fn svg(&self) -> String {
         let bars = || self.rows.iter().flat_map(|(_, bars)| bars);
         let ends = bars().flat_map(|bar| [bar.value - bar.outer, bar.value + bar.outer]);
         let x = self.x.scale(ends, (LEFT, RIGHT), 5, false);

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::{
+use crate::plot::Look;
+use overact_identification::{
     identify::{Estimate, Identification, Stage},
-    report::plot::Look,
     validation::Series,
 };
 

@@ -7,7 +7,7 @@ use super::{
     axis::{Axis, Scale},
     short,
 };
-use crate::report::page::markup::escape;
+use crate::page::markup::escape;
 
 /// Height of a chart in SVG units.
 const HEIGHT: f64 = 230.0;
@@ -17,7 +17,7 @@ const FRAME: [f64; 4] = [50.0, WIDTH - 10.0, 26.0, HEIGHT - 40.0];
 
 /// How a line looks; the page's style sheet has a class for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::report) enum Look {
+pub(crate) enum Look {
     /// What was measured: broad, to be covered by what is predicted.
     Measured,
     /// What the model says: thin.
@@ -36,7 +36,7 @@ pub(in crate::report) enum Look {
 
 impl Look {
     /// The looks of lines of equal standing, in order.
-    pub(in crate::report) const fn nth(index: usize) -> Self {
+    pub(crate) const fn nth(index: usize) -> Self {
         match index {
             0 => Self::First,
             1 => Self::Second,
@@ -46,7 +46,7 @@ impl Look {
     }
 
     /// Its class.
-    pub(in crate::report) const fn class(self) -> &'static str {
+    pub(crate) const fn class(self) -> &'static str {
         match self {
             Self::Measured => "measured",
             Self::Predicted => "predicted",
@@ -61,25 +61,20 @@ impl Look {
 
 /// A line of a chart.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Line {
+pub(crate) struct Line {
     /// How it looks.
-    pub(in crate::report) look: Look,
+    pub(crate) look: Look,
     /// What it is, for those who can't see it.
-    pub(in crate::report) label: String,
+    pub(crate) label: String,
     /// Its points; one that is not finite interrupts the line.
-    pub(in crate::report) points: Vec<(f64, f64)>,
+    pub(crate) points: Vec<(f64, f64)>,
     /// Whether each point has a dot.
-    pub(in crate::report) dots: bool,
+    pub(crate) dots: bool,
 }
 
 impl Line {
     /// A line without dots.
-    pub(in crate::report) fn new(
-        look: Look,
-        label: impl Into<String>,
-        x: &[f64],
-        y: &[f64],
-    ) -> Self {
+    pub(crate) fn new(look: Look, label: impl Into<String>, x: &[f64], y: &[f64]) -> Self {
         Self {
             look,
             label: label.into(),
@@ -89,7 +84,7 @@ impl Line {
     }
 
     /// The same line with dots.
-    pub(in crate::report) fn with_dots(mut self) -> Self {
+    pub(crate) fn with_dots(mut self) -> Self {
         self.dots = true;
         self
     }
@@ -97,33 +92,33 @@ impl Line {
 
 /// A dashed straight line across a chart.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Rule {
+pub(crate) struct Rule {
     /// Its height on the vertical axis.
-    pub(in crate::report) value: f64,
+    pub(crate) value: f64,
     /// Its name, written above it.
-    pub(in crate::report) label: String,
+    pub(crate) label: String,
 }
 
 /// A chart.
 #[derive(Debug, Clone)]
-pub(in crate::report) struct Chart {
+pub(crate) struct Chart {
     /// Written above it.
-    pub(in crate::report) title: String,
+    pub(crate) title: String,
     /// What it shows, for those who can't see it.
-    pub(in crate::report) description: String,
+    pub(crate) description: String,
     /// The horizontal axis.
-    pub(in crate::report) x: Axis,
+    pub(crate) x: Axis,
     /// The vertical axis.
-    pub(in crate::report) y: Axis,
+    pub(crate) y: Axis,
     /// The lines, the last one on top.
-    pub(in crate::report) lines: Vec<Line>,
+    pub(crate) lines: Vec<Line>,
     /// Thresholds.
-    pub(in crate::report) rules: Vec<Rule>,
+    pub(crate) rules: Vec<Rule>,
 }
 
 impl Chart {
     /// The chart as an SVG element.
-    pub(in crate::report) fn svg(&self) -> String {
+    pub(crate) fn svg(&self) -> String {
         let [left, right, top, bottom] = FRAME;
         let points = || self.lines.iter().flat_map(|line| &line.points);
         let x = self

@@ -5,13 +5,11 @@ use super::{
     markup::{Section, escape, figure, key},
 };
 use crate::{
-    identify::figures::RunFigures,
-    report::{
-        Units,
-        plot::{Axis, Chart, Line, Look},
-        units::with_unit,
-    },
+    Units,
+    plot::{Axis, Chart, Line, Look},
+    units::with_unit,
 };
+use overact_identification::identify::figures::RunFigures;
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -26,7 +26,7 @@ mod verdict;
 use markup::{Section, escape};
 
 use super::{Published, Units};
-use crate::identify::Identification;
+use overact_identification::identify::Identification;
 
 /// The style: colours for light and dark, a width that suits reading, plots side by side where there
 /// is room.

@@ -6,7 +6,8 @@ use super::{
     Contents,
     markup::{Cell, Section, Table, details, escape, paragraph},
 };
-use crate::{identify::Identification, report::terminal::significant};
+
+use overact_identification::{identify::Identification, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

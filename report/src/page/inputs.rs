@@ -7,14 +7,12 @@ use super::{
     select::{case, case_heading, durations, finals, is_final, relative_error, worst_part},
 };
 use crate::{
-    identify::figures::PredictionFigures,
-    report::{
-        Units,
-        plot::{Axis, Chart, Line, Look},
-        terminal::significant,
-        units::with_unit,
-    },
-    validation::Series,
+    Units,
+    plot::{Axis, Chart, Line, Look},
+    units::with_unit,
+};
+use overact_identification::{
+    identify::figures::PredictionFigures, significant, validation::Series,
 };
 
 /// The section.
