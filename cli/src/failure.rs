@@ -1,107 +1,17 @@
-//! What went wrong, as text for people or as JSON for machines.
+//! Why a command has no result, as text for people or as JSON for machines.
 
-use overact_codegen::diagnostic::{Diagnostics, Source};
-use serde::Serialize;
-use std::{
-    fmt,
-    io::{self, IsTerminal, Write},
-};
+use overact_robot::Error;
+use std::io::{self, IsTerminal, Write};
 
-/// One thing that is wrong.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Problem {
-    /// What is wrong, in one sentence.
-    pub message: String,
-    /// The file, as the user named it.
-    pub file: Option<String>,
-    /// Line, counted from 1.
-    pub line: Option<usize>,
-    /// Where in the line.
-    pub column: Option<Column>,
-    /// A way out.
-    pub help: Option<String>,
-}
-
-/// A place in a line.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(untagged)]
-pub enum Column {
-    /// Number of a character in a text, counted from 1.
-    Number(usize),
-    /// Name of a column of a table.
-    Name(String),
-}
-
-impl Problem {
-    /// A problem without a place.
-    #[must_use]
-    pub fn new(message: impl Into<String>) -> Self {
-        let message = message.into();
-        Self {
-            message,
-            file: None,
-            line: None,
-            column: None,
-            help: None,
-        }
-    }
-
-    /// With the file.
-    #[must_use]
-    pub fn file(self, file: impl Into<String>) -> Self {
-        let file = Some(file.into());
-        Self { file, ..self }
-    }
-
-    /// With the line, if there is one.
-    #[must_use]
-    pub fn line(self, line: Option<usize>) -> Self {
-        Self { line, ..self }
-    }
-
-    /// With a way out.
-    #[must_use]
-    pub fn help(self, help: impl Into<String>) -> Self {
-        let help = Some(help.into());
-        Self { help, ..self }
-    }
-}
-
-impl fmt::Display for Problem {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "error: {}", self.message)?;
-        if let Some(file) = &self.file {
-            write!(f, "\n --> {file}")?;
-            if let Some(line) = self.line {
-                write!(f, ":{line}")?;
-            }
-            if let Some(Column::Number(column)) = &self.column {
-                write!(f, ":{column}")?;
-            }
-        }
-        if let Some(help) = &self.help {
-            write!(f, "\n  = help: {help}")?;
-        }
-        Ok(())
-    }
-}
+pub use overact_robot::Problem;
 
 /// Why a command has no result.
 #[derive(Debug)]
 pub enum Failure {
     /// The arguments do not go together.
     Usage(String),
-    /// A description is wrong.
-    Description {
-        /// Its text.
-        source: Source,
-        /// All its errors.
-        diagnostics: Diagnostics,
-    },
-    /// Anything else.
-    Problems(Vec<Problem>),
-    /// What went wrong with several files.
-    Several(Vec<Self>),
+    /// Something that the arguments name is wrong.
+    Input(Error),
 }
 
 impl Failure {
@@ -110,7 +20,7 @@ impl Failure {
     pub const fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
-            _ => 1,
+            Self::Input(_) => 1,
         }
     }
 
@@ -119,22 +29,7 @@ impl Failure {
     pub fn problems(&self) -> Vec<Problem> {
         match self {
             Self::Usage(message) => vec![Problem::new(message)],
-            Self::Problems(problems) => problems.clone(),
-            Self::Several(all) => all.iter().flat_map(Self::problems).collect(),
-            Self::Description {
-                source,
-                diagnostics,
-            } => {
-                let located = diagnostics.located(source).into_iter();
-                let problem = |l: overact_codegen::diagnostic::Located| Problem {
-                    message: l.message,
-                    file: Some(l.file),
-                    line: l.line,
-                    column: l.column.map(Column::Number),
-                    help: l.help,
-                };
-                located.map(problem).collect()
-            }
+            Self::Input(error) => error.problems(),
         }
     }
 
@@ -142,22 +37,8 @@ impl Failure {
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
         match self {
-            Self::Description {
-                source,
-                diagnostics,
-            } if styled => diagnostics.render_styled(source),
-            Self::Description {
-                source,
-                diagnostics,
-            } => diagnostics.render_plain(source),
-            Self::Several(all) => {
-                let texts: Vec<String> = all.iter().map(|one| one.render(styled)).collect();
-                texts.join("\n\n")
-            }
-            Self::Usage(_) | Self::Problems(_) => {
-                let texts: Vec<String> = self.problems().iter().map(Problem::to_string).collect();
-                texts.join("\n\n")
-            }
+            Self::Usage(message) => Problem::new(message).to_string(),
+            Self::Input(error) => error.render(styled),
         }
     }
 
@@ -175,22 +56,35 @@ impl Failure {
     }
 }
 
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Input(error)
+    }
+}
+
 impl From<Problem> for Failure {
     fn from(problem: Problem) -> Self {
-        Self::Problems(vec![problem])
+        Self::Input(problem.into())
+    }
+}
+
+/// Problems that were found together; at least one.
+impl From<Vec<Problem>> for Failure {
+    fn from(problems: Vec<Problem>) -> Self {
+        Self::Input(Error::Problems(problems))
+    }
+}
+
+/// What went wrong with several files; at least one.
+impl From<Vec<Error>> for Failure {
+    fn from(errors: Vec<Error>) -> Self {
+        Self::Input(Error::Several(errors))
     }
 }
 
 impl From<overact_identification::Error> for Failure {
     fn from(error: overact_identification::Error) -> Self {
-        let problem = |p: overact_identification::Problem| Problem {
-            message: p.message,
-            file: p.file,
-            line: p.line,
-            column: p.column.map(Column::Name),
-            help: p.help,
-        };
-        Self::Problems(error.problems.into_iter().map(problem).collect())
+        Self::Input(error.into())
     }
 }
 
@@ -199,12 +93,9 @@ mod tests {
     use super::{Failure, Problem};
 
     #[test]
-    fn a_problem_reads_like_a_compiler_error() {
-        let problem = Problem::new("no column").file("log.csv").line(Some(3));
-        let failure = Failure::from(problem.help("name it"));
-        let expected = "error: no column\n --> log.csv:3\n  = help: name it";
-        assert_eq!(failure.render(false), expected);
-        assert_eq!(failure.exit_code(), 1);
+    fn only_arguments_that_do_not_go_together_are_a_usage_error() {
+        assert_eq!(Failure::from(Problem::new("no column")).exit_code(), 1);
         assert_eq!(Failure::Usage("no".into()).exit_code(), 2);
+        assert_eq!(Failure::Usage("no".into()).render(false), "error: no");
     }
 }

@@ -4,12 +4,12 @@
 use crate::{
     drawing,
     failure::{Failure, Problem},
-    load::Robot,
     output,
 };
 use overact::Info;
 use overact_identification::{Identification, identify::figures::Figures};
 use overact_report::{Attachment, Contents, Published, Units, numbers, page};
+use overact_robot::load::Robot;
 use serde::Serialize;
 use std::{
     fs,
@@ -207,6 +207,6 @@ fn published(path: &Path) -> Result<Published, Failure> {
     if problems.is_empty() {
         Ok(published)
     } else {
-        Err(Failure::Problems(problems))
+        Err(problems.into())
     }
 }

@@ -7,11 +7,11 @@
 
 use nalgebra::DMatrix;
 use overact::{Function, Model};
-use overact_cli::InterpretedRobot;
 use overact_codegen::{Source, compile};
 use overact_identification::factor::Factor;
 use overact_identification::filters::{Decimator, ZeroPhase, butterworth};
 use overact_identification::{ColumnSet, Error};
+use overact_robot::InterpretedRobot;
 use std::{env, fs, process::ExitCode};
 
 /// Samples that are evaluated at once, as in an identification.

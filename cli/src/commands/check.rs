@@ -2,10 +2,11 @@
 
 use crate::{
     failure::Failure,
-    load::{Robot, load_with, note, tell_note},
+    note::tell_note,
     output::{counted, json, print},
 };
 use overact_codegen::{Effort, Request};
+use overact_robot::load::{Robot, load_with, note};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -57,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
     match bad.len() {
         0 => Ok(()),
-        _ => Err(Failure::Several(bad)),
+        _ => Err(bad.into()),
     }
 }
 

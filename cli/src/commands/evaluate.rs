@@ -4,9 +4,7 @@ mod gather;
 mod resolve;
 
 use crate::{
-    InterpretedRobot,
     failure::{Failure, Problem},
-    load::{Robot, load_with},
     output,
     states::States,
 };
@@ -18,6 +16,10 @@ use overact_codegen::{
     evaluation::Rows,
     lowering::Program,
     mechanism::Mechanism,
+};
+use overact_robot::{
+    InterpretedRobot,
+    load::{Robot, load_with},
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};

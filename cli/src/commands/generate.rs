@@ -3,11 +3,12 @@
 use crate::{
     effort,
     failure::{Failure, Problem},
-    load::{Robot, load_with, tell_note},
+    note::tell_note,
     output::{json, print, write},
     progress::Progress,
 };
 use overact_codegen::emission;
+use overact_robot::load::{Robot, load_with};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -113,7 +114,7 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure>
     if bad.is_empty() {
         Ok(good)
     } else {
-        Err(Failure::Several(bad))
+        Err(bad.into())
     }
 }
 
@@ -218,7 +219,7 @@ fn distinct(modules: &[Module]) -> Result<(), Failure> {
     if problems.is_empty() {
         Ok(())
     } else {
-        Err(Failure::Problems(problems))
+        Err(problems.into())
     }
 }
 
@@ -239,7 +240,7 @@ fn compare(modules: &[Module]) -> Result<(), Failure> {
     if problems.is_empty() {
         Ok(())
     } else {
-        Err(Failure::Problems(problems))
+        Err(problems.into())
     }
 }
 

@@ -6,12 +6,10 @@
 mod tracking;
 
 use super::runs;
-use crate::{
-    InterpretedRobot, failure::Failure, load::load_to_serve, output, progress::Progress,
-    report as files,
-};
+use crate::{failure::Failure, output, progress::Progress, report as files};
 use overact::Model;
 use overact_identification::{Experiment, Identification, identify};
+use overact_robot::{InterpretedRobot, load::load_to_serve};
 use std::path::PathBuf;
 
 /// Arguments of the command.

@@ -4,13 +4,9 @@ mod conditioning;
 mod document;
 mod table;
 
-use crate::{
-    drawing, effort,
-    failure::Failure,
-    load::{load_with, tell_note},
-    output,
-};
+use crate::{drawing, effort, failure::Failure, note::tell_note, output};
 use document::Document;
+use overact_robot::load::load_with;
 use std::path::PathBuf;
 
 /// Arguments of the command.

@@ -101,7 +101,7 @@ fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Fa
     if problems.is_empty() {
         Ok(kept)
     } else {
-        Err(Failure::Problems(problems))
+        Err(problems.into())
     }
 }
 

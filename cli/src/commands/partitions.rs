@@ -2,9 +2,7 @@
 
 use super::{choices, runs};
 use crate::{
-    InterpretedRobot,
     failure::{Failure, Problem},
-    load::load_to_serve,
     output,
     progress::Progress,
 };
@@ -14,6 +12,7 @@ use overact_identification::{
     identify::{Choice, Study, study},
     significant,
 };
+use overact_robot::{InterpretedRobot, load::load_to_serve};
 use std::path::PathBuf;
 
 /// Arguments of the command.

@@ -2,16 +2,18 @@
 
 use super::simulate;
 use crate::{
-    InterpretedRobot,
-    experiment::{experiment, true_values},
     failure::{Failure, Problem},
-    load::Robot,
     progress::Progress,
-    settings::{mapping, settings},
 };
 use clap::ValueEnum;
 use overact::{Info, Model};
 use overact_identification::{Log, Progress as Stage, Settings, data};
+use overact_robot::{
+    Error, InterpretedRobot,
+    experiment::{experiment, true_values},
+    load::Robot,
+    settings::{mapping, settings},
+};
 use overact_simulation::Record;
 use std::{
     collections::BTreeMap,
@@ -109,7 +111,7 @@ impl Arguments {
             .chain(&others)
             .map(|(path, payload)| (path.as_path(), *payload))
             .collect();
-        let mut failures: Vec<Failure> = Vec::new();
+        let mut failures: Vec<Error> = Vec::new();
         let mut logs = Vec::new();
         let bar = Progress::new("reading", as_json);
         let tell = |part: f64| bar.at(part, "");
@@ -127,7 +129,7 @@ impl Arguments {
                 truth: None,
             })
         } else {
-            Err(Failure::Several(failures))
+            Err(failures.into())
         }
     }
 
@@ -154,7 +156,7 @@ impl Arguments {
             .map(|name| simulate::unknown_run(robot, name, &known))
             .collect();
         if !problems.is_empty() {
-            return Err(Failure::Problems(problems));
+            return Err(problems.into());
         }
         if held.is_empty() {
             held = held_out(robot);

@@ -1,16 +1,18 @@
 //! `overact simulate`: the virtual experiment of a description, as logs.
 
 use crate::{
-    InterpretedRobot,
-    experiment::{experiment, failure},
     failure::{Failure, Problem},
-    load::{Robot, load_to_serve},
     output::{self, json, print, table},
     progress::Progress,
 };
 use overact::Model;
 use overact_codegen::diagnostic::did_you_mean;
 use overact_identification::significant;
+use overact_robot::{
+    InterpretedRobot,
+    experiment::{experiment, located},
+    load::{Robot, load_to_serve},
+};
 use overact_simulation::{Experiment, Record, simulate, write_csv};
 use serde::Serialize;
 use std::{
@@ -107,7 +109,7 @@ pub(super) fn records(
 ) -> Result<Vec<Record>, Failure> {
     let bar = Progress::new("simulating", as_json);
     let tell = |fraction: f64, run: &str| bar.at(fraction, run);
-    simulate(served, experiment, &tell).map_err(|error| failure(robot, &error))
+    simulate(served, experiment, &tell).map_err(|error| located(robot, &error).into())
 }
 
 fn keep_runs(robot: &Robot, experiment: &mut Experiment, names: &[String]) -> Result<(), Failure> {
@@ -117,7 +119,7 @@ fn keep_runs(robot: &Robot, experiment: &mut Experiment, names: &[String]) -> Re
         .map(|name| unknown_run(robot, name, &known))
         .collect();
     if !problems.is_empty() {
-        return Err(Failure::Problems(problems));
+        return Err(problems.into());
     }
     if !names.is_empty() {
         experiment.runs.retain(|run| names.contains(&run.name));

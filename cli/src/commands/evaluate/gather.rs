@@ -2,7 +2,6 @@
 //! actuators or joints by forward kinematics, joints from a pose by inverse kinematics.
 
 use crate::{
-    InterpretedRobot,
     failure::{Failure, Problem},
     states::States,
 };
@@ -11,6 +10,7 @@ use overact_codegen::{
     derivation::From,
     lowering::{Array, Program},
 };
+use overact_robot::InterpretedRobot;
 
 /// Forward kinematics walks towards far actuators in steps of this size (rad, m), so that the
 /// assembly mode stays that of the start.

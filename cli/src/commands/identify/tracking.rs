@@ -1,12 +1,10 @@
 //! Table 4: how well the virtual robot follows held-out trajectories, with a PD controller alone and
 //! with the torques that the identified parameters ask for.
 
-use crate::{
-    InterpretedRobot, commands::runs, commands::simulate, experiment::experiment, failure::Failure,
-    load::Robot,
-};
+use crate::{commands::runs, commands::simulate, failure::Failure};
 use overact::Model;
 use overact_identification::{Estimate, Identification, Stage, TrackingError};
+use overact_robot::{InterpretedRobot, experiment::experiment, load::Robot};
 use overact_simulation::Experiment;
 
 /// Lets every controller follow the runs that are held out. Empty where there are none, or where the

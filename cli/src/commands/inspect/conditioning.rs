@@ -1,8 +1,9 @@
 //! How well the actuators, and every choice of kept ones, determine the platform at home.
 
-use crate::{InterpretedRobot, commands::choices};
+use crate::commands::choices;
 use nalgebra::DMatrix;
 use overact::{Function, Model};
+use overact_robot::InterpretedRobot;
 use serde::Serialize;
 
 /// Condition numbers at the home pose, angular columns as they are (rad).

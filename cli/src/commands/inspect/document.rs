@@ -1,7 +1,6 @@
 //! What `inspect` tells: its fields are the keys of the JSON document.
 
 use super::conditioning::Conditioning;
-use crate::{InterpretedRobot, load::Robot};
 use overact_codegen::{
     RobotModel,
     base::BaseParameter,
@@ -9,6 +8,7 @@ use overact_codegen::{
     lowering::{Array, Cost},
     model,
 };
+use overact_robot::{InterpretedRobot, load::Robot};
 use serde::Serialize;
 
 #[derive(Debug, Serialize)]

@@ -1,16 +1,21 @@
 //! The interpreted robot against finite differences, and its forward kinematics.
 
-mod common;
-
 use overact::{Body, Error, Function, Model, Symbol};
-use overact_cli::{
+use overact_robot::{
     InterpretedRobot,
     load::{load, load_to_serve},
 };
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The path of a description of `robots/`.
+fn description(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../robots")
+        .join(name)
+}
 
 fn robot(name: &str) -> InterpretedRobot {
-    match load(Path::new(&common::robot(name))) {
+    match load(&description(name)) {
         Ok(robot) => InterpretedRobot::new(robot.model),
         Err(failure) => panic!("{}", failure.render(false)),
     }
@@ -36,8 +41,7 @@ fn evaluate(
 /// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also where only what is served is compiled.
 #[test]
 fn the_closure_is_served_from_joints() {
-    let file = common::robot("dualv.toml");
-    let loaded = load_to_serve(Path::new(&file)).map_err(|failure| failure.render(false));
+    let loaded = load_to_serve(&description("dualv.toml")).map_err(|failure| failure.render(false));
     let lean = InterpretedRobot::new(loaded.expect("a robot").model);
     for robot in [robot("dualv.toml"), lean] {
         let joints = evaluate(&robot, Function::Joints, &[&POSE], 12);

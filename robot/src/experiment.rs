@@ -1,9 +1,6 @@
 //! A description's table `[experiment]` as a virtual experiment of the simulation.
 
-use crate::{
-    failure::{Failure, Problem},
-    load::Robot,
-};
+use crate::{Error, Problem, load::Robot};
 use overact::Info;
 use overact_codegen::description;
 use overact_simulation::{Drives, Experiment, Run, Term, Trajectory};
@@ -13,10 +10,7 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// A description without an experiment, or without a run.
-pub(crate) fn experiment(
-    robot: &Robot,
-    info: &Info<'_>,
-) -> Result<(Experiment, Vec<String>), Failure> {
+pub fn experiment(robot: &Robot, info: &Info<'_>) -> Result<(Experiment, Vec<String>), Error> {
     let missing = |message: &str| {
         let help = "describe it in the tables [experiment] and [[experiment.run]], or give measured logs with --data";
         Problem::new(message).file(robot.file.as_str()).help(help)
@@ -69,7 +63,8 @@ fn drives(table: &description::Drives) -> Drives {
 }
 
 /// True values of the parameters by name, as the description gives them; the others are zero.
-pub(crate) fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
+#[must_use]
+pub fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
     table
         .parameters
         .iter()
@@ -100,12 +95,13 @@ fn converted(run: &description::Run, info: &Info<'_>) -> Run {
 }
 
 /// The simulation's errors, each at the description.
-pub(crate) fn failure(robot: &Robot, error: &overact_simulation::Error) -> Failure {
-    use overact_simulation::Error;
+#[must_use]
+pub fn located(robot: &Robot, error: &overact_simulation::Error) -> Error {
+    use overact_simulation::Error as Simulation;
     let problem = |message: String| Problem::new(message).file(robot.file.as_str());
-    Failure::Problems(match error {
-        Error::Experiment(all) => all.iter().map(|p| problem(p.to_string())).collect(),
-        Error::Runs(all) => all.iter().map(|p| problem(p.to_string())).collect(),
+    Error::Problems(match error {
+        Simulation::Experiment(all) => all.iter().map(|p| problem(p.to_string())).collect(),
+        Simulation::Runs(all) => all.iter().map(|p| problem(p.to_string())).collect(),
         other => vec![problem(other.to_string())],
     })
 }

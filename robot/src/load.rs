@@ -1,20 +1,12 @@
 //! A description from a file, read and compiled.
 
-use crate::{
-    InterpretedRobot,
-    failure::{Failure, Problem},
-    output::counted,
-};
+use crate::{Error, InterpretedRobot, Problem};
 use overact_codegen::{
     Effort, Request, RobotModel, compile_with,
     description::{self, Description},
     diagnostic::{Diagnostics, Source},
 };
-use std::{
-    fs,
-    io::{self, Write},
-    path::Path,
-};
+use std::{fs, path::Path};
 
 /// A robot with its description.
 #[derive(Debug)]
@@ -31,7 +23,7 @@ pub struct Robot {
 ///
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
-pub fn load(path: &Path) -> Result<Robot, Failure> {
+pub fn load(path: &Path) -> Result<Robot, Error> {
     load_with(path, &Request::default())
 }
 
@@ -40,7 +32,7 @@ pub fn load(path: &Path) -> Result<Robot, Failure> {
 ///
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
-pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
+pub fn load_to_serve(path: &Path) -> Result<Robot, Error> {
     let request = Request {
         wanted: &InterpretedRobot::serves,
         ..Request::with_effort(Effort::None)
@@ -52,7 +44,7 @@ pub fn load_to_serve(path: &Path) -> Result<Robot, Failure> {
 ///
 /// # Errors
 /// A file that can't be read, or everything that is wrong with the description.
-pub fn load_with(path: &Path, request: &Request<'_>) -> Result<Robot, Failure> {
+pub fn load_with(path: &Path, request: &Request<'_>) -> Result<Robot, Error> {
     let source = read(path)?;
     match compiled(&source, request) {
         Ok((description, model)) => Ok(Robot {
@@ -60,7 +52,7 @@ pub fn load_with(path: &Path, request: &Request<'_>) -> Result<Robot, Failure> {
             description,
             model,
         }),
-        Err(diagnostics) => Err(Failure::Description {
+        Err(diagnostics) => Err(Error::Description {
             source,
             diagnostics,
         }),
@@ -89,24 +81,19 @@ pub fn note(robot: &Robot) -> Option<String> {
         "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
          take `actuated = true` from a joint",
         mechanism.actuator_names().join(", "),
-        counted(r, "degree of freedom", "degrees of freedom"),
+        match r {
+            1 => "1 degree of freedom".to_owned(),
+            _ => format!("{r} degrees of freedom"),
+        },
         n - r,
     ))
-}
-
-/// Tells the [`note`] on stderr; never beside a JSON document, whose errors share stderr with it.
-pub(crate) fn tell_note(robot: &Robot, as_json: bool) {
-    if let (Some(note), false) = (note(robot), as_json) {
-        // A closed stderr is no reason to stop.
-        let _ = writeln!(io::stderr(), "note: {}: {note}", robot.file);
-    }
 }
 
 /// Reads a description's text.
 ///
 /// # Errors
 /// A file that can't be read or is not UTF-8.
-pub fn read(path: &Path) -> Result<Source, Failure> {
+pub fn read(path: &Path) -> Result<Source, Error> {
     let name = path.display().to_string();
     match fs::read_to_string(path) {
         Ok(text) => Ok(Source::new(name, text)),

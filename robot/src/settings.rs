@@ -1,15 +1,13 @@
 //! A description's tables `[data]` and `[identification]` as settings of the identification.
 
-use crate::{
-    failure::{Failure, Problem},
-    load::Robot,
-};
+use crate::{Error, Problem, load::Robot};
 use overact::Info;
 use overact_codegen::description::{Factor, Friction, Normalisation, Reversals};
 use overact_identification::{Gain, Mapping, Settings};
 
 /// The settings of an identification from runs sampled at `frequency` (Hz).
-pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settings {
+#[must_use]
+pub fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settings {
     let table = &robot.description.identification;
     let usual = Settings::for_sampling_frequency(frequency, info);
     let settings = Settings {
@@ -46,7 +44,7 @@ pub(crate) fn settings(robot: &Robot, info: &Info<'_>, frequency: f64) -> Settin
 ///
 /// # Errors
 /// A position that is scaled by a variable of the log: only gains of torques can be.
-pub(crate) fn mapping(robot: &Robot, info: &Info<'_>) -> Result<Mapping, Failure> {
+pub fn mapping(robot: &Robot, info: &Info<'_>) -> Result<Mapping, Error> {
     let Some(data) = &robot.description.data else {
         return Ok(Mapping::for_robot(info));
     };

@@ -1,0 +1,188 @@
+//! What is wrong, all of it at once, each at its place and with a way out.
+
+use overact_codegen::diagnostic::{Diagnostics, Located, Source};
+use serde::Serialize;
+use std::fmt;
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Problem {
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// The file, as the user named it.
+    pub file: Option<String>,
+    /// Line, counted from 1.
+    pub line: Option<usize>,
+    /// Where in the line.
+    pub column: Option<Column>,
+    /// A way out.
+    pub help: Option<String>,
+}
+
+/// A place in a line.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum Column {
+    /// Number of a character in a text, counted from 1.
+    Number(usize),
+    /// Name of a column of a table.
+    Name(String),
+}
+
+impl Problem {
+    /// A problem without a place.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self {
+            message,
+            file: None,
+            line: None,
+            column: None,
+            help: None,
+        }
+    }
+
+    /// With the file.
+    #[must_use]
+    pub fn file(self, file: impl Into<String>) -> Self {
+        let file = Some(file.into());
+        Self { file, ..self }
+    }
+
+    /// With the line, if there is one.
+    #[must_use]
+    pub fn line(self, line: Option<usize>) -> Self {
+        Self { line, ..self }
+    }
+
+    /// With a way out.
+    #[must_use]
+    pub fn help(self, help: impl Into<String>) -> Self {
+        let help = Some(help.into());
+        Self { help, ..self }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error: {}", self.message)?;
+        if let Some(file) = &self.file {
+            write!(f, "\n --> {file}")?;
+            if let Some(line) = self.line {
+                write!(f, ":{line}")?;
+            }
+            if let Some(Column::Number(column)) = &self.column {
+                write!(f, ":{column}")?;
+            }
+        }
+        if let Some(help) = &self.help {
+            write!(f, "\n  = help: {help}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no robot, or nothing that it was asked for.
+#[derive(Debug)]
+pub enum Error {
+    /// A description is wrong.
+    Description {
+        /// Its text.
+        source: Source,
+        /// All its errors.
+        diagnostics: Diagnostics,
+    },
+    /// Anything else.
+    Problems(Vec<Problem>),
+    /// What went wrong with several files.
+    Several(Vec<Self>),
+}
+
+impl Error {
+    /// All problems as data.
+    #[must_use]
+    pub fn problems(&self) -> Vec<Problem> {
+        match self {
+            Self::Problems(problems) => problems.clone(),
+            Self::Several(all) => all.iter().flat_map(Self::problems).collect(),
+            Self::Description {
+                source,
+                diagnostics,
+            } => {
+                let located = diagnostics.located(source).into_iter();
+                let problem = |l: Located| Problem {
+                    message: l.message,
+                    file: Some(l.file),
+                    line: l.line,
+                    column: l.column.map(Column::Number),
+                    help: l.help,
+                };
+                located.map(problem).collect()
+            }
+        }
+    }
+
+    /// All problems as text, with a terminal's colours or without.
+    #[must_use]
+    pub fn render(&self, styled: bool) -> String {
+        match self {
+            Self::Description {
+                source,
+                diagnostics,
+            } if styled => diagnostics.render_styled(source),
+            Self::Description {
+                source,
+                diagnostics,
+            } => diagnostics.render_plain(source),
+            Self::Several(all) => {
+                let texts: Vec<String> = all.iter().map(|one| one.render(styled)).collect();
+                texts.join("\n\n")
+            }
+            Self::Problems(problems) => {
+                let texts: Vec<String> = problems.iter().map(Problem::to_string).collect();
+                texts.join("\n\n")
+            }
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<Problem> for Error {
+    fn from(problem: Problem) -> Self {
+        Self::Problems(vec![problem])
+    }
+}
+
+impl From<overact_identification::Error> for Error {
+    fn from(error: overact_identification::Error) -> Self {
+        let problem = |p: overact_identification::Problem| Problem {
+            message: p.message,
+            file: p.file,
+            line: p.line,
+            column: p.column.map(Column::Name),
+            help: p.help,
+        };
+        Self::Problems(error.problems.into_iter().map(problem).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Error, Problem};
+
+    #[test]
+    fn a_problem_reads_like_a_compiler_error() {
+        let problem = Problem::new("no column").file("log.csv").line(Some(3));
+        let error = Error::from(problem.help("name it"));
+        let expected = "error: no column\n --> log.csv:3\n  = help: name it";
+        assert_eq!(error.render(false), expected);
+    }
+}
