@@ -1,17 +1,17 @@
 //! The stages of the generator, in order.
 
-use crate::assemble::{cheapest, joints_by};
-use crate::columns::{base_parameters, present};
-use crate::combine::cheaper_columns;
 use crate::derivation::{Columns, Family, From, Selection, Underivable};
 use crate::description;
 use crate::diagnostic::{Diagnostics, Source};
-use crate::formulation::cheapest_formulation;
 use crate::lowering::{Effort, Reach};
+use crate::mechanism::states::{Spread, spread_states};
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
-use crate::states::{Spread, spread_states};
+use crate::selection::assemble::{cheapest, joints_by};
+use crate::selection::columns::{base_parameters, present};
+use crate::selection::combine::cheaper_columns;
+use crate::selection::formulation::cheapest_formulation;
 
 /// States of each kind by which the search compares the digits of forms.
 const STATES: usize = 16;

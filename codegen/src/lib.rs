@@ -14,30 +14,25 @@
 //! | [`description`] | TOML | values with units and places; errors in [`diagnostic`] |
 //! | [`mechanism`] | description | checked legs, platform, home configuration |
 //! | [`derivation`] | mechanism | expressions of the algebra [`cas`] |
-//! | [`columns`], [`base`], [`combine`] | regressor | present, independent and combined columns |
+//! | [`selection`] | regressor | its form, and its present, independent and combined columns |
 //! | [`lowering`] | expressions | a straight-line program with its operation count |
 //! | [`emission`] | programs | Rust |
 //! | [`evaluation`] | programs | numbers, block by block |
 //!
 //! The crate is pure: text in, model or diagnostics out.
 
-pub mod assemble;
-pub mod base;
 pub mod cas;
-pub mod columns;
-pub mod combine;
 pub mod compile;
 pub mod derivation;
 pub mod description;
 pub mod diagnostic;
 pub mod emission;
 pub mod evaluation;
-pub mod formulation;
 pub mod lowering;
 pub mod mechanism;
 pub mod model;
 mod parallel;
-pub mod states;
+pub mod selection;
 
 pub use compile::{Request, compile, compile_with};
 pub use diagnostic::{Diagnostics, Source};

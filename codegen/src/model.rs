@@ -1,9 +1,9 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
-use crate::base::BaseParameter;
 use crate::derivation::{BodyParameter, Columns, Family, From, JointsBy, Selection};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism};
+use crate::selection::base::BaseParameter;
 
 /// A function of the robot.
 #[derive(Debug, Clone)]

@@ -1,10 +1,10 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
-use overact_codegen::columns::sample;
 use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::lowering::{Condition, Program};
-use overact_codegen::states::random_states;
+use overact_codegen::mechanism::states::random_states;
+use overact_codegen::selection::columns::sample;
 use overact_robots::DualV;
 use overact_tests::reference::robots;
 use overact_tests::support::backend::evaluate;

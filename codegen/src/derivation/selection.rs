@@ -4,7 +4,7 @@ use super::regressor::BodyParameter;
 use super::robot::Formulation;
 use crate::cas::Number;
 use crate::lowering::Reach;
-use crate::states::State;
+use crate::mechanism::states::State;
 
 /// What the derivation of a function needs beside the mechanism.
 #[derive(Debug, Clone, Default)]

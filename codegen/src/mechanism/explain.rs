@@ -3,11 +3,11 @@
 use super::home::HomeError;
 use super::numeric::{platform_frame, target};
 use super::reach::{Reach, look, wrapped};
+use super::states::random_states;
 use super::structure::Defect;
 use super::{Home, JointKind, Leg, Mechanism, TwistCoordinate};
 use crate::description::{self, Description};
 use crate::diagnostic::Diagnostic;
-use crate::states::random_states;
 use nalgebra::DMatrix;
 
 /// A leg that is wrong in every configuration. The error stands at the leg's shape, where it is made.

@@ -8,7 +8,7 @@ use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
-use overact_codegen::states::{pose_towards, random_states};
+use overact_codegen::mechanism::states::{pose_towards, random_states};
 use overact_codegen::{Effort, Request, RobotModel, compile_with};
 
 /// Rays from the home pose on which singular configurations are approached.

@@ -8,9 +8,9 @@ use super::{Backend, Failure, Sample};
 use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
-use overact_codegen::assemble;
 use overact_codegen::derivation::{Columns, Family, From, Selection, Underivable};
 use overact_codegen::lowering::Program;
+use overact_codegen::selection::assemble;
 use overact_codegen::{Function, RobotModel};
 
 /// Condition number of a partition up to which the plain tolerance holds; beyond, case 2 is compared

@@ -3,10 +3,10 @@
 use super::conditioning::Conditioning;
 use overact_codegen::{
     RobotModel,
-    base::BaseParameter,
     derivation::{Columns, From},
     lowering::{Array, Cost},
     model,
+    selection::base::BaseParameter,
 };
 use overact_robot::{InterpretedRobot, load::Robot};
 use serde::Serialize;

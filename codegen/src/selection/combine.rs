@@ -5,8 +5,8 @@
 //! point mass on the platform less two moments of inertia, all of which are there already. Columns that
 //! differ by the leg only are tried together, and what lowers the operation count is kept.
 
-use crate::assemble::program;
-use crate::base::{BaseParameter, nearby_ratio};
+use super::assemble::program;
+use super::base::{BaseParameter, nearby_ratio};
 use crate::cas::{Arena, Number};
 use crate::derivation::{
     BodyParameter, Columns, Combination, Family, From, JointsBy, Selection, Underivable, derive,

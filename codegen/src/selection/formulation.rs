@@ -1,7 +1,7 @@
 //! Which of several equal forms of a robot's model takes the fewest operations: derived, lowered without
 //! a search, and counted.
 
-use crate::assemble::program;
+use super::assemble::program;
 use crate::derivation::{
     Columns, Family, Formulation, From, JointsBy, Selection, Underivable, station_count,
 };

@@ -1,10 +1,10 @@
 //! Random regular states of a mechanism, found numerically: poses around home with joints that close
 //! every leg in the working mode of the home configuration.
 
+use super::home::close_from;
+use super::numeric::{platform_frame, target};
+use super::{Mechanism, Motion};
 use crate::cas::Stream;
-use crate::mechanism::home::close_from;
-use crate::mechanism::numeric::{platform_frame, target};
-use crate::mechanism::{Mechanism, Motion};
 
 /// A state of a robot.
 #[derive(Debug, Clone)]

@@ -6,7 +6,7 @@ use crate::derivation::{
 };
 use crate::lowering::{Array, Condition, GuardedExpr, Program, Reach, States, lower};
 use crate::mechanism::Mechanism;
-use crate::states::State;
+use crate::mechanism::states::State;
 
 /// How the joints of a robot follow from its pose: by rule, if one fits every leg.
 ///

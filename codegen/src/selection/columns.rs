@@ -1,18 +1,18 @@
 //! The columns of a robot's identification model: which are not identically zero, which of them are
 //! independent, and what the others are made of.
 
-use crate::assemble::program;
-use crate::base::{BaseParameter, select, symmetric_order};
+use super::assemble::program;
+use super::base::{BaseParameter, select, symmetric_order};
+use super::combine::exact_combinations;
 use crate::cas::Arena;
-use crate::combine::exact_combinations;
 use crate::derivation::{
     BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
     Underivable, derive,
 };
 use crate::evaluation::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Operand, Program, Reach};
+use crate::mechanism::states::{State, random_states};
 use crate::mechanism::{BaseColumns, Mechanism};
-use crate::states::{State, random_states};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
