@@ -2,11 +2,14 @@
 
 use super::{End, Leg, Mechanism, Motion, TwistCoordinate};
 use crate::mechanism::numeric::{platform_frame, target};
+use crate::mechanism::singular_values::SingularValues;
 use nalgebra::{DMatrix, DVector, Vector3};
 
 /// What is left of a row of J_p^inv without its part along rows before it, relative to its length,
 /// below which it adds little to them, and below which it adds nothing.
 const DEPENDENT: [f64; 2] = [1e-2, 1e-6];
+/// Singular value of a leg's Jacobian, relative to the largest, up to which it counts as zero.
+const SINGULAR: f64 = 1e-9;
 /// Length of a row of J_p^inv, relative to the fastest joint's, below which it is rounding.
 const ROUNDING: f64 = 1e-10;
 
@@ -37,13 +40,12 @@ pub fn shared_velocities(motion: Motion, pose: &[f64], end: &End) -> DMatrix<f64
     columns.select_rows(&end.shared_components())
 }
 
-/// The joint rates of a leg per velocity of its end, by least squares; `None` if its singular values
-/// are not found.
+/// The joint rates of a leg per velocity of its end, by least squares; `None` if its Jacobian is
+/// not finite.
 #[must_use]
 pub fn rates_per_velocity(leg: &Leg, joints: &[f64]) -> Option<DMatrix<f64>> {
-    let jacobian = leg.closure_jacobian(joints);
-    let svd = nalgebra::SVD::try_new(jacobian, true, true, f64::EPSILON, 1000);
-    svd.and_then(|svd| svd.pseudo_inverse(1e-9).ok())
+    let found = SingularValues::new(&leg.closure_jacobian(joints))?;
+    Some(found.pseudo_inverse(SINGULAR * found.largest()))
 }
 
 impl Mechanism {

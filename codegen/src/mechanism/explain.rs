@@ -3,6 +3,7 @@
 use super::home::HomeError;
 use super::numeric::{platform_frame, target};
 use super::reach::{Reach, look, wrapped};
+use super::singular_values::SingularValues;
 use super::states::random_states;
 use super::structure::Defect;
 use super::{Home, JointKind, Leg, Mechanism, TwistCoordinate};
@@ -209,25 +210,14 @@ pub(super) fn underactuated(description: &Description, mechanism: &Mechanism) ->
 /// How the platform can move while no actuator does.
 fn free_motions(mechanism: &Mechanism, jacobian: &DMatrix<f64>) -> String {
     let start = "with all motors locked the platform can still";
-    // With zero rows there are as many as columns, so that all right singular vectors are there.
-    let rows = jacobian.nrows().max(jacobian.ncols());
-    let jacobian = jacobian.clone().resize_vertically(rows, 0.0);
-    let size = jacobian.amax();
-    let svd = nalgebra::SVD::try_new(jacobian, false, true, f64::EPSILON, 1000);
-    let Some((values, v_t)) = svd.and_then(|svd| Some((svd.singular_values, svd.v_t?))) else {
+    let Some(found) = SingularValues::new(jacobian) else {
         return format!("{start} move");
     };
-    let free: Vec<usize> = (0..values.len())
-        .filter(|&i| values[i] <= 1e-5 * size)
-        .collect();
+    let free = found.null_space(1e-5 * jacobian.amax());
     // The part of each coordinate that lies among the free motions.
-    let free_rows = v_t.select_rows(&free);
-    let parts: Vec<f64> = free_rows
-        .column_iter()
-        .map(|column| column.norm())
-        .collect();
+    let parts: Vec<f64> = free.row_iter().map(|row| row.norm()).collect();
     let moves = Motions::new(mechanism, &parts, 1e-3);
-    let together = if free.len() == moves.count() {
+    let together = if free.ncols() == moves.count() {
         ""
     } else {
         " at once"

@@ -1,6 +1,7 @@
 //! The home configuration: from rough joint positions to ones that close every leg.
 
 use super::numeric::{platform_frame, target};
+use super::singular_values::SingularValues;
 use super::{Leg, Mechanism};
 use crate::cas::{Arena, Expr};
 use nalgebra::DMatrix;
@@ -208,21 +209,7 @@ pub fn close_from(leg: &Leg, start: &[f64], target: &nalgebra::Isometry3<f64>) -
     (condition(&leg.closure_jacobian(&q)) < 50.0).then_some(q)
 }
 
-/// Ratio of the largest and smallest singular value; infinite for entries that are not finite and
-/// where the singular values are not found.
-#[must_use]
-pub fn condition(matrix: &DMatrix<f64>) -> f64 {
-    if matrix.iter().any(|e| !e.is_finite()) {
-        return f64::INFINITY;
-    }
-    // Scaled to entries of about one, so that no square overflows.
-    let size = matrix.amax();
-    if size == 0.0 {
-        return f64::INFINITY;
-    }
-    let svd = nalgebra::SVD::try_new(matrix / size, false, false, f64::EPSILON, 1000);
-    svd.map_or(f64::INFINITY, |svd| {
-        let values = svd.singular_values;
-        values.max() / values.min()
-    })
+/// Ratio of the largest and smallest singular value; infinite for entries that are not finite.
+fn condition(matrix: &DMatrix<f64>) -> f64 {
+    SingularValues::new(matrix).map_or(f64::INFINITY, |found| found.condition())
 }

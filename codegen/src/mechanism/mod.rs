@@ -13,6 +13,7 @@ pub mod home;
 pub mod motion;
 pub mod numeric;
 mod reach;
+pub mod singular_values;
 pub mod states;
 mod structure;
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! are independent; columns that are dependent at several random configurations are so everywhere, by
 //! the structure of the leg and not by its home configuration.
 
+use super::singular_values::rank;
 use super::{JointKind, Leg};
 use crate::cas::Stream;
 use nalgebra::DMatrix;
@@ -74,14 +75,14 @@ pub(super) fn defects(leg: &Leg, velocities: &DMatrix<f64>) -> Vec<Defect> {
             None => kept.push(c),
         }
     }
-    let motions = samples.iter().map(|j| j.rank(ROUNDING)).max().unwrap_or(0);
+    let motions = samples.iter().map(|j| rank(j, ROUNDING)).max().unwrap_or(0);
     if kept.len() > motions {
         defects.push(Defect::Loose {
             joints: kept.len(),
             motions,
         });
     }
-    let needed = velocities.rank(ROUNDING * velocities.amax());
+    let needed = rank(velocities, ROUNDING * velocities.amax());
     if defects.is_empty() && motions < needed {
         defects.push(Defect::Stiff { motions, needed });
     }

@@ -1,5 +1,7 @@
 //! Robots that are no robots: what is said of them, and that it names the culprit and a way out.
 
+mod homes;
+
 use super::check;
 use crate::description::parse;
 use crate::diagnostic::Source;
