@@ -4,45 +4,59 @@
 ///
 /// 3 legs, 9 joints, 3 actuators, 3 degrees of freedom; 52 standard parameters, 43 base parameters.
 /// Source: After Clavel 1988; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Delta;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Delta {
     /// The robot's name.
-    pub const NAME: &'static str = "Delta";
+    pub const NAME: &'static ::core::primitive::str = "Delta";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 9;
+    pub const JOINTS: ::core::primitive::usize = 9;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "leg1", "leg2", "leg3",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 9] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 9] = [
         "leg1.arm", "leg1.cross", "leg1.rod", "leg2.arm", "leg2.cross", "leg2.rod", "leg3.arm",
         "leg3.cross", "leg3.rod",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "z"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "z"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 3, 6];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, -0.48];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, -0.48];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.29004211980001315, 2.026511002291635, 0.0000000000000000004144733049158262,
         0.2900421198000123, 2.0265110022916346, 0.0000000000000009023759757123874,
         0.29004211980001254, 2.0265110022916355, 0.0000000000000001832623884657901,
@@ -211,8 +225,8 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_arm_leg3, c_arm_leg3), (s_arm_leg2, c_arm_leg2),
         ] = ::overact::math::sin_cos_all([actuators[0], actuators[2], actuators[1]]);
         let t4 = 0.05 - (0.2 + 0.24 * c_arm_leg1);
@@ -236,7 +250,9 @@ impl Delta {
         let t91 = t62 * (0.3136 - (t63 * t63 + t75 * t75 + t87 * t87));
         ::overact::guard::reach(t91, "leg1")?;
         let t92 = ::overact::math::sqrt(t91);
-        Ok([t63 - t4 - t56 * t92, t75 - t32 * t92, t87 - 0.24 * s_arm_leg1 - t39 * t92])
+        ::core::result::Result::Ok([
+            t63 - t4 - t56 * t92, t75 - t32 * t92, t87 - 0.24 * s_arm_leg1 - t39 * t92,
+        ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -249,7 +265,9 @@ impl Delta {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -318,7 +336,7 @@ impl Delta {
         let s_cross_leg3 = t137 / t157;
         let c_cross_leg3 = (-0.0576 + t133) / t157;
         let s_rod_leg3 = 1.7857142857142858 * t67;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.9582318304121665 * minus_s_arm_leg1
                     + 0.28599258589157334 * c_arm_leg1),
@@ -370,7 +388,9 @@ impl Delta {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -410,7 +430,7 @@ impl Delta {
         let t86 = ::overact::math::sqrt(t85);
         let s_arm_leg3 = t77 * (t78 * t86 - t7 * t83);
         let minus_c_arm_leg3 = t77 * (t78 * t83 + t7 * t86);
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.9582318304121665 * minus_s_arm_leg1
                     + 0.28599258589157334 * c_arm_leg1),
@@ -438,7 +458,9 @@ impl Delta {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -539,7 +561,7 @@ impl Delta {
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t103;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
             [garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
             [garm_vx_leg3, garm_vy_leg3, -minus_garm_vz_leg3],
@@ -558,9 +580,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t8 = joints[3] + joints[4];
         let t24 = joints[6] + joints[7];
@@ -591,7 +613,7 @@ impl Delta {
         let minus_garm_vz_leg1 = s_armcross_leg1 * t4;
         let minus_garm_vz_leg2 = s_armcross_leg2 * t7;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t19;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
             [-minus_garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
             [garm_vx_leg3, -minus_garm_vy_leg3, -minus_garm_vz_leg3],
@@ -608,7 +630,9 @@ impl Delta {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -741,7 +765,7 @@ impl Delta {
         let t226 = garm_vy_leg3 - garm_vx_leg3 * t150;
         let t232 = t197 * (garm_vx_leg3 * t179 - minus_garm_vz_leg3 - t187 * t226);
         let t234 = t158 * t226 - t187 * t232;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 garm_vx_leg1 * t132 - t150 * t204 + t179 * t202,
                 garm_vx_leg2 * t132 - t150 * t219 + t179 * t217,
@@ -762,9 +786,9 @@ impl Delta {
     /// 86 operations (21 additions, 65 multiplications, 0 divisions), 0 square roots, 9 trigonometric pairs, 0 signs, 79 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 9]; 9] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 9]; 9] {
         let t3 = joints[0] + joints[1];
         let t21 = joints[3] + joints[4];
         let t64 = joints[6] + joints[7];
@@ -844,9 +868,9 @@ impl Delta {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 9],
-    ) -> [[f64; 3]; 9] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 9] {
         [
             [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
             [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0],
@@ -865,9 +889,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t6 = joints[0] + joints[1];
         let t19 = joints[3] + joints[4];
         let t37 = joints[6] + joints[7];
@@ -902,7 +926,7 @@ impl Delta {
         let minus_garm_vz_leg1 = s_armcross_leg1 * t9;
         let minus_garm_vz_leg2 = s_armcross_leg2 * t18;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t34;
-        Ok([
+        ::core::result::Result::Ok([
             [t5 * garm_vx_leg1, garm_vy_leg1 * t5, -(t5 * minus_garm_vz_leg1)],
             [
                 -(t17 * minus_garm_vx_leg2), t17 * garm_vy_leg2, -(t17 * minus_garm_vz_leg2),
@@ -923,9 +947,9 @@ impl Delta {
     /// 9 operations (0 additions, 9 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 12 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(_, c_rod_leg1), (s_cross_leg1, _), (_, c_rod_leg2), (s_cross_leg2, _),
         (_, c_rod_leg3), (s_cross_leg3, _)] = ::overact::math::sin_cos_all([
             joints[2], joints[1], joints[5], joints[4], joints[8], joints[7],
@@ -949,9 +973,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -1071,7 +1095,7 @@ impl Delta {
             + 0.8660254037844387 * s_armcross_leg3 * twist[1]
             + minus_c_armcross_leg3 * twist[2] - t191 * t177 - t181 * t191;
         let rate_cross_leg3 = t178 * t195;
-        Ok([
+        ::core::result::Result::Ok([
             rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
             rate_cross_leg2 - rate_arm_leg2, -minus_rate_rod_leg2, rate_arm_leg3,
             rate_cross_leg3 - rate_arm_leg3, rate_rod_leg3,
@@ -1091,10 +1115,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -1267,7 +1291,7 @@ impl Delta {
             - t245 * t279;
         let rate_dot_cross_leg3 = t251 * (t296 - t271 * t282);
         let rate_dot_rod_leg3 = t251 * t282;
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
             rate_dot_arm_leg2, rate_dot_cross_leg2 - rate_dot_arm_leg2, -minus_rate_dot_rod_leg2,
             rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3, rate_dot_rod_leg3,
@@ -1286,9 +1310,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -1422,7 +1446,7 @@ impl Delta {
                 + minus_garm_vz_leg2 * actuator_velocities[1]
                 + minus_garm_vz_leg3 * actuator_velocities[2]) - t197 * t170) / t215;
         let t218 = t163 * t170 - t197 * t216;
-        Ok([t131 * t137 - t155 * t218 + t189 * t216, t218, t216])
+        ::core::result::Result::Ok([t131 * t137 - t155 * t218 + t189 * t216, t218, t216])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1438,10 +1462,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -1627,7 +1651,7 @@ impl Delta {
             - (minus_garm_vz_leg1 * t67 + minus_garm_vz_leg2 * t163
                 + minus_garm_vz_leg3 * t247) - t302 * t284) / t320;
         let t323 = t277 * t284 - t302 * t321;
-        Ok([t249 * t255 - t269 * t323 + t294 * t321, t323, t321])
+        ::core::result::Result::Ok([t249 * t255 - t269 * t323 + t294 * t321, t323, t321])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1644,10 +1668,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t2 = 0.48 * t1;
@@ -1966,7 +1990,7 @@ impl Delta {
         let t724 = s_rod_leg3 * (s_cross_leg3 * t720 + c_cross_leg3 * t687);
         let t729 = s_cross_leg3 * t687 - c_cross_leg3 * t720;
         let t744 = rate_dot_cross_leg3 * (0.24 * s_cross_leg3) + t526 * (t579 - t577);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t74, -(garm_vx_leg1 * t79), -(garm_vx_leg1 * t83), t74,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
@@ -2152,11 +2176,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_arm_leg2, c_arm_leg2),
         (s_rod_leg2, c_rod_leg2), (s_cross_leg3, c_cross_leg3), (s_rod_leg3, c_rod_leg3),
@@ -2410,7 +2434,7 @@ impl Delta {
             - t475 * t536;
         let t654 = t607 * rate_dot_cross_leg3 + t475 * t479;
         let t664 = 0.24 * t602;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
@@ -2536,11 +2560,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
@@ -2888,7 +2912,7 @@ impl Delta {
         let t786 = s_rod_leg3 * t752;
         let t801 = rate_dot_cross_leg3 * t137 + t150 * t321;
         let t811 = 0.24 * t750;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t35, -(garm_vx_leg1 * t46), -(garm_vx_leg1 * t50), t35, t54,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
@@ -3015,10 +3039,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -3388,7 +3412,7 @@ impl Delta {
         let t861 = t161 * t858;
         let t870 = t858 * (t746 - rate_dot_rod_leg3) + t861 * (t795 + t668) - t654 * t771
             - t764 * t847 + t768 * t852;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t72, -t73, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, t213 - t232 * t252,
@@ -3509,11 +3533,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let [(s_cross_leg1, c_cross_leg1), (s_arm_leg1, c_arm_leg1),
         (s_rod_leg1, c_rod_leg1), (s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
         (s_cross_leg3, c_cross_leg3), (s_arm_leg3, c_arm_leg3), (s_rod_leg3, c_rod_leg3),
@@ -3813,7 +3837,7 @@ impl Delta {
         let t775 = t637 * s_rod_leg3;
         let t784 = t772 * (t660 - rate_dot_rod_leg3) + t775 * (t709 + t579) - t564 * t650
             + t678 * t761 - t682 * t766;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t48, t49, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, t132 * t151 - t157,
@@ -3934,11 +3958,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 52]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 52]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -4346,7 +4370,7 @@ impl Delta {
         let t952 = t120 * t949;
         let t961 = t949 * (t838 - rate_dot_rod_leg3) + t952 * (t887 + t348) - t342 * t828
             - t856 * t938 + t860 * t943;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], -t20, -t25, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
@@ -4466,10 +4490,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let t2 = pose[0] - 0.025 + 0.1;
         let t4 = -0.025 + t2 - 0.2;
         let t5 = 0.48 * t4;
@@ -4756,7 +4780,7 @@ impl Delta {
         let t655 = t45 * t63 - minus_rate_dot_cross_leg1 * (t561 / c_rod_leg1);
         let t668 = rate_dot_cross_leg2 * (0.24 * s_cross_leg2) + t138 * t165;
         let t681 = rate_dot_cross_leg3 * (t198 * minus_grod_vy_leg3) + t247 * t261;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
                 garm_vx_leg3 * rate_dot_arm_leg3, -(garm_vx_leg1 * t279), -(garm_vx_leg2 * t283),
@@ -4862,11 +4886,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_arm_leg2, c_arm_leg2),
         (s_rod_leg2, c_rod_leg2), (s_cross_leg3, c_cross_leg3), (s_rod_leg3, c_rod_leg3),
@@ -5093,7 +5117,7 @@ impl Delta {
         let t578 = t25 * t35 - t479 * minus_rate_dot_cross_leg1;
         let t591 = t518 * rate_dot_cross_leg2 + t101 * t105;
         let t602 = t543 * rate_dot_cross_leg3 + t551 * t173;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2), garm_vx_leg3 * rate_dot_arm_leg3,
@@ -5198,11 +5222,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
@@ -5515,7 +5539,7 @@ impl Delta {
         let t703 = t140 * t236 - minus_rate_dot_cross_leg1 * t33;
         let t715 = rate_dot_cross_leg2 * t65 + t78 * t266;
         let t727 = rate_dot_cross_leg3 * t107 + t119 * t513;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t331, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
@@ -5619,10 +5643,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = 0.025 + t0;
         let t2 = t1 * t1;
@@ -5967,7 +5991,7 @@ impl Delta {
         let t802 = t90 * t799;
         let t811 = t799 * (t530 - rate_dot_rod_leg3) + t802 * (t653 + t316) - t303 * t519
             - t548 * t788 + t552 * t793;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t178 * acceleration[0] - t183 * acceleration[1] + t189 * t190, rate_dot_arm_leg1,
                 0.0, 0.0, -t342, 0.0, 0.0, -t345, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
@@ -6025,11 +6049,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let [(s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
         (s_cross_leg3, c_cross_leg3), (s_arm_leg3, c_arm_leg3), (s_rod_leg3, c_rod_leg3),
         (s_rod_leg2, c_rod_leg2), (s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
@@ -6305,7 +6329,7 @@ impl Delta {
         let t713 = t415 * s_rod_leg3;
         let t722 = t710 * (t438 - rate_dot_rod_leg3) + t713 * (t561 + t224) - t209 * t428
             + t456 * t699 - t460 * t704;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t84 * acceleration[0] + t86 * acceleration[1] + t89 * t90, rate_dot_arm_leg1, 0.0,
                 0.0, -t255, 0.0, 0.0, t258, 0.0, 0.0, rate_arm_leg1, 0.0, 0.0,
@@ -6363,11 +6387,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = 0.025 + t0;
@@ -6754,7 +6778,7 @@ impl Delta {
         let t887 = t88 * t884;
         let t896 = t884 * (t614 - rate_dot_rod_leg3) + t887 * (t738 + t315) - t309 * t604
             - t632 * t873 + t636 * t878;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t173 * t370 - t375 * t366 + t381 * t382, actuator_accelerations[0], 0.0, 0.0, -t410,
                 0.0, 0.0, -t413, 0.0, 0.0, actuator_velocities[0], 0.0, 0.0,
@@ -6811,10 +6835,10 @@ impl Delta {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        _pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [acceleration[2] + 9.81]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -6831,11 +6855,11 @@ impl Delta {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 9],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 9],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [acceleration[2] + 9.81]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -6854,11 +6878,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
@@ -7055,7 +7079,9 @@ impl Delta {
                 - (minus_garm_vz_leg1 * t245 + minus_garm_vz_leg2 * t283
                     + minus_garm_vz_leg3 * t320) - t203 * t330);
         let t343 = t172 * t330 - t203 * t341;
-        Ok([[t134 * t322 - t164 * t343 + t195 * t341], [t343], [t341 + 9.81]])
+        ::core::result::Result::Ok([
+            [t134 * t322 - t164 * t343 + t195 * t341], [t343], [t341 + 9.81],
+        ])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -7072,10 +7098,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = 0.025 + t0;
         let t2 = t1 * t1;
@@ -7193,7 +7219,7 @@ impl Delta {
             - minus_garm_vz_leg1 * garm_vx_leg2) * t167 * acceleration[1]
             - (garm_vy_leg1 * minus_garm_vz_leg2 - minus_garm_vz_leg1 * garm_vy_leg2)
                 * t167 * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t175
                     + (garm_vx_leg2 * garm_vy_leg3 - garm_vy_leg2 * garm_vx_leg3) * t167
@@ -7223,9 +7249,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -7326,7 +7352,7 @@ impl Delta {
         let s_armcross_leg3 = s_arm_leg3 * c_cross_leg3
             - minus_c_arm_leg3 * s_cross_leg3;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t106;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
@@ -7345,7 +7371,10 @@ impl Delta {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 3], torques: &[f64; 3]) -> [f64; 3] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> [::core::primitive::f64; 3] {
         [torques[0], torques[1], torques[2]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -7363,11 +7392,11 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 53],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -7773,7 +7802,7 @@ impl Delta {
             - t795 * t777) / t830;
         let t833 = t724 * t777 - t795 * t831;
         let t837 = t696 * t702 - t716 * t833 + t787 * t831;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t837 + garm_vy_leg1 * t833 - minus_garm_vz_leg1 * t831,
             garm_vx_leg2 * t837 + garm_vy_leg2 * t833 - minus_garm_vz_leg2 * t831,
             garm_vx_leg3 * t837 + garm_vy_leg3 * t833 - minus_garm_vz_leg3 * t831,
@@ -7795,12 +7824,12 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 53],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_rod_leg2, c_rod_leg2), (s_arm_leg2, c_arm_leg2),
         (s_cross_leg2, c_cross_leg2), (s_cross_leg3, c_cross_leg3),
@@ -8139,7 +8168,7 @@ impl Delta {
             - t712 * t694) / t747;
         let t750 = t641 * t694 - t712 * t748;
         let t754 = t613 * t619 - t633 * t750 - t709 * t748;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t754 + garm_vy_leg1 * t750 - minus_garm_vz_leg1 * t748,
             garm_vy_leg2 * t750 - minus_garm_vx_leg2 * t754 - minus_garm_vz_leg2 * t748,
             garm_vx_leg3 * t754 - minus_garm_vy_leg3 * t750 - minus_garm_vz_leg3 * t748,
@@ -8161,12 +8190,12 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 53],
-        start: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 53],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
@@ -8595,7 +8624,7 @@ impl Delta {
                 - t220 * t854);
         let t884 = t189 * t854 - t220 * t882;
         let t888 = t138 * t800 - t181 * t884 + t212 * t882;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t888 + garm_vy_leg1 * t884 - minus_garm_vz_leg1 * t882,
             garm_vx_leg2 * t888 + garm_vy_leg2 * t884 - minus_garm_vz_leg2 * t882,
             garm_vx_leg3 * t888 + garm_vy_leg3 * t884 - minus_garm_vz_leg3 * t882,
@@ -8614,9 +8643,9 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 53],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -8994,7 +9023,7 @@ impl Delta {
         let t762 = minus_minus_garm_vz_leg2 * t606 - minus_gcross_vz_leg2 * t625
             - (minus_gcross_vz_leg1 * t572 - minus_minus_garm_vz_leg1 * t553)
             + gcross_vz_leg3 * t688 + minus_minus_garm_vz_leg3 * t669;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t215 + garm_vx_leg3 * t290 - minus_gcross_vx_leg3 * (t301 + t311) + t324
                     + t327,
@@ -9024,10 +9053,10 @@ impl Delta {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 53],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 53],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] + 0.05;
         let t1 = t0 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -9389,18 +9418,20 @@ impl Delta {
         let t727 = gcross_vz_leg3 * t631 - minus_garm_vz_leg3 * t590
             - (minus_gcross_vz_leg2 * t404 + minus_garm_vz_leg2 * t363
                 + minus_garm_vz_leg1 * t146 + minus_gcross_vz_leg1 * t184);
-        Ok([t653, t707, t727 + 9.81 * (parameters[51] + parameters[52])])
+        ::core::result::Result::Ok([
+            t653, t707, t727 + 9.81 * (parameters[51] + parameters[52]),
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
-            return Ok(pose);
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return ::core::result::Result::Ok(pose);
         }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
@@ -9420,7 +9451,7 @@ impl Delta {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -9454,9 +9485,9 @@ impl ::overact::Model for Delta {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(9, inputs, output, Self::joints)
@@ -9492,7 +9523,7 @@ impl ::overact::Model for Delta {
                     3,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -9510,7 +9541,7 @@ impl ::overact::Model for Delta {
                 ::overact::block::map3(3, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -9521,14 +9552,14 @@ impl ::overact::Model for Delta {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

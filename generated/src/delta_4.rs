@@ -4,45 +4,63 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 69 standard parameters, 55 base parameters.
 /// Source: After the R4, Corbel et al. 2010; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Delta4;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Delta4 {
     /// The robot's name.
-    pub const NAME: &'static str = "Delta4";
+    pub const NAME: &'static ::core::primitive::str = "Delta4";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 4;
+    pub const ACTUATORS: ::core::primitive::usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const LEGS: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "leg1.arm", "leg1.cross", "leg1.rod", "leg2.arm", "leg2.cross", "leg2.rod", "leg3.arm",
         "leg3.cross", "leg3.rod", "leg4.arm", "leg4.cross", "leg4.rod",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "z"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "z"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 3, 6, 9,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, -0.48];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, -0.48];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.36257530634640667, 1.8973225257683506, -0.0000000000000005419741653399873,
         0.36257530634640806, 1.8973225257683493, 0.00000000000000010439780840579021,
         0.36257530634640733, 1.8973225257683501, -0.0000000000000005031420292211564,
@@ -274,8 +292,8 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_arm_leg3, c_arm_leg3), (s_arm_leg2, c_arm_leg2),
         ] = ::overact::math::sin_cos_all([actuators[0], actuators[2], actuators[1]]);
         let t4 = 0.05 - (0.2 + 0.2 * c_arm_leg1);
@@ -296,7 +314,9 @@ impl Delta4 {
         let t72 = t47 * (0.2809 - (t48 * t48 + t58 * t58 + t68 * t68));
         ::overact::guard::reach(t72, "leg1")?;
         let t73 = ::overact::math::sqrt(t72);
-        Ok([t48 - t4 + t41 * t73, t58 - t23 * t73, t68 - 0.2 * s_arm_leg1 - t28 * t73])
+        ::core::result::Result::Ok([
+            t48 - t4 + t41 * t73, t58 - t23 * t73, t68 - 0.2 * s_arm_leg1 - t28 * t73,
+        ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -309,7 +329,9 @@ impl Delta4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -382,7 +404,7 @@ impl Delta4 {
         let minus_c_arm_leg4 = t163 * (t164 * t167 + t7 * t170);
         let s_cross_leg4 = t170 / t90;
         let c_cross_leg4 = (-0.04 + t166) / t90;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.9349865070850686 * minus_s_arm_leg1
                     + 0.3546832834640828 * c_arm_leg1),
@@ -448,7 +470,9 @@ impl Delta4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -497,7 +521,7 @@ impl Delta4 {
         let t105 = ::overact::math::sqrt(t104);
         let s_arm_leg4 = t98 * (t99 * t105 - t7 * t102);
         let minus_c_arm_leg4 = t98 * (t99 * t102 + t7 * t105);
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.9349865070850686 * minus_s_arm_leg1
                     + 0.3546832834640828 * c_arm_leg1),
@@ -529,7 +553,9 @@ impl Delta4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -638,7 +664,7 @@ impl Delta4 {
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
         let minus_garm_vz_leg4 = s_armcross_leg4 * t98;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
             [garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
             [garm_vx_leg3, garm_vy_leg3, -minus_garm_vz_leg3],
@@ -658,9 +684,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t12 = joints[6] + joints[7];
         let t28 = joints[3] + joints[4];
@@ -697,7 +723,7 @@ impl Delta4 {
         let minus_garm_vz_leg2 = s_armcross_leg2 * t7;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t16;
         let minus_garm_vz_leg4 = s_armcross_leg4 * t19;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1],
             [-minus_garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2],
             [-minus_garm_vx_leg3, -minus_garm_vy_leg3, -minus_garm_vz_leg3],
@@ -715,7 +741,9 @@ impl Delta4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -862,7 +890,7 @@ impl Delta4 {
         let t255 = garm_vy_leg4 - garm_vx_leg4 * t152;
         let t261 = t211 * (garm_vx_leg4 * t189 - minus_garm_vz_leg4 - t199 * t255);
         let t263 = t162 * t255 - t199 * t261;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 garm_vx_leg1 * t107 - t152 * t218 + t189 * t216,
                 garm_vx_leg2 * t107 - t152 * t233 + t189 * t231,
@@ -884,9 +912,9 @@ impl Delta4 {
     /// 48 operations (12 additions, 36 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 44 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let t3 = joints[0] + joints[1];
         let t24 = joints[3] + joints[4];
         let t39 = joints[6] + joints[7];
@@ -962,9 +990,9 @@ impl Delta4 {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 12],
-    ) -> [[f64; 3]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 12] {
         [
             [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
             [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0],
@@ -984,9 +1012,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t6 = joints[0] + joints[1];
         let t28 = joints[6] + joints[7];
         let t47 = joints[3] + joints[4];
@@ -1027,7 +1055,7 @@ impl Delta4 {
         let minus_garm_vz_leg2 = s_armcross_leg2 * t13;
         let minus_garm_vz_leg3 = s_armcross_leg3 * t31;
         let minus_garm_vz_leg4 = s_armcross_leg4 * t35;
-        Ok([
+        ::core::result::Result::Ok([
             [t5 * garm_vx_leg1, garm_vy_leg1 * t5, -(t5 * minus_garm_vz_leg1)],
             [
                 -(minus_garm_vx_leg2 * t20), t20 * garm_vy_leg2, -(t20 * minus_garm_vz_leg2),
@@ -1052,9 +1080,9 @@ impl Delta4 {
     /// 12 operations (0 additions, 12 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let [(_, c_rod_leg1), (s_cross_leg1, _), (_, c_rod_leg2), (s_cross_leg2, _),
         (_, c_rod_leg3), (s_cross_leg3, _), (_, c_rod_leg4), (s_cross_leg4, _)] = ::overact::math::sin_cos_all([
             joints[2], joints[1], joints[5], joints[4], joints[8], joints[7], joints[11],
@@ -1080,9 +1108,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -1208,7 +1236,7 @@ impl Delta4 {
         let rate_cross_leg4 = minus_grod_vx_leg2
             * (s_armcross_leg4 * twist[1] + minus_c_armcross_leg4 * twist[2]
                 - t197 * t191 - t97 * t197);
-        Ok([
+        ::core::result::Result::Ok([
             rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
             -(rate_arm_leg2 + minus_rate_cross_leg2), -minus_rate_rod_leg2, rate_arm_leg3,
             rate_cross_leg3 - rate_arm_leg3, -rate_rod_leg1, rate_arm_leg4,
@@ -1229,10 +1257,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -1417,7 +1445,7 @@ impl Delta4 {
             + minus_c_armcross_leg4 * acceleration[2] - (t283 - t304 - t304)
             - t277 * t298 - t290 * t152;
         let rate_dot_cross_leg4 = minus_grod_vx_leg2 * t311;
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
             rate_dot_arm_leg2, -(rate_dot_arm_leg2 + minus_rate_dot_cross_leg2),
             -minus_rate_dot_rod_leg2, rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3,
@@ -1438,9 +1466,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -1589,7 +1617,7 @@ impl Delta4 {
         ::overact::guard::platform(t235, 66.4019122371629, "actuators")?;
         let t236 = t224 / t235;
         let t238 = t169 * t178 - t213 * t236;
-        Ok([t106 * t114 - t159 * t238 + t203 * t236, t238, t236])
+        ::core::result::Result::Ok([t106 * t114 - t159 * t238 + t203 * t236, t238, t236])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1605,10 +1633,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -1806,7 +1834,7 @@ impl Delta4 {
         ::overact::guard::platform(t343, 66.4019122371629, "actuators")?;
         let t344 = t332 / t343;
         let t346 = t289 * t298 - t321 * t344;
-        Ok([t258 * t266 - t279 * t346 + t311 * t344, t346, t344])
+        ::core::result::Result::Ok([t258 * t266 - t279 * t346 + t311 * t344, t346, t344])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1823,10 +1851,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -2177,7 +2205,7 @@ impl Delta4 {
         let t807 = minus_s_rod_leg2 * t792;
         let t812 = s_cross_leg4 * t784 - c_cross_leg4 * t789;
         let t823 = rate_dot_cross_leg4 * t775 + t688 * t692;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t73, -(garm_vx_leg1 * t78), -(garm_vx_leg1 * t82), t73,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
@@ -2365,11 +2393,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg2, c_arm_leg2), (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3),
@@ -2659,7 +2687,7 @@ impl Delta4 {
         let t743 = s_rod_leg4 * t729;
         let t748 = s_cross_leg4 * t719 - c_cross_leg4 * t726;
         let t759 = t709 * rate_dot_cross_leg4 + t601 * t613;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t46, -(garm_vx_leg1 * t51), garm_vx_leg1 * t55, t46, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
@@ -2843,11 +2871,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t2 = 0.4 * t1;
@@ -3256,7 +3284,7 @@ impl Delta4 {
         let t939 = minus_s_rod_leg2 * t922;
         let t944 = s_cross_leg4 * t914 - c_cross_leg4 * t919;
         let t955 = rate_dot_cross_leg4 * t906 + t909 * t341;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t390, -(garm_vx_leg1 * t393), -(garm_vx_leg1 * t397), t390,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
@@ -3443,10 +3471,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t2 = t1 * t1;
         let t3 = pose[2] * pose[2];
@@ -3868,7 +3896,7 @@ impl Delta4 {
         let t1006 = c_rod_leg2 * t981;
         let t1023 = t889 * t966 + t890 * t969 + t812 * t830;
         let t1033 = 0.2 * t961;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t79, -t80, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, t184 - t202 * t223,
@@ -4017,11 +4045,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let [(s_cross_leg1, c_cross_leg1), (s_arm_leg1, c_arm_leg1),
         (s_rod_leg1, c_rod_leg1), (s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
         (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3), (s_rod_leg2, c_rod_leg2),
@@ -4392,7 +4420,7 @@ impl Delta4 {
         let t969 = c_rod_leg4 * t944;
         let t986 = t840 * t921 + t841 * t924 + t752 * t775;
         let t996 = 0.2 * t936;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t48, t49, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, t115 - t134 * t153,
@@ -4542,11 +4570,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 69]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 69]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -5029,7 +5057,7 @@ impl Delta4 {
         let t1141 = c_rod_leg2 * t1116;
         let t1158 = t1024 * t1101 + t1104 * t1025 + t336 * t354;
         let t1168 = 0.2 * t1096;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1_2, -t400, -t401, rate_dot_arm_leg1_2, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, t426 - t445 * t465,
@@ -5177,10 +5205,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let t2 = pose[0] + 0.05 - 0.2;
         let t3 = 0.4 * t2;
         let t5 = pose[2] * pose[2];
@@ -5485,7 +5513,7 @@ impl Delta4 {
         let t728 = t145 * t150 - minus_rate_dot_cross_leg2 * t623;
         let t741 = rate_dot_cross_leg3 * (0.2 * s_cross_leg3) + t202 * t216;
         let t754 = rate_dot_cross_leg4 * (t684 / c_rod_leg2) + t272 * t276;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1, garm_vx_leg2 * rate_dot_arm_leg2,
                 garm_vx_leg3 * rate_dot_arm_leg3, garm_vx_leg4 * rate_dot_arm_leg4,
@@ -5626,11 +5654,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg2, c_arm_leg2), (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3),
@@ -5891,7 +5919,7 @@ impl Delta4 {
         let t695 = t82 * t94 - t594 * minus_rate_dot_cross_leg2;
         let t707 = t618 * rate_dot_cross_leg3 + t144 * t150;
         let t718 = t650 * rate_dot_cross_leg4 + t199 * t203;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
@@ -6034,11 +6062,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -6405,7 +6433,7 @@ impl Delta4 {
         let t856 = t274 * t291 - minus_rate_dot_cross_leg2 * t754;
         let t868 = rate_dot_cross_leg3 * t91 + t302 * t316;
         let t880 = rate_dot_cross_leg4 * t815 + t339 * t344;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t381, garm_vx_leg1 * rate_dot_arm_leg1_2, garm_vx_leg2 * rate_dot_arm_leg2_2,
                 garm_vx_leg3 * rate_dot_arm_leg3_2, garm_vx_leg4 * rate_dot_arm_leg4_2,
@@ -6545,10 +6573,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let t1 = pose[1] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -6932,7 +6960,7 @@ impl Delta4 {
         let t900 = s_cross_leg4 * t892 - c_cross_leg4 * t889;
         let t901 = c_rod_leg2 * t900;
         let t945 = t562 * t878 + t563 * t881 + t316 * t334;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t139 * acceleration[0] - t144 * acceleration[1] + t150 * t151, rate_dot_arm_leg1,
                 0.0, 0.0, t312 * rate_dot_arm_leg4, -t354, 0.0, 0.0, t312 * t357, -t361, 0.0, 0.0,
@@ -7004,11 +7032,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let [(s_arm_leg2, c_arm_leg2), (s_cross_leg2, c_cross_leg2),
         (s_cross_leg3, c_cross_leg3), (s_rod_leg3, c_rod_leg3), (s_arm_leg3, c_arm_leg3),
         (s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1), (s_rod_leg2, c_rod_leg2),
@@ -7344,7 +7372,7 @@ impl Delta4 {
         let t866 = s_cross_leg4 * t858 - c_cross_leg4 * t855;
         let t867 = c_rod_leg4 * t866;
         let t911 = t506 * t844 + t507 * t847 + t244 * t267;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t75 * acceleration[0] - t80 * acceleration[1] - t86 * t87, rate_dot_arm_leg1, 0.0,
                 0.0, t243 * rate_dot_arm_leg4, -t293, 0.0, 0.0, -(t243 * t296), t300, 0.0, 0.0,
@@ -7417,11 +7445,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 55]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 55]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[1] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -7868,7 +7896,7 @@ impl Delta4 {
         let t1042 = s_cross_leg4 * t1034 - c_cross_leg4 * t1031;
         let t1043 = c_rod_leg2 * t1042;
         let t1087 = t704 * t1020 + t1023 * t705 + t355 * t373;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t139 * t410 - t415 * t406 + t421 * t422, rate_dot_arm_leg1_2, 0.0, 0.0,
                 t476 * rate_dot_arm_leg4_2, -t496, 0.0, 0.0, t476 * t499, -t503, 0.0, 0.0,
@@ -7938,10 +7966,10 @@ impl Delta4 {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        _pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [acceleration[2] + 9.81]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -7958,11 +7986,11 @@ impl Delta4 {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 12],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [acceleration[2] + 9.81]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -7981,11 +8009,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -8204,7 +8232,9 @@ impl Delta4 {
                 + minus_garm_vz_leg3 * t330 + minus_garm_vz_leg4 * t356) - t217 * t368;
         let t381 = t229 * t380;
         let t383 = t173 * t368 - t217 * t381;
-        Ok([[t111 * t358 - t163 * t383 + t207 * t381], [t383], [t381 + 9.81]])
+        ::core::result::Result::Ok([
+            [t111 * t358 - t163 * t383 + t207 * t381], [t383], [t381 + 9.81],
+        ])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -8221,10 +8251,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let t1 = pose[1] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -8328,7 +8358,7 @@ impl Delta4 {
             - minus_garm_vz_leg1 * garm_vx_leg3) * t135 * acceleration[1]
             - (garm_vy_leg1 * minus_garm_vz_leg3 - minus_garm_vz_leg1 * garm_vy_leg3)
                 * t135 * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t143
                     + (garm_vy_leg2 * garm_vx_leg3 - garm_vx_leg2 * garm_vy_leg3) * t135
@@ -8358,9 +8388,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -8471,7 +8501,7 @@ impl Delta4 {
         let s_armcross_leg4 = s_arm_leg4 * c_cross_leg4
             - minus_c_arm_leg4 * s_cross_leg4;
         let minus_garm_vz_leg4 = s_armcross_leg4 * t103;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
@@ -8493,9 +8523,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[0] * pose[0];
         let t2 = 1.0 - 3.5599857600569598 * t0;
         ::overact::guard::reach(t2, "leg2")?;
@@ -8628,7 +8658,7 @@ impl Delta4 {
             + torques[3]
                 * (garm_vx_leg4 * (t132 * t149) - garm_vy_leg4 * (t141 * t149)
                     - minus_garm_vz_leg4 * (t146 * t149));
-        Ok([
+        ::core::result::Result::Ok([
             torques[0]
                 + torques[3]
                     * (t173
@@ -8659,11 +8689,11 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 70],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 70],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -9134,7 +9164,7 @@ impl Delta4 {
         let t966 = (t952 - t922 * t899) / t965;
         let t968 = t835 * t899 - t922 * t966;
         let t972 = t805 * t813 - t825 * t968 + t912 * t966;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t972 + garm_vy_leg1 * t968 - minus_garm_vz_leg1 * t966,
             garm_vx_leg2 * t972 + garm_vy_leg2 * t968 - minus_garm_vz_leg2 * t966,
             garm_vx_leg3 * t972 + garm_vy_leg3 * t968 - minus_garm_vz_leg3 * t966,
@@ -9157,12 +9187,12 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 70],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 70],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_rod_leg2, c_rod_leg2), (s_cross_leg2, c_cross_leg2),
         (s_arm_leg2, c_arm_leg2), (s_rod_leg3, c_rod_leg3), (s_cross_leg3, c_cross_leg3),
@@ -9578,7 +9608,7 @@ impl Delta4 {
         let t908 = (t894 - t864 * t841) / t907;
         let t910 = t777 * t841 - t864 * t908;
         let t914 = t747 * t755 - t767 * t910 - t861 * t908;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t914 + garm_vy_leg1 * t910 - minus_garm_vz_leg1 * t908,
             garm_vy_leg2 * t910 - minus_garm_vx_leg2 * t914 - minus_garm_vz_leg2 * t908,
             -(minus_garm_vx_leg3 * t914 + minus_garm_vy_leg3 * t910
@@ -9602,12 +9632,12 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        parameters: &[f64; 70],
-        start: &[f64; 3],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 70],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
@@ -10121,7 +10151,7 @@ impl Delta4 {
         let t1053 = t230 * (t1050 - t218 * t1019);
         let t1055 = t174 * t1019 - t218 * t1053;
         let t1059 = t111 * t954 - t164 * t1055 + t208 * t1053;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t1059 + garm_vy_leg1 * t1055 - minus_garm_vz_leg1 * t1053,
             garm_vx_leg2 * t1059 + garm_vy_leg2 * t1055 - minus_garm_vz_leg2 * t1053,
             garm_vx_leg3 * t1059 + garm_vy_leg3 * t1055 - minus_garm_vz_leg3 * t1053,
@@ -10141,9 +10171,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 70],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 70],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -10579,7 +10609,7 @@ impl Delta4 {
         let t893 = minus_minus_garm_vz_leg2 * t678 - minus_gcross_vz_leg2 * t697
             - (minus_gcross_vz_leg1 * t651 - minus_minus_garm_vz_leg1 * t632)
             + gcross_vz_leg3 * t752 + minus_minus_garm_vz_leg3 * t733;
-        Ok([
+        ::core::result::Result::Ok([
             [t354 + t355, t608, t811],
             [
                 t608, t844 + garm_vy_leg4 * t577 - minus_gcross_vy_leg4 * t596 + t355, t882,
@@ -10603,10 +10633,10 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 70],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 70],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -11031,7 +11061,7 @@ impl Delta4 {
                 + minus_garm_vz_leg1 * t146 + minus_gcross_vz_leg1 * t184);
         let gcross_vz_leg4 = minus_grod_vx_leg2 * (t586 * s_arm_leg4);
         let minus_garm_vz_leg4 = s_armcross_leg4 * t587;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t146 - minus_gcross_vx_leg1 * t184 + t394
                 + garm_vx_leg3 * t532 - minus_gcross_vx_leg3 * t570 + t766,
             t791 + garm_vy_leg2 * t337 - minus_gcross_vy_leg2 * t374 + t820
@@ -11056,12 +11086,12 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 70],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 70],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -11556,7 +11586,7 @@ impl Delta4 {
             - preload[0]
                 * ((garm_vx_leg3 * t993 + garm_vy_leg3 * t989
                     - minus_garm_vz_leg3 * t987) * t1006);
-        Ok([
+        ::core::result::Result::Ok([
             t1009, t1022, t1035,
             garm_vx_leg4 * t973 + garm_vy_leg4 * t969 - minus_garm_vz_leg4 * t967
                 + preload[0] * (t1004 * t1006),
@@ -11575,9 +11605,9 @@ impl Delta4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -11722,7 +11752,7 @@ impl Delta4 {
         let t236 = t224 / t235;
         let t238 = t169 * t178 - t213 * t236;
         let t242 = t106 * t114 - t159 * t238 + t203 * t236;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t242 + garm_vy_leg1 * t238 - minus_garm_vz_leg1 * t236,
             garm_vx_leg2 * t242 + garm_vy_leg2 * t238 - minus_garm_vz_leg2 * t236,
             garm_vx_leg3 * t242 + garm_vy_leg3 * t238 - minus_garm_vz_leg3 * t236,
@@ -11740,7 +11770,9 @@ impl Delta4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
         let t1 = pose[0] + 0.05 - 0.2;
         let t3 = pose[2] * pose[2];
         let t4 = t1 * t1 + t3;
@@ -11881,7 +11913,7 @@ impl Delta4 {
         let t232 = 1.0
             - (garm_vx_leg4 * t221 + garm_vy_leg4 * t217 - minus_garm_vz_leg4 * t215);
         let t234 = 1.0 / ::overact::math::sqrt(t232);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -((garm_vx_leg1 * t221 + garm_vy_leg1 * t217 - minus_garm_vz_leg1 * t215)
                     * t234),
@@ -11902,10 +11934,10 @@ impl Delta4 {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let from = |mut pose: [f64; Self::POSE]| {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
             ::overact::forward::gauss_newton(
                     ::overact::forward::Measured {
                         positions: actuators,
@@ -11925,7 +11957,7 @@ impl Delta4 {
                             .copy_from_slice(
                                 Self::inverse_jacobian(pose)?.as_flattened(),
                             );
-                        Ok(())
+                        ::core::result::Result::Ok(())
                     },
                     ::overact::forward::displace,
                 )
@@ -11933,8 +11965,8 @@ impl Delta4 {
         };
         from(*start)
             .or_else(|error| match Self::pose_in_closed_form(actuators) {
-                Ok(pose) => from(pose),
-                Err(_) => Err(error),
+                ::core::result::Result::Ok(pose) => from(pose),
+                ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
             })
     }
 }
@@ -11965,9 +11997,9 @@ impl ::overact::Model for Delta4 {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -12003,7 +12035,7 @@ impl ::overact::Model for Delta4 {
                     3,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -12027,7 +12059,7 @@ impl ::overact::Model for Delta4 {
                 ::overact::block::map1(4, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -12038,14 +12070,14 @@ impl ::overact::Model for Delta4 {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

@@ -4,45 +4,63 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 64 standard parameters, 49 base parameters.
 /// Source: Briot, Krut, Gautier 2015, sections 5.1 and 5.2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct DualV;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl DualV {
     /// The robot's name.
-    pub const NAME: &'static str = "DualV";
+    pub const NAME: &'static ::core::primitive::str = "DualV";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 4;
+    pub const ACTUATORS: ::core::primitive::usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const LEGS: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
         "leg4.1", "leg4.2", "leg4.3",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 3, 6, 9,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.353104842321743, 1.5754853789017922, -0.7869975676342108, 0.7884878112680508,
         -1.5754853789017937, 3.928590221224005, -0.7884878112680508, 1.5754853789017937,
         -0.7869975676342119, 3.9300804648578436, -1.5754853789017924, -2.3545950859555824,
@@ -243,8 +261,8 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s1_leg2, c1_leg2), (s1_leg3, c1_leg3),
         (s1_leg4, c1_leg4)] = ::overact::math::sin_cos_all([
             actuators[0], actuators[1], actuators[2], actuators[3],
@@ -272,7 +290,7 @@ impl DualV {
         let t60 = t45 - t22;
         let t62 = t57 - t52;
         let t68 = 1.0 / ::overact::math::sqrt(0.0484 * (t62 * t62 + t60 * t60));
-        Ok([
+        ::core::result::Result::Ok([
             0.5 * (t22 + t45), 0.5 * (t52 + t57),
             ::overact::math::atan2(0.22 * t60 * t68, -(0.22 * t62 * t68)),
         ])
@@ -288,7 +306,9 @@ impl DualV {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t4 = pose[1] + t2 - 0.10970563941232059;
@@ -352,7 +372,7 @@ impl DualV {
         let s12_leg4 = 3.5714285714285716 * (t108 - t171);
         let c3_leg4 = c_phi * c12_leg4 + s_phi * s12_leg4;
         let s3_leg4 = s_phi * c12_leg4 - c_phi * s12_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(2.5175667811089752 * t16 + 2.533171834572799 * t20),
                 2.533171834572799 * t16 - 2.5175667811089752 * t20,
@@ -414,7 +434,9 @@ impl DualV {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t4 = pose[1] + t2 - 0.10970563941232059;
@@ -450,7 +472,7 @@ impl DualV {
         let t78 = ::overact::math::sqrt(t77);
         let t80 = 0.5 * t72 - t49 * t78;
         let t83 = t50 + t72 * t78;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(2.5175667811089752 * t16 + 2.533171834572799 * t20),
                 2.533171834572799 * t16 - 2.5175667811089752 * t20,
@@ -480,7 +502,9 @@ impl DualV {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -536,7 +560,7 @@ impl DualV {
         let g1_wz_leg2 = t2 * minus_g1_vy_leg2 + t6 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
@@ -556,9 +580,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t6 = joints[3] + joints[4];
         let t12 = joints[6] + joints[7];
@@ -590,7 +614,7 @@ impl DualV {
         let minus_g1_wz_leg2 = t30 * g1_vy_leg2 + t32 * g1_vx_leg2;
         let g1_wz_leg3 = t30 * g1_vy_leg3 + t32 * g1_vx_leg3;
         let g1_wz_leg4 = t30 * g1_vy_leg4 + t32 * g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [g1_vx_leg1, g1_vy_leg1, -minus_g1_wz_leg1],
             [g1_vx_leg2, g1_vy_leg2, -minus_g1_wz_leg2], [g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
             [g1_vx_leg4, g1_vy_leg4, g1_wz_leg4],
@@ -607,7 +631,9 @@ impl DualV {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -699,7 +725,7 @@ impl DualV {
         let t189 = minus_g1_vx_leg4 * t90 - minus_g1_vy_leg4;
         let t195 = t145 * (minus_g1_vx_leg4 * t130 - minus_g1_wz_leg4 - t133 * t189);
         let t197 = t100 * t189 - t133 * t195;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 g1_vx_leg1 * t67 - t90 * t152 + t130 * t150,
                 -(minus_g1_vx_leg2 * t67 + t90 * t167 + t130 * t165),
@@ -721,9 +747,9 @@ impl DualV {
     /// 28 operations (12 additions, 16 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 28 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let t2 = joints[0] + joints[1];
         let t13 = joints[3] + joints[4];
         let t24 = joints[6] + joints[7];
@@ -783,9 +809,9 @@ impl DualV {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 2 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 12],
-    ) -> [[f64; 3]; 12] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 12] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t3 = 0.11 * s_phi;
@@ -808,9 +834,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t4 = joints[3] + joints[4];
         let t8 = joints[6] + joints[7];
@@ -842,7 +868,7 @@ impl DualV {
         let g1_vy_leg4 = s12_leg4 * t53;
         let g1_vx_leg4 = c12_leg4 * t53;
         let g1_wz_leg4 = t26 * g1_vy_leg4 + t29 * g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [0.28 * c12_leg1, 0.28 * s12_leg1, -(0.0784 * s2_leg1 * minus_g1_wz_leg1)],
             [0.28 * c12_leg2, 0.28 * s12_leg2, -(0.0784 * s2_leg2 * minus_g1_wz_leg2)],
             [0.28 * c12_leg3, 0.28 * s12_leg3, 0.0784 * s2_leg3 * g1_wz_leg3],
@@ -860,9 +886,9 @@ impl DualV {
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 4 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
         ]);
@@ -884,9 +910,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -968,7 +994,7 @@ impl DualV {
         let g2_vx_leg4 = t109 * t112;
         let g2_vy_leg4 = t116 * t112;
         let rate_2_leg4 = g2_vx_leg4 * t84 + g2_vy_leg4 * t91;
-        Ok([
+        ::core::result::Result::Ok([
             rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), minus_rate_2_leg1 + twist[2],
             -minus_rate_1_leg2, minus_rate_1_leg2 + rate_2_leg2, twist[2] - rate_2_leg2,
             rate_1_leg3, -(rate_1_leg3 + minus_rate_2_leg3), minus_rate_2_leg3 + twist[2],
@@ -989,10 +1015,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -1116,7 +1142,7 @@ impl DualV {
             * (t184 * t132 + t188 * t139 + 0.0784 * t196 + t204 * t206);
         let rate_dot_2_leg4 = t180
             * (t183 * t132 + t187 * t139 + 0.0784 * t204 + t196 * t206);
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_1_leg1, -(rate_dot_1_leg1 + minus_rate_dot_2_leg1),
             minus_rate_dot_2_leg1 + acceleration[2], -minus_rate_dot_1_leg2,
             minus_rate_dot_1_leg2 + rate_dot_2_leg2, acceleration[2] - rate_dot_2_leg2,
@@ -1138,9 +1164,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -1233,7 +1259,7 @@ impl DualV {
         ::overact::guard::platform(t169, 0.3076928490286828, "actuators")?;
         let t170 = t158 / t169;
         let t172 = t107 * t116 - t147 * t170;
-        Ok([t66 * t74 - t97 * t172 - t144 * t170, t172, t170])
+        ::core::result::Result::Ok([t66 * t74 - t97 * t172 - t144 * t170, t172, t170])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1249,10 +1275,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -1398,7 +1424,7 @@ impl DualV {
         ::overact::guard::platform(t269, 0.3076928490286828, "actuators")?;
         let t270 = t258 / t269;
         let t272 = t207 * t216 - t247 * t270;
-        Ok([t180 * t188 - t197 * t272 - t244 * t270, t272, t270])
+        ::core::result::Result::Ok([t180 * t188 - t197 * t272 - t244 * t270, t272, t270])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1415,10 +1441,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] + t2;
@@ -1616,7 +1642,7 @@ impl DualV {
         let t450 = 1.0 - g2_wz_leg4;
         let t455 = 9.090909090909092 * t39;
         let t456 = 9.090909090909092 * t30;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t63, t63, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t83,
@@ -1704,11 +1730,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -1860,7 +1886,7 @@ impl DualV {
         let t412 = minus_g2_wz_leg4 + 1.0;
         let t417 = 9.090909090909092 * t25;
         let t418 = 9.090909090909092 * t19;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t48, t48, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t67,
@@ -1947,11 +1973,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -2231,7 +2257,7 @@ impl DualV {
         let t620 = 1.0 - g2_wz_leg4;
         let t625 = 9.090909090909092 * t314;
         let t626 = 9.090909090909092 * t310;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t321, t321, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t338,
@@ -2318,10 +2344,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -2550,7 +2576,7 @@ impl DualV {
         let t507 = t465 + t155;
         let t509 = t214 - t468;
         let t519 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, -t137, t177 - 0.28 * (rate_dot_1_leg1 - t137),
@@ -2621,11 +2647,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -2813,7 +2839,7 @@ impl DualV {
         let t472 = t133 - t433;
         let t474 = t436 + t193;
         let t484 = c_phi * acceleration[1] - s_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, -t127, t155 - 0.28 * (rate_dot_1_leg1 - t127), t123 - t118 * t37,
@@ -2880,11 +2906,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 64]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 64]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -3186,7 +3212,7 @@ impl DualV {
         let t665 = t623 + t375;
         let t667 = t434 - t626;
         let t677 = c_phi * t309 - s_phi * t313;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, -t360, t397 - 0.28 * (rate_dot_1_leg1 - t360),
@@ -3256,10 +3282,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t3 = t2 * twist[2];
@@ -3428,7 +3454,7 @@ impl DualV {
         let t385 = minus_g2_wz_leg3 + 1.0;
         let t387 = twist[2] - rate_2_leg4;
         let t390 = 1.0 - g2_wz_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
@@ -3523,11 +3549,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -3646,7 +3672,7 @@ impl DualV {
         let t345 = minus_g2_wz_leg3 + 1.0;
         let t347 = minus_rate_2_leg4 + twist[2];
         let t350 = minus_g2_wz_leg4 + 1.0;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 g1_vx_leg2 * rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
@@ -3740,11 +3766,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -3977,7 +4003,7 @@ impl DualV {
         let t538 = minus_g2_wz_leg3 + 1.0;
         let t540 = rate_3_leg1 - rate_2_leg4;
         let t543 = 1.0 - g2_wz_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t304, t307, t316, g1_vx_leg1 * rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3,
@@ -4070,10 +4096,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -4274,7 +4300,7 @@ impl DualV {
         let t468 = t76 - t373;
         let t470 = t387 + t81;
         let t472 = t83 - t370;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t76 * acceleration[2], t91 * t96 - t101 * t106 + t76 * t111,
                 t101 * t96 + t91 * t106 - t76 * t142,
@@ -4341,11 +4367,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
         (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi),
         (s1_leg4, c1_leg4), (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -4504,7 +4530,7 @@ impl DualV {
         let t433 = t70 - t345;
         let t435 = t72 - t359;
         let t437 = t362 + t77;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t70 * acceleration[2], t82 * t87 - t92 * t97 + t70 * t102,
                 t92 * t87 + t82 * t97 - t70 * t124, t92 * acceleration[0] - t82 * acceleration[1],
@@ -4569,11 +4595,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 49]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 49]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -4847,7 +4873,7 @@ impl DualV {
         let t628 = t77 - t531;
         let t630 = t545 + t323;
         let t632 = t325 - t548;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t77 * rate_dot_3_leg1, t330 * t333 - t338 * t341 + t77 * t354,
                 t338 * t333 + t330 * t341 - t77 * t382, t338 * t352 - t330 * t346, rate_dot_1_leg1,
@@ -4910,10 +4936,10 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 4]; 3] {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 4]; 3] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t5 = 0.11 * s_phi;
@@ -4942,11 +4968,11 @@ impl DualV {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 4]; 3] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 4]; 3] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t5 = 0.11 * s_phi;
@@ -4977,11 +5003,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 4]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -5150,7 +5176,7 @@ impl DualV {
         let t311 = 9.090909090909092 * (t182 - t3 * rate_dot_3_leg1);
         let t314 = t145 * t302 - t146 * rate_dot_3_leg1;
         let t320 = t115 * t291 - t142 * t314 - t116 * rate_dot_3_leg1;
-        Ok([
+        ::core::result::Result::Ok([
             [0.0, -t308, t311, t320], [0.0, -t311, -t308, t314],
             [
                 rate_dot_3_leg1, c_phi * t314 - s_phi * t320, -(s_phi * t314 + c_phi * t320), 0.0,
@@ -5172,10 +5198,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 4]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -5238,7 +5264,7 @@ impl DualV {
         let t119 = (minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t69;
         let t136 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t145 = t77 * t136;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t70 * acceleration[2], t85 * t90 - t95 * t100 + t70 * t105,
                 t95 * t90 + t85 * t100 - t70 * t136, t95 * acceleration[0] - t85 * acceleration[1],
@@ -5267,9 +5293,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -5325,7 +5351,7 @@ impl DualV {
         let minus_g1_wz_leg1 = t2 * g1_vy_leg1 + t6 * g1_vx_leg1;
         let g1_wz_leg3 = t2 * g1_vy_leg3 + t6 * g1_vx_leg3;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * torques[0] - minus_g1_vx_leg2 * torques[1]
                 + g1_vx_leg3 * torques[2] - minus_g1_vx_leg4 * torques[3],
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -5347,9 +5373,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t4 = pose[1] - t2 + 0.10970563941232059;
@@ -5420,7 +5446,7 @@ impl DualV {
             * ((minus_g1_wz_leg1 * g1_vx_leg3 + g1_vx_leg1 * g1_wz_leg3) * t91)
             - minus_g1_vx_leg4
                 * ((minus_g1_wz_leg1 * g1_vy_leg3 + g1_vy_leg1 * g1_wz_leg3) * t91);
-        Ok([
+        ::core::result::Result::Ok([
             torques[0]
                 + torques[3]
                     * (t103
@@ -5455,11 +5481,11 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 68],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 68],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -5737,7 +5763,7 @@ impl DualV {
         let t574 = t562 / t573;
         let t576 = t449 * t478 - t509 * t574;
         let t580 = t422 * t430 - t439 * t576 - t506 * t574;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * t580 + g1_vy_leg1 * t576 - minus_g1_wz_leg1 * t574,
             g1_wz_leg2 * t574 - (minus_g1_vx_leg2 * t580 + minus_g1_vy_leg2 * t576),
             g1_vx_leg3 * t580 + g1_vy_leg3 * t576 + g1_wz_leg3 * t574,
@@ -5761,12 +5787,12 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 68],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 68],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s1_leg4, c1_leg4),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
@@ -5994,7 +6020,7 @@ impl DualV {
         let t536 = t524 / t535;
         let t538 = t411 * t440 - t471 * t536;
         let t542 = t384 * t392 - t401 * t538 - t468 * t536;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * t542 + g1_vy_leg1 * t538 - minus_g1_wz_leg1 * t536,
             g1_vx_leg2 * t542 + g1_vy_leg2 * t538 - minus_g1_wz_leg2 * t536,
             g1_vx_leg3 * t542 + g1_vy_leg3 * t538 + g1_wz_leg3 * t536,
@@ -6017,12 +6043,12 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        parameters: &[f64; 68],
-        start: &[f64; 3],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 68],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
@@ -6349,7 +6375,7 @@ impl DualV {
         let t675 = t149 * t674;
         let t677 = t145 * t620 - t146 * t675;
         let t681 = t71 * t590 - t142 * t677 - t116 * t675;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * t681 + g1_vy_leg1 * t677 - minus_g1_wz_leg1 * t675,
             g1_wz_leg2 * t675 - (minus_g1_vx_leg2 * t681 + minus_g1_vy_leg2 * t677),
             g1_vx_leg3 * t681 + g1_vy_leg3 * t677 + g1_wz_leg3 * t675,
@@ -6370,9 +6396,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 68],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 68],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -6576,7 +6602,7 @@ impl DualV {
                     + parameters[66] * t413);
         let t474 = g2_wz_leg1 * t320 - minus_g1_wz_leg1 * t314 + g1_wz_leg2 * t349
             - minus_g2_wz_leg2 * t335 + g1_wz_leg3 * t373 - minus_g2_wz_leg3 * t379;
-        Ok([
+        ::core::result::Result::Ok([
             [t174 + t175, t293, t423],
             [t293, t434 + g2_vy_leg4 * t276 - minus_g1_vy_leg4 * t290 + t175, t463],
             [
@@ -6600,10 +6626,10 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 68],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 68],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -6836,7 +6862,9 @@ impl DualV {
             - minus_g2_wz_leg3 * t302 + t301;
         let g2_wz_leg4 = t2 * g2_vy_leg4 + t6 * g2_vx_leg4;
         let minus_g1_wz_leg4 = t2 * minus_g1_vy_leg4 + t6 * minus_g1_vx_leg4;
-        Ok([t410, t433, t465 + g2_wz_leg4 * t373 - minus_g1_wz_leg4 * t397 + t372])
+        ::core::result::Result::Ok([
+            t410, t433, t465 + g2_wz_leg4 * t373 - minus_g1_wz_leg4 * t397 + t372,
+        ])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -6854,12 +6882,12 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 68],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 68],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -7161,7 +7189,7 @@ impl DualV {
         let t643 = g1_vx_leg3 * t581 + g1_vy_leg3 * t577 + g1_wz_leg3 * t575
             - preload[0]
                 * ((g1_vy_leg3 * t596 - g1_vx_leg3 * t602 + g1_wz_leg3 * t594) * t614);
-        Ok([
+        ::core::result::Result::Ok([
             t617, t630, t643,
             preload[0] * (t612 * t614)
                 - (minus_g1_vx_leg4 * t581 + minus_g1_vy_leg4 * t577
@@ -7181,9 +7209,9 @@ impl DualV {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = pose[0] - t2;
@@ -7272,7 +7300,7 @@ impl DualV {
         let t170 = t158 / t169;
         let t172 = t107 * t116 - t147 * t170;
         let t176 = t66 * t74 - t97 * t172 - t144 * t170;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * t176 + g1_vy_leg1 * t172 - minus_g1_wz_leg1 * t170,
             g1_wz_leg2 * t170 - (minus_g1_vx_leg2 * t176 + minus_g1_vy_leg2 * t172),
             g1_vx_leg3 * t176 + g1_vy_leg3 * t172 + g1_wz_leg3 * t170,
@@ -7291,7 +7319,9 @@ impl DualV {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * c_phi;
         let t4 = pose[1] + t2 - 0.10970563941232059;
@@ -7378,7 +7408,7 @@ impl DualV {
             - (minus_g1_vx_leg4 * t156 - minus_g1_vy_leg4 * t150
                 - minus_g1_wz_leg4 * t148);
         let t168 = 1.0 / ::overact::math::sqrt(t166);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -((g1_vy_leg1 * t150 - g1_vx_leg1 * t156 - minus_g1_wz_leg1 * t148)
                     * t168),
@@ -7396,10 +7426,10 @@ impl DualV {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let from = |mut pose: [f64; Self::POSE]| {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
             ::overact::forward::gauss_newton(
                     ::overact::forward::Measured {
                         positions: actuators,
@@ -7419,7 +7449,7 @@ impl DualV {
                             .copy_from_slice(
                                 Self::inverse_jacobian(pose)?.as_flattened(),
                             );
-                        Ok(())
+                        ::core::result::Result::Ok(())
                     },
                     ::overact::forward::displace,
                 )
@@ -7427,8 +7457,8 @@ impl DualV {
         };
         from(*start)
             .or_else(|error| match Self::pose_in_closed_form(actuators) {
-                Ok(pose) => from(pose),
-                Err(_) => Err(error),
+                ::core::result::Result::Ok(pose) => from(pose),
+                ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
             })
     }
 }
@@ -7459,9 +7489,9 @@ impl ::overact::Model for DualV {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -7497,7 +7527,7 @@ impl ::overact::Model for DualV {
                     12,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -7521,7 +7551,7 @@ impl ::overact::Model for DualV {
                 ::overact::block::map1(4, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -7532,14 +7562,14 @@ impl ::overact::Model for DualV {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

@@ -4,42 +4,52 @@
 ///
 /// 1 legs, 1 joints, 1 actuators, 1 degrees of freedom; 5 standard parameters, 4 base parameters.
 /// Source: Janot, Gautier, Brunot, Workshop on Nonlinear System Identification Benchmarks 2019.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Emps;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Emps {
     /// The robot's name.
-    pub const NAME: &'static str = "Emps";
+    pub const NAME: &'static ::core::primitive::str = "Emps";
     /// Numbers in a pose.
-    pub const POSE: usize = 1;
+    pub const POSE: ::core::primitive::usize = 1;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 1;
+    pub const DOF: ::core::primitive::usize = 1;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 1;
+    pub const ACTUATORS: ::core::primitive::usize = 1;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 1;
+    pub const JOINTS: ::core::primitive::usize = 1;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 1] = ["axis"];
+    pub const LEGS: [&'static ::core::primitive::str; 1] = ["axis"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 1] = ["1"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 1] = ["1"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 1] = ["1"];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 1] = ["q_1"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["q_1"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [false];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [false];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 1] = [0];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 1] = [0];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [0.0];
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [0.0];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 5] = {
         use ::overact::{Parameter, Symbol};
@@ -71,7 +81,7 @@ impl Emps {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joints(joints: &[f64; 1]) -> [f64; 1] {
+    pub fn joints(joints: &[::core::primitive::f64; 1]) -> [::core::primitive::f64; 1] {
         [joints[0]]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -83,7 +93,9 @@ impl Emps {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn actuator_positions(joints: &[f64; 1]) -> [f64; 1] {
+    pub fn actuator_positions(
+        joints: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [joints[0]]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -95,7 +107,9 @@ impl Emps {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn inverse_jacobian(_joints: &[f64; 1]) -> [[f64; 1]; 1] {
+    pub fn inverse_jacobian(
+        _joints: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 1]; 1] {
         [[1.0]]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -109,9 +123,9 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_velocities(
-        _joints: &[f64; 1],
-        joint_velocities: &[f64; 1],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [joint_velocities[0]]
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -126,10 +140,10 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_accelerations(
-        _joints: &[f64; 1],
-        _joint_velocities: &[f64; 1],
-        joint_accelerations: &[f64; 1],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        _joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [joint_accelerations[0]]
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -143,9 +157,9 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn twist_from_actuators(
-        _joints: &[f64; 1],
-        actuator_velocities: &[f64; 1],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        actuator_velocities: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [actuator_velocities[0]]
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
@@ -160,10 +174,10 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn acceleration_from_actuators(
-        _joints: &[f64; 1],
-        _joint_velocities: &[f64; 1],
-        actuator_accelerations: &[f64; 1],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        _joint_velocities: &[::core::primitive::f64; 1],
+        actuator_accelerations: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [actuator_accelerations[0]]
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -179,10 +193,10 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform(
-        _joints: &[f64; 1],
-        joint_velocities: &[f64; 1],
-        joint_accelerations: &[f64; 1],
-    ) -> [[f64; 5]; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 5]; 1] {
         [
             [
                 joint_accelerations[0], joint_accelerations[0], joint_velocities[0],
@@ -203,10 +217,10 @@ impl Emps {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
-        _joints: &[f64; 1],
-        joint_velocities: &[f64; 1],
-        joint_accelerations: &[f64; 1],
-    ) -> [[f64; 4]; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 4]; 1] {
         [
             [
                 joint_accelerations[0], joint_velocities[0],
@@ -224,7 +238,10 @@ impl Emps {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_platform(_joints: &[f64; 1], torques: &[f64; 1]) -> [f64; 1] {
+    pub fn project_platform(
+        _joints: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 1] {
         [torques[0]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -240,11 +257,11 @@ impl Emps {
     /// 7 operations (4 additions, 3 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 7 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
-        _joints: &[f64; 1],
-        joint_velocities: &[f64; 1],
-        joint_accelerations: &[f64; 1],
-        parameters: &[f64; 5],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        joint_accelerations: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 5],
+    ) -> [::core::primitive::f64; 1] {
         [
             joint_accelerations[0] * parameters[0]
                 + joint_accelerations[0] * parameters[1]
@@ -263,7 +280,10 @@ impl Emps {
     ///
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn mass_matrix(_joints: &[f64; 1], parameters: &[f64; 5]) -> [[f64; 1]; 1] {
+    pub fn mass_matrix(
+        _joints: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 5],
+    ) -> [[::core::primitive::f64; 1]; 1] {
         [[parameters[0] + parameters[1]]]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -278,10 +298,10 @@ impl Emps {
     /// 3 operations (2 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 3 intermediates.
     #[must_use]
     pub fn bias(
-        _joints: &[f64; 1],
-        joint_velocities: &[f64; 1],
-        parameters: &[f64; 5],
-    ) -> [f64; 1] {
+        _joints: &[::core::primitive::f64; 1],
+        joint_velocities: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 5],
+    ) -> [::core::primitive::f64; 1] {
         [
             joint_velocities[0] * parameters[2]
                 + ::overact::math::signed(parameters[3], joint_velocities[0])
@@ -293,10 +313,10 @@ impl Emps {
     /// # Errors
     /// None for a robot without a loop, whose pose is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        _start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        Ok(*actuators)
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        _start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::core::result::Result::Ok(*actuators)
     }
 }
 impl ::overact::Model for Emps {
@@ -326,16 +346,16 @@ impl ::overact::Model for Emps {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(
                     1,
                     inputs,
                     output,
-                    |joints| Ok(Self::joints(joints)),
+                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
                 )
             }
             ::overact::Function::ActuatorPositions => {
@@ -343,7 +363,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints| Ok(Self::actuator_positions(joints)),
+                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
                 )
             }
             ::overact::Function::InverseJacobian => {
@@ -351,7 +371,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints| Ok(Self::inverse_jacobian(joints)),
+                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
                 )
             }
             ::overact::Function::JointVelocities => {
@@ -359,7 +379,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, joint_velocities| Ok(
+                    |joints, joint_velocities| ::core::result::Result::Ok(
                         Self::joint_velocities(joints, joint_velocities),
                     ),
                 )
@@ -369,7 +389,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::joint_accelerations(
                             joints,
                             joint_velocities,
@@ -383,7 +403,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, actuator_velocities| Ok(
+                    |joints, actuator_velocities| ::core::result::Result::Ok(
                         Self::twist_from_actuators(joints, actuator_velocities),
                     ),
                 )
@@ -393,7 +413,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, joint_velocities, actuator_accelerations| Ok(
+                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
                         Self::acceleration_from_actuators(
                             joints,
                             joint_velocities,
@@ -407,7 +427,7 @@ impl ::overact::Model for Emps {
                     5,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::idm_red_platform(
                             joints,
                             joint_velocities,
@@ -421,7 +441,9 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, torques| Ok(Self::project_platform(joints, torques)),
+                    |joints, torques| ::core::result::Result::Ok(
+                        Self::project_platform(joints, torques),
+                    ),
                 )
             }
             ::overact::Function::InverseDynamics => {
@@ -429,7 +451,7 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations, parameters| Ok(
+                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
                         Self::inverse_dynamics(
                             joints,
                             joint_velocities,
@@ -444,7 +466,9 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, parameters| Ok(Self::mass_matrix(joints, parameters)),
+                    |joints, parameters| ::core::result::Result::Ok(
+                        Self::mass_matrix(joints, parameters),
+                    ),
                 )
             }
             ::overact::Function::Bias => {
@@ -452,13 +476,13 @@ impl ::overact::Model for Emps {
                     1,
                     inputs,
                     output,
-                    |joints, joint_velocities, parameters| Ok(
+                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
                         Self::bias(joints, joint_velocities, parameters),
                     ),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -469,14 +493,14 @@ impl ::overact::Model for Emps {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

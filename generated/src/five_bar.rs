@@ -4,44 +4,56 @@
 ///
 /// 2 legs, 4 joints, 2 actuators, 2 degrees of freedom; 25 standard parameters, 19 base parameters.
 /// Source: Five-bar linkage; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct FiveBar;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl FiveBar {
     /// The robot's name.
-    pub const NAME: &'static str = "FiveBar";
+    pub const NAME: &'static ::core::primitive::str = "FiveBar";
     /// Numbers in a pose.
-    pub const POSE: usize = 2;
+    pub const POSE: ::core::primitive::usize = 2;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 2;
+    pub const DOF: ::core::primitive::usize = 2;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 2;
+    pub const ACTUATORS: ::core::primitive::usize = 2;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 4;
+    pub const JOINTS: ::core::primitive::usize = 4;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 2] = ["left", "right"];
+    pub const LEGS: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 2] = ["left", "right"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 4] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 4] = [
         "left.1", "left.2", "right.1", "right.2",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 2] = ["x", "y"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 2];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 2] = [0, 1];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.3];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.3];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.160380669573568, -1.595798931694268, 0.981211984016226, 1.5957989316942673,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -134,8 +146,8 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let [(s1_left, c1_left), (s1_right, c1_right)] = ::overact::math::sin_cos_all([
             actuators[0], actuators[1],
         ]);
@@ -147,7 +159,9 @@ impl FiveBar {
         let t18 = (0.0625 - 0.25 * t15) / t15;
         ::overact::guard::reach(t18, "left")?;
         let t19 = ::overact::math::sqrt(t18);
-        Ok([t3 + 0.5 * t8 - t12 * t19, 0.2 * s1_left + 0.1 * t11 + t8 * t19])
+        ::core::result::Result::Ok([
+            t3 + 0.5 * t8 - t12 * t19, 0.2 * s1_left + 0.1 * t11 + t8 * t19,
+        ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -160,7 +174,9 @@ impl FiveBar {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 2]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -184,7 +200,7 @@ impl FiveBar {
         let t52 = t36 * t41 + pose[1] * t46;
         let t60 = t38 * t46;
         let t62 = t38 - 0.1025;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(2.7800779418373094 * t13 + 4.155859313945749 * t17),
                 4.155859313945749 * t13 - 2.7800779418373094 * t17,
@@ -214,7 +230,9 @@ impl FiveBar {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 2]) -> Result<[f64; 2], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t4 = 1.0 / (t0 * t0 + t2);
@@ -232,7 +250,7 @@ impl FiveBar {
         let t36 = ::overact::math::sqrt(t35);
         let t38 = pose[1] * t31 - t26 * t36;
         let t42 = t26 * t31 + pose[1] * t36;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(2.7800779418373094 * t13 + 4.155859313945749 * t17),
                 4.155859313945749 * t13 - 2.7800779418373094 * t17,
@@ -254,7 +272,9 @@ impl FiveBar {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 2], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -280,7 +300,9 @@ impl FiveBar {
         let g1_vx_right = (t18 - (t18 * t23 + pose[1] * t28)) * t33;
         let minus_g1_vy_left = (pose[1] - (pose[1] * t6 + t0 * t11)) * t16;
         let g1_vy_right = (pose[1] - (pose[1] * t23 - t18 * t28)) * t33;
-        Ok([[-minus_g1_vx_left, -minus_g1_vy_left], [g1_vx_right, g1_vy_right]])
+        ::core::result::Result::Ok([
+            [-minus_g1_vx_left, -minus_g1_vy_left], [g1_vx_right, g1_vy_right],
+        ])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -295,9 +317,9 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-    ) -> Result<[[f64; 2]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t6 = joints[2] + joints[3];
         let [(s12_left, c12_left), (s2_left, _), (s12_right, c12_right), (s2_right, _),
@@ -310,7 +332,9 @@ impl FiveBar {
         let g1_vx_right = c12_right * t10;
         let g1_vy_left = s12_left * t4;
         let g1_vy_right = s12_right * t10;
-        Ok([[g1_vx_left, g1_vy_left], [g1_vx_right, g1_vy_right]])
+        ::core::result::Result::Ok([
+            [g1_vx_left, g1_vy_left], [g1_vx_right, g1_vy_right],
+        ])
     }
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
@@ -323,7 +347,9 @@ impl FiveBar {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 2], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -360,7 +386,7 @@ impl FiveBar {
         let t59 = 1.0 / t58;
         let t62 = t59 * (minus_g1_vx_left * t53 - minus_g1_vy_left);
         let t68 = t59 * (g1_vy_right - g1_vx_right * t53);
-        Ok([
+        ::core::result::Result::Ok([
             [-(minus_g1_vx_left * t38 + t53 * t62), g1_vx_right * t38 - t53 * t68], [t62, t68],
         ])
     }
@@ -375,9 +401,9 @@ impl FiveBar {
     /// 14 operations (6 additions, 8 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 14 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let t3 = joints[0] + joints[1];
         let t14 = joints[2] + joints[3];
         let [(s1_left, c1_left), (s12_left, c12_left), (s1_right, c1_right),
@@ -404,9 +430,9 @@ impl FiveBar {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 2],
-        _joints: &[f64; 4],
-    ) -> [[f64; 2]; 4] {
+        _pose: &[::core::primitive::f64; 2],
+        _joints: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 2]; 4] {
         [[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -420,9 +446,9 @@ impl FiveBar {
     /// 6 operations (2 additions, 4 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 6 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         let t0 = joints[0] + joints[1];
         let t4 = joints[2] + joints[3];
         let [(s12_left, c12_left), (s12_right, c12_right)] = ::overact::math::sin_cos_all([
@@ -441,9 +467,9 @@ impl FiveBar {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 2 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         let [(s2_left, _), (s2_right, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3],
         ]);
@@ -462,9 +488,9 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -504,7 +530,7 @@ impl FiveBar {
         let minus_g2_vy_right = t52 * t47;
         let minus_rate_2_right = minus_g2_vx_right * twist[0]
             + minus_g2_vy_right * twist[1];
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_1_left, minus_rate_1_left + rate_2_left, rate_1_right,
             -(rate_1_right + minus_rate_2_right),
         ])
@@ -523,10 +549,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -584,7 +610,7 @@ impl FiveBar {
             * (t67 * acceleration[0] + t72 * acceleration[1] + 0.0625 * t80 + t88 * t90);
         let minus_rate_dot_2_right = t63
             * (t66 * acceleration[0] + t71 * acceleration[1] + 0.04 * t88 + t80 * t90);
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_1_left, minus_rate_dot_1_left + rate_dot_2_left, rate_dot_1_right,
             -(rate_dot_1_right + minus_rate_dot_2_right),
         ])
@@ -602,9 +628,9 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -642,7 +668,7 @@ impl FiveBar {
         ::overact::guard::platform(t66, 14.323546684675748, "actuators")?;
         let t67 = (g1_vy_right * actuator_velocities[1]
             - minus_g1_vy_left * actuator_velocities[0] - t37 * t56) / t66;
-        Ok([t37 * t41 - t56 * t67, t67])
+        ::core::result::Result::Ok([t37 * t41 - t56 * t67, t67])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -658,10 +684,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -719,7 +745,7 @@ impl FiveBar {
             - t89 * t90;
         ::overact::guard::platform(t100, 14.323546684675748, "actuators")?;
         let t101 = (g1_vy_right * t39 - minus_g1_vy_left * t79 - t81 * t90) / t100;
-        Ok([t81 * t85 - t90 * t101, t101])
+        ::core::result::Result::Ok([t81 * t85 - t90 * t101, t101])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -736,10 +762,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -829,7 +855,7 @@ impl FiveBar {
         let s2_right = 20.0 * t114;
         let t187 = c2_right * (t147 - 0.2 * t136) + s2_right * t165;
         let t194 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t42, -(minus_g1_vx_left * t44), minus_g1_vx_left * t47, t42,
                 minus_g1_vx_left * minus_rate_1_left,
@@ -874,11 +900,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
@@ -946,7 +972,7 @@ impl FiveBar {
         let t155 = 0.8 * t134;
         let t158 = t109 + 9.81 * s12_right;
         let t165 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t33, g1_vx_left * t35, -(g1_vx_left * t38), t33, g1_vx_left * rate_1_left,
                 ::overact::math::signed(g1_vx_left, rate_1_left), g1_vx_left, t52,
@@ -987,11 +1013,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
@@ -1096,7 +1122,7 @@ impl FiveBar {
         let s2_right = 20.0 * t47;
         let t203 = c2_right * (t165 - 0.2 * t84) + s2_right * t181;
         let t209 = actuator_velocities[1] + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t17, -(minus_g1_vx_left * t25), minus_g1_vx_left * t28, -t17, -t31,
                 -::overact::math::signed(minus_g1_vx_left, actuator_velocities[0]),
@@ -1136,10 +1162,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -1235,7 +1261,7 @@ impl FiveBar {
         let s2_right = 20.0 * t60;
         let t176 = c2_right * (t145 - 0.2 * t138) + s2_right * t164;
         let t182 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_left, t43, -t44, -minus_rate_dot_1_left, -minus_rate_1_left,
                 -::overact::math::sign(minus_rate_1_left), 1.0, t85,
@@ -1268,11 +1294,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let [(s2_left, c2_left), (s1_left, c1_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[1], joints[0], joints[2], joints[3],
@@ -1348,7 +1374,7 @@ impl FiveBar {
         let t146 = t125 + 0.2 * rate_dot_1_right;
         let t155 = c2_right * (t126 - t121) + s2_right * t146;
         let t161 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_left, t34, -t35, rate_dot_1_left, rate_1_left,
                 ::overact::math::sign(rate_1_left), 1.0, -t67,
@@ -1381,11 +1407,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 25]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 25]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
@@ -1493,7 +1519,7 @@ impl FiveBar {
         let s2_right = 20.0 * t37;
         let t202 = c2_right * (t171 - 0.2 * t92) + s2_right * t190;
         let t208 = actuator_velocities[1] + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], t14, -t18, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, t131,
@@ -1526,10 +1552,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let t1 = pose[0] + 0.1;
         let t3 = pose[1] * pose[1];
         let t4 = t1 * t1 + t3;
@@ -1603,7 +1629,7 @@ impl FiveBar {
             + s2_right * (t91 + 0.2 * rate_dot_1_right);
         let t161 = minus_rate_1_left + rate_2_left;
         let t166 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_left * minus_rate_dot_1_left,
                 g1_vx_right * rate_dot_1_right, -(minus_g1_vx_left * t88), g1_vx_right * t91,
@@ -1648,11 +1674,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
@@ -1703,7 +1729,7 @@ impl FiveBar {
         let t121 = t59 + s12_right * 9.81;
         let t128 = rate_1_left + minus_rate_2_left;
         let t133 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], g1_vx_left * rate_dot_1_left, g1_vx_right * rate_dot_1_right,
                 g1_vx_left * t71, g1_vx_right * t74, -(g1_vx_left * t77), -(g1_vx_right * t80),
@@ -1748,11 +1774,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
@@ -1840,7 +1866,7 @@ impl FiveBar {
             + s2_right * (t115 + 0.2 * actuator_accelerations[1]);
         let t180 = rate_2_left - actuator_velocities[0];
         let t183 = actuator_velocities[1] + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t106, -(minus_g1_vx_left * actuator_accelerations[0]),
                 g1_vx_right * actuator_accelerations[1], -(minus_g1_vx_left * t112),
@@ -1882,10 +1908,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -1972,7 +1998,7 @@ impl FiveBar {
             + s2_right * (t101 + 0.2 * rate_dot_1_right);
         let t161 = minus_rate_1_left + rate_2_left;
         let t164 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t49 * t50 - t52 * acceleration[0], -minus_rate_dot_1_left, 0.0, t100, 0.0, -t102,
                 0.0, -minus_rate_1_left, 0.0, -::overact::math::sign(minus_rate_1_left), 0.0, 1.0,
@@ -2005,11 +2031,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let [(s1_right, c1_right), (s2_right, c2_right), (s1_left, c1_left),
         (s2_left, c2_left)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1],
@@ -2075,7 +2101,7 @@ impl FiveBar {
         let t134 = c2_right * (t86 - t79) + s2_right * (t84 + 0.2 * rate_dot_1_right);
         let t140 = rate_1_left + minus_rate_2_left;
         let t143 = rate_1_right + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t32 * t33 - t35 * acceleration[0], rate_dot_1_left, 0.0, t83, 0.0, -t85, 0.0,
                 rate_1_left, 0.0, ::overact::math::sign(rate_1_left), 0.0, 1.0, 0.0,
@@ -2108,11 +2134,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 19]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 19]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
@@ -2212,7 +2238,7 @@ impl FiveBar {
             + s2_right * (t127 + 0.2 * actuator_accelerations[1]);
         let t187 = rate_2_left - actuator_velocities[0];
         let t190 = actuator_velocities[1] + minus_rate_2_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t49 * t113 - t115 * t118, actuator_accelerations[0], 0.0, t126, 0.0, -t128, 0.0,
                 actuator_velocities[0], 0.0, ::overact::math::sign(actuator_velocities[0]), 0.0,
@@ -2242,9 +2268,9 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 2],
-        torques: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] - 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -2270,7 +2296,7 @@ impl FiveBar {
         let minus_g1_vx_left = (t19 - (t19 * t24 - pose[1] * t29)) * t34;
         let g1_vy_right = (pose[1] - (pose[1] * t6 - t0 * t11)) * t16;
         let minus_g1_vy_left = (pose[1] - (pose[1] * t24 + t19 * t29)) * t34;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_right * torques[1] - minus_g1_vx_left * torques[0],
             g1_vy_right * torques[1] - minus_g1_vy_left * torques[0],
         ])
@@ -2285,7 +2311,10 @@ impl FiveBar {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 2], torques: &[f64; 2]) -> [f64; 2] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 2] {
         [torques[0], torques[1]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -2303,11 +2332,11 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-        parameters: &[f64; 25],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -2433,7 +2462,7 @@ impl FiveBar {
         ::overact::guard::platform(t237, 14.323546684675748, "actuators")?;
         let t238 = (t230 - t211 * t220) / t237;
         let t240 = t211 * t215 - t220 * t238;
-        Ok([
+        ::core::result::Result::Ok([
             -(minus_g1_vx_left * t240 + minus_g1_vy_left * t238),
             g1_vx_right * t240 + g1_vy_right * t238,
         ])
@@ -2454,12 +2483,12 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 4],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-        parameters: &[f64; 25],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let [(s1_left, c1_left), (s2_left, c2_left), (s1_right, c1_right),
         (s2_right, c2_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3],
@@ -2571,7 +2600,7 @@ impl FiveBar {
         ::overact::guard::platform(t212, 14.32354668467552, "actuators")?;
         let t213 = (t205 - t186 * t195) / t212;
         let t215 = t186 * t190 - t195 * t213;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_left * t215 + g1_vy_left * t213, g1_vx_right * t215 + g1_vy_right * t213,
         ])
     }
@@ -2591,12 +2620,12 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        parameters: &[f64; 25],
-        start: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
@@ -2728,7 +2757,7 @@ impl FiveBar {
             - minus_g2_vy_right * t232 + parameters[24] * (t108 + 9.81);
         let t251 = t64 * (t248 - t58 * t237);
         let t253 = t38 * t237 - t58 * t251;
-        Ok([
+        ::core::result::Result::Ok([
             -(minus_g1_vx_left * t253 + minus_g1_vy_left * t251),
             g1_vx_right * t253 + g1_vy_right * t251,
         ])
@@ -2746,9 +2775,9 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 2],
-        parameters: &[f64; 25],
-    ) -> Result<[[f64; 2]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -2822,7 +2851,7 @@ impl FiveBar {
             - s12_right * parameters[21];
         let t149 = g2_vx_left * t103 - minus_g1_vx_left * t117 + g1_vx_right * t140
             - minus_g2_vx_right * t146;
-        Ok([
+        ::core::result::Result::Ok([
             [t89 + parameters[24], t149],
             [
                 t149,
@@ -2845,10 +2874,10 @@ impl FiveBar {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        parameters: &[f64; 25],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 25],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] + 0.1;
         let t2 = pose[1] * pose[1];
         let t3 = t0 * t0 + t2;
@@ -2950,7 +2979,7 @@ impl FiveBar {
         let t183 = t148 + t179 + t182;
         let t190 = parameters[20] * t172 - parameters[19] * minus_rate_dot_2_right
             - parameters[21] * t165 - t182;
-        Ok([
+        ::core::result::Result::Ok([
             g2_vx_left * t64 - minus_g1_vx_left * t94 + g1_vx_right * t183
                 - minus_g2_vx_right * t190,
             g2_vy_left * t64 - minus_g1_vy_left * t94 + g1_vy_right * t183
@@ -2962,11 +2991,11 @@ impl FiveBar {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
-            return Ok(pose);
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return ::core::result::Result::Ok(pose);
         }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
@@ -2986,7 +3015,7 @@ impl FiveBar {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -3020,9 +3049,9 @@ impl ::overact::Model for FiveBar {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(4, inputs, output, Self::joints)
@@ -3066,7 +3095,7 @@ impl ::overact::Model for FiveBar {
                 ::overact::block::map3(2, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -3077,14 +3106,14 @@ impl ::overact::Model for FiveBar {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

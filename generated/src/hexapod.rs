@@ -4,50 +4,68 @@
 ///
 /// 6 legs, 18 joints, 6 actuators, 6 degrees of freedom; 148 standard parameters, 106 base parameters.
 /// Source: After Gough 1957 and Stewart 1965; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Hexapod;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Hexapod {
     /// The robot's name.
-    pub const NAME: &'static str = "Hexapod";
+    pub const NAME: &'static ::core::primitive::str = "Hexapod";
     /// Numbers in a pose.
-    pub const POSE: usize = 7;
+    pub const POSE: ::core::primitive::usize = 7;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 6;
+    pub const DOF: ::core::primitive::usize = 6;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 6;
+    pub const ACTUATORS: ::core::primitive::usize = 6;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 18;
+    pub const JOINTS: ::core::primitive::usize = 18;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 6] = ["leg1", "leg2", "leg3", "leg4", "leg5", "leg6"];
+    pub const LEGS: [&'static ::core::primitive::str; 6] = [
+        "leg1", "leg2", "leg3", "leg4", "leg5", "leg6",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 6] = [
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 6] = [
         "leg1", "leg2", "leg3", "leg4", "leg5", "leg6",
     ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 18] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 18] = [
         "leg1.cross", "leg1.cylinder", "leg1.rod", "leg2.cross", "leg2.cylinder", "leg2.rod",
         "leg3.cross", "leg3.cylinder", "leg3.rod", "leg4.cross", "leg4.cylinder", "leg4.rod",
         "leg5.cross", "leg5.cylinder", "leg5.rod", "leg6.cross", "leg6.cylinder", "leg6.rod",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 7] = [
+        "x", "y", "z", "qw", "qx", "qy", "qz",
+    ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [2, 5, 8, 11, 14, 17];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        2, 5, 8, 11, 14, 17,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         false, false, false, false, false, false,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 6] = [0, 1, 2, 3, 4, 5];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 2, 3, 4, 5];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
+        0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0,
+    ];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.43487261992907955, 0.19506603940840975, 0.5619721604540093, 0.434872619929079,
         -0.19506603940840964, 0.5619721604540092, 0.4348726199290794, 0.19506603940840997,
         0.5619721604540091, 0.4348726199290791, -0.1950660394084094, 0.5619721604540092,
@@ -547,7 +565,9 @@ impl Hexapod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 7]) -> Result<[f64; 18], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 18], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -686,7 +706,7 @@ impl Hexapod {
         let s_cylinder_leg6 = (0.30901699437494734 * t264 - 0.9510565162951536 * t261)
             / t290;
         let c_cylinder_leg6 = t271 / t290;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.9069237142287115 * minus_s_cross_leg1
                     + 0.42129488077782107 * c_cross_leg1),
@@ -774,7 +794,9 @@ impl Hexapod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 7]) -> Result<[f64; 6], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -841,7 +863,7 @@ impl Hexapod {
         let t112 = pose[2] + t66;
         let t114 = t106 * t106 + t109 * t109 + t112 * t112;
         ::overact::guard::reach(t114, "leg6")?;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::sqrt(t50), ::overact::math::sqrt(t70), ::overact::math::sqrt(t81),
             ::overact::math::sqrt(t92), ::overact::math::sqrt(t103), ::overact::math::sqrt(t114),
         ])
@@ -857,7 +879,9 @@ impl Hexapod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 7]) -> Result<[[f64; 6]; 6], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -978,7 +1002,7 @@ impl Hexapod {
         let grod_wz_leg4 = t53 * grod_vy_leg4 - t59 * minus_minus_grod_vx_leg4;
         let minus_grod_wz_leg5 = t15 * grod_vy_leg5 - t29 * minus_minus_grod_vx_leg5;
         let grod_wz_leg6 = t54 * grod_vy_leg6 - t60 * minus_minus_grod_vx_leg6;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 grod_vx_leg1, minus_minus_grod_vy_leg1, grod_vz_leg1, grod_wx_leg1, grod_wy_leg1,
                 -minus_grod_wz_leg1,
@@ -1016,9 +1040,9 @@ impl Hexapod {
     /// 158 operations (56 additions, 102 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 146 intermediates.
     #[must_use]
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-    ) -> [[f64; 6]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
         (minus_c_cross_leg2, s_cross_leg2), (minus_c_cylinder_leg3, s_cylinder_leg3),
@@ -1162,7 +1186,9 @@ impl Hexapod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 7]) -> Result<[[f64; 6]; 6], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -1498,7 +1524,7 @@ impl Hexapod {
         let t884 = t166 * t831 - t201 * t876 - t327 * t870 - t383 * t866 - t472 * t864;
         let t895 = minus_minus_grod_vx_leg6 * t133 - t152 * t884 - t198 * t876
             + t311 * t870 - t378 * t866 - t456 * t864;
-        Ok([
+        ::core::result::Result::Ok([
             [t565, t631, t697, t763, t829, t895], [t555, t621, t686, t752, t818, t884],
             [t547, t613, t678, t744, t810, t876], [t541, t607, t672, t738, t804, t870],
             [t537, t603, t668, t734, t800, t866], [t535, t601, t666, t732, t798, t864],
@@ -1515,9 +1541,9 @@ impl Hexapod {
     /// 168 operations (36 additions, 132 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 138 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 7],
-        joints: &[f64; 18],
-    ) -> [[f64; 18]; 18] {
+        _pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+    ) -> [[::core::primitive::f64; 18]; 18] {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -1694,9 +1720,9 @@ impl Hexapod {
     /// 50 operations (26 additions, 24 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 32 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 7],
-        _joints: &[f64; 18],
-    ) -> [[f64; 6]; 18] {
+        pose: &[::core::primitive::f64; 7],
+        _joints: &[::core::primitive::f64; 18],
+    ) -> [[::core::primitive::f64; 6]; 18] {
         let t0 = 2.0 * pose[4];
         let t2 = 2.0 * pose[5];
         let t4 = pose[6] * t0 - pose[3] * t2;
@@ -1762,9 +1788,9 @@ impl Hexapod {
     /// 206 operations (56 additions, 150 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 194 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-    ) -> [[f64; 6]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
         (minus_c_cross_leg2, s_cross_leg2), (minus_c_cylinder_leg3, s_cylinder_leg3),
@@ -1914,9 +1940,9 @@ impl Hexapod {
     /// 12 operations (0 additions, 12 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 12 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 7],
-        joints: &[f64; 18],
-    ) -> [[f64; 6]; 6] {
+        _pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let [(_, s_cylinder_leg1), (_, s_cylinder_leg2), (_, s_cylinder_leg3),
         (_, s_cylinder_leg4), (_, s_cylinder_leg5), (_, s_cylinder_leg6)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10], joints[13], joints[16],
@@ -1943,9 +1969,9 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-    ) -> Result<[f64; 18], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 18], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -2201,7 +2227,7 @@ impl Hexapod {
         let grod_vz_leg6 = c_cross_leg6 * c_cylinder_leg6;
         let minus_minus_rate_rod_leg6 = minus_minus_grod_vx_leg6 * t410
             + grod_vy_leg6 * t413 + grod_vz_leg6 * t406;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_cross_leg1, rate_cylinder_leg1, minus_minus_rate_rod_leg1,
             -minus_rate_cross_leg2, rate_cylinder_leg2, minus_minus_rate_rod_leg2,
             -minus_rate_cross_leg3, rate_cylinder_leg3, minus_minus_rate_rod_leg3,
@@ -2224,10 +2250,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[f64; 18], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 18], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -2657,7 +2683,7 @@ impl Hexapod {
                 * (minus_rate_cross_leg6 * minus_rate_cross_leg6
                     + rate_cylinder_leg6 * rate_cylinder_leg6);
         let minus_rate_dot_rod_leg6 = t731 * t753 - t770;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_cross_leg1, rate_dot_cylinder_leg1, -minus_rate_dot_rod_leg1,
             -minus_rate_dot_cross_leg2, rate_dot_cylinder_leg2, -minus_rate_dot_rod_leg2,
             -minus_rate_dot_cross_leg3, rate_dot_cylinder_leg3, -minus_rate_dot_rod_leg3,
@@ -2679,9 +2705,9 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 7],
-        actuator_velocities: &[f64; 6],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        actuator_velocities: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -2974,7 +3000,7 @@ impl Hexapod {
         let t620 = t177 * t190 - t223 * t612 - t360 * t606 - t427 * t602 - t527 * t600;
         let t630 = t132 * t144 - t163 * t620 - t220 * t612 + t344 * t606 - t422 * t602
             - t511 * t600;
-        Ok([t630, t620, t612, t606, t602, t600])
+        ::core::result::Result::Ok([t630, t620, t612, t606, t602, t600])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -2990,10 +3016,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -3501,7 +3527,7 @@ impl Hexapod {
             - t974 * t1047;
         let t1077 = t591 * t603 - t616 * t1067 - t667 * t1059 + t791 * t1053
             - t869 * t1049 - t958 * t1047;
-        Ok([t1077, t1067, t1059, t1053, t1049, t1047])
+        ::core::result::Result::Ok([t1077, t1067, t1059, t1053, t1049, t1047])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -3518,10 +3544,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[4];
         let t1 = pose[6] * t0;
         let t2 = 2.0 * pose[5];
@@ -4641,7 +4667,7 @@ impl Hexapod {
         let t2643 = t2593 - t2614;
         let t2645 = t2611 - t2568;
         let t2648 = t2585 + t2560;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t213, t261, -t295, t312, -t329, t345,
                 -(minus_gcross_vx_leg1 * t352 + gcylinder_vx_leg1 * t354), grod_vx_leg1 * t372,
@@ -4943,11 +4969,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -6005,7 +6031,7 @@ impl Hexapod {
         let t2575 = t2541 - t2498;
         let t2578 = t2515 + t2490;
         let t2600 = acceleration[2] + 9.81;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t196, t247, -t283, t302, t320, t336,
                 -(minus_gcross_vx_leg1 * t343 + gcylinder_vx_leg1 * t345),
@@ -6317,11 +6343,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -7670,7 +7696,7 @@ impl Hexapod {
         let t3218 = t3168 - t3189;
         let t3220 = t3186 - t3143;
         let t3223 = t3160 + t3138;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t1239, t1292, -t1325, t1343, -t1360, t1376,
                 -(minus_gcross_vx_leg1 * t1382 + gcylinder_vx_leg1 * t1384), grod_vx_leg1 * t1402,
@@ -8126,10 +8152,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -9553,7 +9579,7 @@ impl Hexapod {
             - t857 * t4171 + t827 * t4176;
         let t4233 = t892 * t4148 + t886 * t4154 + t899 * t4161 - t903 * t4166
             + t909 * t4171 + t884 * t4176;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t645, t940, t975, t993, t1011, t1027, t477 * t1033 - t642 * t1035,
                 -(t477 * t1054 + t642 * t1056), t477 * t1074, -t645, t975, -t940, t1027, -t1011,
@@ -9782,11 +9808,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cylinder_leg4, s_cylinder_leg4), (minus_c_cross_leg4, s_cross_leg4),
@@ -11156,7 +11182,7 @@ impl Hexapod {
             + t760 * t4086 - t739 * t4091;
         let t4148 = t823 * t4063 + t816 * t4069 + t835 * t4076 + t841 * t4081
             + t845 * t4086 + t814 * t4091;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t570, t876, t911, -t929, t947, t963, t406 * t970 - t567 * t972,
                 t406 * t990 + t567 * t992, t406 * t1010, t570, t911, -t876, t963, -t947, -t929,
@@ -11385,11 +11411,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 148]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 148]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -13055,7 +13081,7 @@ impl Hexapod {
             - t1729 * t4776 + t1699 * t4781;
         let t4838 = t1764 * t4753 + t1758 * t4759 + t1771 * t4766 - t1775 * t4771
             + t1781 * t4776 + t1756 * t4781;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t1517, t1811, t1845, t1863, t1881, t1897, t477 * t1903 - t1514 * t1905,
                 -(t477 * t1924 + t1514 * t1926), t477 * t1944, -t1517, t1845, -t1811, t1897, -t1881,
@@ -13283,10 +13309,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -14179,7 +14205,7 @@ impl Hexapod {
         let t2632 = -minus_minus_rate_rod_leg4;
         let t2639 = -minus_minus_rate_rod_leg5;
         let t2646 = -minus_minus_rate_rod_leg6;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
                 acceleration[0], minus_gcross_vx_leg1 * t379 - t383,
@@ -14620,11 +14646,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -15455,7 +15481,7 @@ impl Hexapod {
         let minus_rate_dot_rod_leg6 = t2066 - joints[17] * t2387;
         let grod_wx_leg6 = grod_vz_leg6 * t428 - grod_vy_leg6 * t426;
         let minus_grod_wy_leg6 = minus_grod_vx_leg6 * t426 + grod_vz_leg6 * t439;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
                 acceleration[0], t301 - minus_gcross_vx_leg1 * t367,
@@ -15891,11 +15917,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -17022,7 +17048,7 @@ impl Hexapod {
             - grod_vy_leg6 * t1046;
         let t3155 = minus_gcross_vz_leg6 * t3139 + minus_gcylinder_vz_leg6 * t3141
             + grod_vz_leg6 * t1046;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1274, t1327,
                 t1156 * t1269 - t1154 * t691 + t1159 * t1272, t1317,
@@ -17447,10 +17473,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[4];
         let t1 = pose[6] * t0;
         let t2 = 2.0 * pose[5];
@@ -18645,7 +18671,7 @@ impl Hexapod {
         let minus_minus_rate_dot_rod_leg4 = t70 * t4056 + t3721;
         let minus_minus_rate_dot_rod_leg5 = t120 * t4084 + t3753;
         let minus_minus_rate_dot_rod_leg6 = t205 * t4112 + t3785;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t387 * t417 - t424 * t429 + t385 * t436, t387 * t562 - t424 * t568 + t385 * t575,
                 t387 * t616 - t424 * t622 + t385 * t629, t387 * t660 - t424 * t665 + t385 * t671,
@@ -18914,11 +18940,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg6, s_cross_leg6),
         (minus_c_cylinder_leg6, s_cylinder_leg6), (minus_c_cross_leg4, s_cross_leg4),
@@ -20056,7 +20082,7 @@ impl Hexapod {
         let minus_rate_dot_rod_leg4 = t3648 - joints[11] * t3977;
         let minus_rate_dot_rod_leg5 = t3680 - joints[14] * t4005;
         let minus_rate_dot_rod_leg6 = t3712 - joints[17] * t4033;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t324 * t354 + t357 * t362 + t322 * t369, t324 * t501 + t357 * t507 + t322 * t514,
                 t324 * t555 + t357 * t561 + t322 * t568, t324 * t599 + t357 * t604 + t322 * t610,
@@ -20322,11 +20348,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 106]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 106]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[4];
         let t1 = pose[6] * t0;
@@ -21766,7 +21792,7 @@ impl Hexapod {
         let t4694 = t120 * t3901 + t4543;
         let t4715 = t198 * t3209 - c_cylinder_leg6 * t4410;
         let t4718 = t205 * t3924 + t4569;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t387 * t1328 - t1335 * t1340 + t385 * t1347,
                 t387 * t1473 - t1335 * t1479 + t385 * t1486,
@@ -22045,10 +22071,10 @@ impl Hexapod {
     /// 237 operations (105 additions, 132 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 200 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> [[f64; 10]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 10]; 6] {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -22169,11 +22195,11 @@ impl Hexapod {
     /// 237 operations (105 additions, 132 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 200 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        pose: &[f64; 7],
-        _joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> [[f64; 10]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        _joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 10]; 6] {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -22296,11 +22322,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 10]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 10]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -22918,7 +22944,7 @@ impl Hexapod {
             - t583 * t1179;
         let t1357 = t245 * t1102 - t284 * t1344 - t326 * t1333 - t246 * t1185
             - t392 * t1181 - t567 * t1179;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t9 * t1309 - t691 + t22 * t1312,
                 t13 * t1309 - t698 + t26 * t1312, t1196 * t1309 - t1194 * t690 + t1199 * t1312,
@@ -22972,10 +22998,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 10]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 10]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[4];
         let t1 = pose[6] * t0;
         let t2 = 2.0 * pose[5];
@@ -23328,7 +23354,7 @@ impl Hexapod {
             - t465 * t1081 + t458 * t1086;
         let t1143 = t942 * t1058 + t948 * t1064 + t955 * t1071 - t482 * t1076
             + t479 * t1081 + t477 * t1086;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t327 * t357 - t364 * t369 + t325 * t376, t327 * t502 - t364 * t508 + t325 * t515,
                 t327 * t556 - t364 * t562 + t325 * t569, t327 * t600 - t364 * t605 + t325 * t611,
@@ -23383,9 +23409,9 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 7],
-        torques: &[f64; 6],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -23527,7 +23553,7 @@ impl Hexapod {
             - (minus_grod_wz_leg1 * torques[0] + minus_grod_wz_leg2 * torques[1])
             + grod_wz_leg4 * torques[3] - minus_grod_wz_leg5 * torques[4]
             + grod_wz_leg6 * torques[5];
-        Ok([t132, t149, t166, t195, t224, t253])
+        ::core::result::Result::Ok([t132, t149, t166, t195, t224, t253])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
@@ -23539,7 +23565,10 @@ impl Hexapod {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 7], torques: &[f64; 6]) -> [f64; 6] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -23557,11 +23586,11 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-        parameters: &[f64; 158],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 158],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -24784,7 +24813,7 @@ impl Hexapod {
         let t2857 = grod_vy_leg6 * t2781 + minus_minus_grod_vx_leg6 * t2791
             + grod_vz_leg6 * t2773 + grod_wx_leg6 * t2767 - minus_grod_wy_leg6 * t2763
             + grod_wz_leg6 * t2761;
-        Ok([t2802, t2813, t2824, t2835, t2846, t2857])
+        ::core::result::Result::Ok([t2802, t2813, t2824, t2835, t2846, t2857])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -24802,12 +24831,12 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 18],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-        parameters: &[f64; 158],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 18],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 158],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -25979,7 +26008,7 @@ impl Hexapod {
         let t2761 = grod_vy_leg6 * t2686 - minus_grod_vx_leg6 * t2696
             + grod_vz_leg6 * t2675 + grod_wx_leg6 * t2669 - minus_grod_wy_leg6 * t2665
             + grod_wz_leg6 * t2663;
-        Ok([t2706, t2717, t2728, t2739, t2750, t2761])
+        ::core::result::Result::Ok([t2706, t2717, t2728, t2739, t2750, t2761])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -25997,12 +26026,12 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-        parameters: &[f64; 158],
-        start: &[f64; 7],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 158],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -27364,7 +27393,7 @@ impl Hexapod {
         let t3148 = grod_vy_leg6 * t3072 + minus_minus_grod_vx_leg6 * t3082
             + grod_vz_leg6 * t3064 + grod_wx_leg6 * t3058 - minus_grod_wy_leg6 * t3054
             + grod_wz_leg6 * t3052;
-        Ok([t3093, t3104, t3115, t3126, t3137, t3148])
+        ::core::result::Result::Ok([t3093, t3104, t3115, t3126, t3137, t3148])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -27379,9 +27408,9 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 7],
-        parameters: &[f64; 158],
-    ) -> Result<[[f64; 6]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        parameters: &[::core::primitive::f64; 158],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -29113,7 +29142,7 @@ impl Hexapod {
         let t4106 = t4096 + parameters[148] * t4077 + parameters[149] * t4080
             + parameters[150] * t4084 + parameters[151] * t4087
             + parameters[152] * t4091;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t147 + t267 + t383 + t499 + t613 + t727 + t729, t1251, t1748, -t2829, t2877, t2925,
             ],
@@ -29140,10 +29169,10 @@ impl Hexapod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        parameters: &[f64; 158],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 158],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -30169,7 +30198,7 @@ impl Hexapod {
         let t2300 = t2290 + parameters[148] * t2261 + parameters[149] * t2267
             + parameters[150] * t2274 + parameters[151] * t2278
             + parameters[152] * t2285;
-        Ok([
+        ::core::result::Result::Ok([
             t1703 + t1722, t1770 + t1786,
             t1834 + t1851 + parameters[156] * t1843 + 9.81 * parameters[157],
             t1945 + t2015 + parameters[155] * t1996 + parameters[156] * t1999,
@@ -30182,9 +30211,9 @@ impl Hexapod {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -30203,7 +30232,7 @@ impl Hexapod {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace_quaternion,
             )
@@ -30237,9 +30266,9 @@ impl ::overact::Model for Hexapod {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(18, inputs, output, Self::joints)
@@ -30275,7 +30304,7 @@ impl ::overact::Model for Hexapod {
                     60,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -30293,7 +30322,7 @@ impl ::overact::Model for Hexapod {
                 ::overact::block::map3(6, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -30304,17 +30333,21 @@ impl ::overact::Model for Hexapod {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
-    fn displace(&self, pose: &mut [f64], step: &[f64]) {
+    fn displace(
+        &self,
+        pose: &mut [::core::primitive::f64],
+        step: &[::core::primitive::f64],
+    ) {
         ::overact::forward::displace_quaternion(pose, step);
     }
 }

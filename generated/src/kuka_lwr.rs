@@ -4,48 +4,64 @@
 ///
 /// 1 legs, 7 joints, 7 actuators, 7 degrees of freedom; 87 standard parameters, 69 base parameters.
 /// Source: Frames: Jubien, Gautier, Janot 2014; dynamics invented.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct KukaLwr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl KukaLwr {
     /// The robot's name.
-    pub const NAME: &'static str = "KukaLwr";
+    pub const NAME: &'static ::core::primitive::str = "KukaLwr";
     /// Numbers in a pose.
-    pub const POSE: usize = 7;
+    pub const POSE: ::core::primitive::usize = 7;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 7;
+    pub const DOF: ::core::primitive::usize = 7;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 7;
+    pub const ACTUATORS: ::core::primitive::usize = 7;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 7;
+    pub const JOINTS: ::core::primitive::usize = 7;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 1] = ["arm"];
+    pub const LEGS: [&'static ::core::primitive::str; 1] = ["arm"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 7] = [
+        "1", "2", "3", "4", "5", "6", "7",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 7] = [
+        "1", "2", "3", "4", "5", "6", "7",
+    ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 7] = [
+    pub const COORDINATES: [&'static ::core::primitive::str; 7] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6", "q_7",
     ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1, 2, 3, 4, 5, 6];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 1, 2, 3, 4, 5, 6,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true, true, true, true, true,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 7] = [0, 1, 2, 3, 4, 5, 6];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 7] = [0, 1, 2, 3, 4, 5, 6];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
         0.0, 0.5235987755982988, 0.0, 1.0471975511965976, 0.0, -0.7853981633974483, 0.0,
     ];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 0.5235987755982988, 0.0, 1.0471975511965976, 0.0, -0.7853981633974483, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -265,7 +281,7 @@ impl KukaLwr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joints(joints: &[f64; 7]) -> [f64; 7] {
+    pub fn joints(joints: &[::core::primitive::f64; 7]) -> [::core::primitive::f64; 7] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5], joints[6]]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -277,7 +293,9 @@ impl KukaLwr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn actuator_positions(joints: &[f64; 7]) -> [f64; 7] {
+    pub fn actuator_positions(
+        joints: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5], joints[6]]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -289,7 +307,9 @@ impl KukaLwr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn inverse_jacobian(_joints: &[f64; 7]) -> [[f64; 7]; 7] {
+    pub fn inverse_jacobian(
+        _joints: &[::core::primitive::f64; 7],
+    ) -> [[::core::primitive::f64; 7]; 7] {
         [
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
@@ -308,9 +328,9 @@ impl KukaLwr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_velocities(
-        _joints: &[f64; 7],
-        joint_velocities: &[f64; 7],
-    ) -> [f64; 7] {
+        _joints: &[::core::primitive::f64; 7],
+        joint_velocities: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
             joint_velocities[4], joint_velocities[5], joint_velocities[6],
@@ -328,10 +348,10 @@ impl KukaLwr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_accelerations(
-        _joints: &[f64; 7],
-        _joint_velocities: &[f64; 7],
-        joint_accelerations: &[f64; 7],
-    ) -> [f64; 7] {
+        _joints: &[::core::primitive::f64; 7],
+        _joint_velocities: &[::core::primitive::f64; 7],
+        joint_accelerations: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [
             joint_accelerations[0], joint_accelerations[1], joint_accelerations[2],
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
@@ -349,9 +369,9 @@ impl KukaLwr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn twist_from_actuators(
-        _joints: &[f64; 7],
-        actuator_velocities: &[f64; 7],
-    ) -> [f64; 7] {
+        _joints: &[::core::primitive::f64; 7],
+        actuator_velocities: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
@@ -370,10 +390,10 @@ impl KukaLwr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn acceleration_from_actuators(
-        _joints: &[f64; 7],
-        _joint_velocities: &[f64; 7],
-        actuator_accelerations: &[f64; 7],
-    ) -> [f64; 7] {
+        _joints: &[::core::primitive::f64; 7],
+        _joint_velocities: &[::core::primitive::f64; 7],
+        actuator_accelerations: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [
             actuator_accelerations[0], actuator_accelerations[1], actuator_accelerations[2],
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
@@ -393,10 +413,10 @@ impl KukaLwr {
     /// 1070 operations (464 additions, 606 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 864 intermediates.
     #[must_use]
     pub fn idm_red_platform(
-        joints: &[f64; 7],
-        joint_velocities: &[f64; 7],
-        joint_accelerations: &[f64; 7],
-    ) -> [[f64; 87]; 7] {
+        joints: &[::core::primitive::f64; 7],
+        joint_velocities: &[::core::primitive::f64; 7],
+        joint_accelerations: &[::core::primitive::f64; 7],
+    ) -> [[::core::primitive::f64; 87]; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
@@ -852,10 +872,10 @@ impl KukaLwr {
     /// 1019 operations (424 additions, 595 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 846 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
-        joints: &[f64; 7],
-        joint_velocities: &[f64; 7],
-        joint_accelerations: &[f64; 7],
-    ) -> [[f64; 69]; 7] {
+        joints: &[::core::primitive::f64; 7],
+        joint_velocities: &[::core::primitive::f64; 7],
+        joint_accelerations: &[::core::primitive::f64; 7],
+    ) -> [[::core::primitive::f64; 69]; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
@@ -1246,7 +1266,10 @@ impl KukaLwr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_platform(_joints: &[f64; 7], torques: &[f64; 7]) -> [f64; 7] {
+    pub fn project_platform(
+        _joints: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 7],
+    ) -> [::core::primitive::f64; 7] {
         [
             torques[0], torques[1], torques[2], torques[3], torques[4], torques[5], torques[6],
         ]
@@ -1264,11 +1287,11 @@ impl KukaLwr {
     /// 919 operations (428 additions, 491 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 931 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
-        joints: &[f64; 7],
-        joint_velocities: &[f64; 7],
-        joint_accelerations: &[f64; 7],
-        parameters: &[f64; 87],
-    ) -> [f64; 7] {
+        joints: &[::core::primitive::f64; 7],
+        joint_velocities: &[::core::primitive::f64; 7],
+        joint_accelerations: &[::core::primitive::f64; 7],
+        parameters: &[::core::primitive::f64; 87],
+    ) -> [::core::primitive::f64; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
@@ -1624,7 +1647,10 @@ impl KukaLwr {
     ///
     /// 1410 operations (614 additions, 796 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 1394 intermediates.
     #[must_use]
-    pub fn mass_matrix(joints: &[f64; 7], parameters: &[f64; 87]) -> [[f64; 7]; 7] {
+    pub fn mass_matrix(
+        joints: &[::core::primitive::f64; 7],
+        parameters: &[::core::primitive::f64; 87],
+    ) -> [[::core::primitive::f64; 7]; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
@@ -2017,10 +2043,10 @@ impl KukaLwr {
     /// 881 operations (404 additions, 477 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 7 signs, 893 intermediates.
     #[must_use]
     pub fn bias(
-        joints: &[f64; 7],
-        joint_velocities: &[f64; 7],
-        parameters: &[f64; 87],
-    ) -> [f64; 7] {
+        joints: &[::core::primitive::f64; 7],
+        joint_velocities: &[::core::primitive::f64; 7],
+        parameters: &[::core::primitive::f64; 87],
+    ) -> [::core::primitive::f64; 7] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm), (s7_arm, c7_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5], joints[6],
@@ -2345,10 +2371,10 @@ impl KukaLwr {
     /// # Errors
     /// None for a robot without a loop, whose pose is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        _start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        Ok(*actuators)
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        _start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::core::result::Result::Ok(*actuators)
     }
 }
 impl ::overact::Model for KukaLwr {
@@ -2378,16 +2404,16 @@ impl ::overact::Model for KukaLwr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(
                     7,
                     inputs,
                     output,
-                    |joints| Ok(Self::joints(joints)),
+                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
                 )
             }
             ::overact::Function::ActuatorPositions => {
@@ -2395,7 +2421,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints| Ok(Self::actuator_positions(joints)),
+                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
                 )
             }
             ::overact::Function::InverseJacobian => {
@@ -2403,7 +2429,7 @@ impl ::overact::Model for KukaLwr {
                     49,
                     inputs,
                     output,
-                    |joints| Ok(Self::inverse_jacobian(joints)),
+                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
                 )
             }
             ::overact::Function::JointVelocities => {
@@ -2411,7 +2437,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, joint_velocities| Ok(
+                    |joints, joint_velocities| ::core::result::Result::Ok(
                         Self::joint_velocities(joints, joint_velocities),
                     ),
                 )
@@ -2421,7 +2447,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::joint_accelerations(
                             joints,
                             joint_velocities,
@@ -2435,7 +2461,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, actuator_velocities| Ok(
+                    |joints, actuator_velocities| ::core::result::Result::Ok(
                         Self::twist_from_actuators(joints, actuator_velocities),
                     ),
                 )
@@ -2445,7 +2471,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, joint_velocities, actuator_accelerations| Ok(
+                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
                         Self::acceleration_from_actuators(
                             joints,
                             joint_velocities,
@@ -2459,7 +2485,7 @@ impl ::overact::Model for KukaLwr {
                     609,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::idm_red_platform(
                             joints,
                             joint_velocities,
@@ -2473,7 +2499,9 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, torques| Ok(Self::project_platform(joints, torques)),
+                    |joints, torques| ::core::result::Result::Ok(
+                        Self::project_platform(joints, torques),
+                    ),
                 )
             }
             ::overact::Function::InverseDynamics => {
@@ -2481,7 +2509,7 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations, parameters| Ok(
+                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
                         Self::inverse_dynamics(
                             joints,
                             joint_velocities,
@@ -2496,7 +2524,9 @@ impl ::overact::Model for KukaLwr {
                     49,
                     inputs,
                     output,
-                    |joints, parameters| Ok(Self::mass_matrix(joints, parameters)),
+                    |joints, parameters| ::core::result::Result::Ok(
+                        Self::mass_matrix(joints, parameters),
+                    ),
                 )
             }
             ::overact::Function::Bias => {
@@ -2504,13 +2534,13 @@ impl ::overact::Model for KukaLwr {
                     7,
                     inputs,
                     output,
-                    |joints, joint_velocities, parameters| Ok(
+                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
                         Self::bias(joints, joint_velocities, parameters),
                     ),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -2521,14 +2551,14 @@ impl ::overact::Model for KukaLwr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

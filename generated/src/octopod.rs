@@ -4,53 +4,69 @@
 ///
 /// 8 legs, 24 joints, 8 actuators, 6 degrees of freedom; 194 standard parameters, 138 base parameters.
 /// Source: Redundant variant of the Gough-Stewart platform; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Octopod;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Octopod {
     /// The robot's name.
-    pub const NAME: &'static str = "Octopod";
+    pub const NAME: &'static ::core::primitive::str = "Octopod";
     /// Numbers in a pose.
-    pub const POSE: usize = 7;
+    pub const POSE: ::core::primitive::usize = 7;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 6;
+    pub const DOF: ::core::primitive::usize = 6;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 8;
+    pub const ACTUATORS: ::core::primitive::usize = 8;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 24;
+    pub const JOINTS: ::core::primitive::usize = 24;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 8] = [
+    pub const LEGS: [&'static ::core::primitive::str; 8] = [
         "leg1", "leg2", "leg3", "leg4", "leg5", "leg6", "leg7", "leg8",
     ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 8] = [
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 8] = [
         "leg1", "leg2", "leg3", "leg4", "leg5", "leg6", "leg7", "leg8",
     ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 24] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 24] = [
         "leg1.cross", "leg1.cylinder", "leg1.rod", "leg2.cross", "leg2.cylinder", "leg2.rod",
         "leg3.cross", "leg3.cylinder", "leg3.rod", "leg4.cross", "leg4.cylinder", "leg4.rod",
         "leg5.cross", "leg5.cylinder", "leg5.rod", "leg6.cross", "leg6.cylinder", "leg6.rod",
         "leg7.cross", "leg7.cylinder", "leg7.rod", "leg8.cross", "leg8.cylinder", "leg8.rod",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 7] = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 7] = [
+        "x", "y", "z", "qw", "qx", "qy", "qz",
+    ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [2, 5, 8, 11, 14, 17, 20, 23];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        2, 5, 8, 11, 14, 17, 20, 23,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         false, false, false, false, false, false, false, false,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 6] = [0, 1, 3, 4, 6, 7];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 3, 4, 6, 7];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
+        0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0,
+    ];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.40112754514927185, 0.1252887088662874, 0.5474022110606366, 0.4011275451492718,
         -0.1252887088662866, 0.5474022110606367, 0.40112754514927196, 0.12528870886628726,
         0.5474022110606369, 0.40112754514927257, -0.12528870886628649, 0.5474022110606368,
@@ -684,7 +700,9 @@ impl Octopod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 7]) -> Result<[f64; 24], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 24], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -857,7 +875,7 @@ impl Octopod {
         let c_cylinder_leg8 = t348 / t365;
         let minus_s_cylinder_leg8 = (0.984807753012208 * t338
             + 0.17364817766693033 * t341) / t365;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.920621321833918 * minus_s_cross_leg1
                     + 0.39045663239951445 * c_cross_leg1),
@@ -971,7 +989,9 @@ impl Octopod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 7]) -> Result<[f64; 8], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -1048,7 +1068,7 @@ impl Octopod {
         let t128 = pose[2] - t83;
         let t130 = t122 * t122 + t125 * t125 + t128 * t128;
         ::overact::guard::reach(t130, "leg8")?;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::sqrt(t38), ::overact::math::sqrt(t52), ::overact::math::sqrt(t72),
             ::overact::math::sqrt(t86), ::overact::math::sqrt(t97), ::overact::math::sqrt(t108),
             ::overact::math::sqrt(t119), ::overact::math::sqrt(t130),
@@ -1065,7 +1085,9 @@ impl Octopod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 7]) -> Result<[[f64; 6]; 8], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -1206,7 +1228,7 @@ impl Octopod {
         let minus_grod_wz_leg6 = t41 * grod_vy_leg6 - t45 * minus_minus_grod_vx_leg6;
         let minus_grod_wz_leg7 = t58 * grod_vy_leg7 - t64 * minus_minus_grod_vx_leg7;
         let grod_wz_leg8 = t81 * grod_vx_leg8 - t77 * minus_minus_grod_vy_leg8;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 grod_vx_leg1, minus_minus_grod_vy_leg1, grod_vz_leg1, grod_wx_leg1, grod_wy_leg1,
                 -minus_grod_wz_leg1,
@@ -1252,9 +1274,9 @@ impl Octopod {
     /// 188 operations (60 additions, 128 multiplications, 0 divisions), 0 square roots, 16 trigonometric pairs, 0 signs, 172 intermediates.
     #[must_use]
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-    ) -> [[f64; 6]; 8] {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+    ) -> [[::core::primitive::f64; 6]; 8] {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
         (minus_c_cross_leg2, s_cross_leg2), (minus_c_cylinder_leg3, s_cylinder_leg3),
@@ -1422,7 +1444,9 @@ impl Octopod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 7]) -> Result<[[f64; 8]; 6], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 8]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -1839,7 +1863,7 @@ impl Octopod {
             - t584 * t1117;
         let t1147 = grod_vx_leg8 * t155 - t180 * t1137 - t240 * t1129 - t387 * t1123
             - t470 * t1119 - t564 * t1117;
-        Ok([
+        ::core::result::Result::Ok([
             [t685, t751, t817, t883, t949, t1015, t1081, t1147],
             [t675, t741, t807, t872, t938, t1004, t1070, t1137],
             [t667, t733, t799, t864, t930, t996, t1062, t1129],
@@ -1859,9 +1883,9 @@ impl Octopod {
     /// 224 operations (48 additions, 176 multiplications, 0 divisions), 0 square roots, 16 trigonometric pairs, 0 signs, 184 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 7],
-        joints: &[f64; 24],
-    ) -> [[f64; 24]; 24] {
+        _pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+    ) -> [[::core::primitive::f64; 24]; 24] {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -2098,9 +2122,9 @@ impl Octopod {
     /// 44 operations (20 additions, 24 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 32 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 7],
-        _joints: &[f64; 24],
-    ) -> [[f64; 6]; 24] {
+        pose: &[::core::primitive::f64; 7],
+        _joints: &[::core::primitive::f64; 24],
+    ) -> [[::core::primitive::f64; 6]; 24] {
         let t0 = 2.0 * pose[4];
         let t2 = 2.0 * pose[5];
         let t4 = pose[6] * t0 - pose[3] * t2;
@@ -2163,9 +2187,9 @@ impl Octopod {
     /// 252 operations (60 additions, 192 multiplications, 0 divisions), 0 square roots, 16 trigonometric pairs, 0 signs, 236 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-    ) -> [[f64; 6]; 8] {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+    ) -> [[::core::primitive::f64; 6]; 8] {
         let [(minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cross_leg1, s_cross_leg1), (minus_c_cylinder_leg2, s_cylinder_leg2),
         (minus_c_cross_leg2, s_cross_leg2), (minus_c_cylinder_leg3, s_cylinder_leg3),
@@ -2341,9 +2365,9 @@ impl Octopod {
     /// 16 operations (0 additions, 16 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 7],
-        joints: &[f64; 24],
-    ) -> [[f64; 8]; 8] {
+        _pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+    ) -> [[::core::primitive::f64; 8]; 8] {
         let [(_, s_cylinder_leg1), (_, s_cylinder_leg2), (_, s_cylinder_leg3),
         (_, s_cylinder_leg4), (_, s_cylinder_leg5), (_, s_cylinder_leg6),
         (_, s_cylinder_leg7), (_, s_cylinder_leg8)] = ::overact::math::sin_cos_all([
@@ -2390,9 +2414,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-    ) -> Result<[f64; 24], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 24], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -2717,7 +2741,7 @@ impl Octopod {
         let grod_vz_leg8 = c_cross_leg8 * c_cylinder_leg8;
         let minus_minus_rate_rod_leg8 = minus_minus_grod_vy_leg8 * t518
             + grod_vx_leg8 * t515 + grod_vz_leg8 * t522;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_cross_leg1, rate_cylinder_leg1, minus_minus_rate_rod_leg1,
             -minus_rate_cross_leg2, rate_cylinder_leg2, minus_minus_rate_rod_leg2,
             -minus_rate_cross_leg3, rate_cylinder_leg3, minus_minus_rate_rod_leg3,
@@ -2742,10 +2766,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[f64; 24], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[::core::primitive::f64; 24], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -3287,7 +3311,7 @@ impl Octopod {
                 * (minus_rate_cross_leg8 * minus_rate_cross_leg8
                     + rate_cylinder_leg8 * rate_cylinder_leg8);
         let minus_rate_dot_rod_leg8 = t915 * t937 - t954;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_cross_leg1, rate_dot_cylinder_leg1, -minus_rate_dot_rod_leg1,
             -minus_rate_dot_cross_leg2, rate_dot_cylinder_leg2, -minus_rate_dot_rod_leg2,
             -minus_rate_dot_cross_leg3, rate_dot_cylinder_leg3, -minus_rate_dot_rod_leg3,
@@ -3311,9 +3335,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 7],
-        actuator_velocities: &[f64; 8],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        actuator_velocities: &[::core::primitive::f64; 8],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -3669,7 +3693,7 @@ impl Octopod {
         let t764 = t213 * t230 - t273 * t756 - t452 * t750 - t535 * t746 - t659 * t744;
         let t774 = t154 * t170 - t195 * t764 - t270 * t756 + t432 * t750 - t530 * t746
             - t639 * t744;
-        Ok([t774, t764, t756, t750, t746, t744])
+        ::core::result::Result::Ok([t774, t764, t756, t750, t746, t744])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -3685,10 +3709,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        actuator_accelerations: &[f64; 8],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -4318,7 +4342,7 @@ impl Octopod {
             - t1206 * t1291;
         let t1321 = t717 * t733 - t750 * t1311 - t817 * t1303 + t979 * t1297
             - t1077 * t1293 - t1186 * t1291;
-        Ok([t1321, t1311, t1303, t1297, t1293, t1291])
+        ::core::result::Result::Ok([t1321, t1311, t1303, t1297, t1293, t1291])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -4335,10 +4359,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -5774,7 +5798,7 @@ impl Octopod {
         let t3409 = t3359 - t3380;
         let t3411 = t3377 - t3334;
         let t3414 = t3351 + t3326;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t159, t224, -t258, t276, -t293, t309,
                 -(minus_gcross_vx_leg1 * t316 + gcylinder_vx_leg1 * t318), grod_vx_leg1 * t336,
@@ -6159,11 +6183,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -7526,7 +7550,7 @@ impl Octopod {
         let t3301 = t3251 - t3272;
         let t3303 = t3269 - t3226;
         let t3306 = t3243 + t3218;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t145, t208, -t242, t260, t277, t293,
                 -(minus_gcross_vx_leg1 * t300 + gcylinder_vx_leg1 * t302),
@@ -7928,11 +7952,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -9710,7 +9734,7 @@ impl Octopod {
         let t4307 = t4257 - t4278;
         let t4309 = t4275 - t4232;
         let t4312 = t4249 + t4227;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t1510, t1559, -t1593, t1611, -t1629, t1645,
                 -(minus_gcross_vx_leg1 * t1651 + gcylinder_vx_leg1 * t1653), grod_vx_leg1 * t1671,
@@ -10090,10 +10114,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -11918,7 +11942,7 @@ impl Octopod {
             + t839 * t5462 + t810 * t5467;
         let t5524 = t880 * t5462
             - (t862 * t5439 + t866 * t5445 + t871 * t5452 + t876 * t5457) + t860 * t5467;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t638, t911, t946, t964, t982, t998, t494 * t1004 - t635 * t1006,
                 -(t494 * t1025 + t635 * t1027), t494 * t1045, -t638, t946, -t911, t998, -t982, t964,
@@ -12242,11 +12266,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cylinder_leg7, s_cylinder_leg7), (minus_c_cross_leg7, s_cross_leg7),
@@ -13993,7 +14017,7 @@ impl Octopod {
             + t785 * t5344 + t760 * t5349;
         let t5406 = t806 * t5327 - t804 * t5321 - t809 * t5334 - t812 * t5339
             - t815 * t5344 + t317 * t5349;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t529, t846, t881, -t899, t917, t933, t389 * t940 - t526 * t942,
                 t389 * t960 + t526 * t962, t389 * t980, t529, t881, -t846, t933, -t917, -t899,
@@ -14318,11 +14342,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 194]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 194]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -16480,7 +16504,7 @@ impl Octopod {
         let t6329 = t2035 * t6267
             - (t2017 * t6244 + t2021 * t6250 + t2026 * t6257 + t2031 * t6262)
             + t2015 * t6272;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t1793, t2065, t2099, t2117, t2135, t2151, t494 * t2157 - t1790 * t2159,
                 -(t494 * t2178 + t1790 * t2180), t494 * t2198, -t1793, t2099, -t2065, t2151, -t2135,
@@ -16803,10 +16827,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -17947,7 +17971,7 @@ impl Octopod {
         let t3381 = -minus_minus_rate_rod_leg6;
         let t3388 = -minus_minus_rate_rod_leg7;
         let t3395 = -minus_minus_rate_rod_leg8;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
                 acceleration[0], minus_gcross_vx_leg1 * t319 - t329,
@@ -18520,11 +18544,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg2, s_cross_leg2),
@@ -19587,7 +19611,7 @@ impl Octopod {
         let minus_rate_dot_rod_leg8 = t2638 - joints[23] * t3074;
         let minus_grod_wx_leg8 = t635 * grod_vz_leg8 + t629 * minus_grod_vy_leg8;
         let grod_wy_leg8 = t629 * minus_grod_vx_leg8 + t627 * grod_vz_leg8;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t160, t193, t29 * t150 - t25 * t154 + t34 * t158,
                 acceleration[0], t281 - minus_gcross_vx_leg1 * t332,
@@ -20152,11 +20176,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -21635,7 +21659,7 @@ impl Octopod {
         let t4267 = -minus_minus_rate_rod_leg6;
         let t4274 = -minus_minus_rate_rod_leg7;
         let t4281 = -minus_minus_rate_rod_leg8;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t1538, t1591,
                 t1420 * t1533 - t1418 * t855 + t1423 * t1536, t1581,
@@ -22199,10 +22223,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[4];
         let t1 = pose[5] * t0;
         let t2 = 2.0 * pose[6];
@@ -23725,7 +23749,7 @@ impl Octopod {
         let minus_minus_rate_dot_rod_leg8 = t39 * t5297 + t4824;
         let t5343 = -minus_minus_rate_rod_leg3;
         let t5354 = -minus_minus_rate_rod_leg6;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t400 * t430 - t437 * t442 + t398 * t449, t400 * t557 - t437 * t563 + t398 * t570,
                 t400 * t611 - t437 * t617 + t398 * t624, t400 * t655 - t437 * t660 + t398 * t666,
@@ -24084,11 +24108,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg5, s_cross_leg5),
@@ -25530,7 +25554,7 @@ impl Octopod {
         let minus_rate_dot_rod_leg6 = t4571 - joints[17] * t5112;
         let minus_rate_dot_rod_leg7 = t4689 - joints[20] * t5160;
         let minus_rate_dot_rod_leg8 = t4721 - joints[23] * t5188;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t310 * t340 + t346 * t351 - t308 * t358, t310 * t495 + t346 * t501 - t308 * t508,
                 t310 * t549 + t346 * t555 - t308 * t562, t310 * t593 + t346 * t598 - t308 * t604,
@@ -25888,11 +25912,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 138]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 138]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[4];
         let t1 = pose[5] * t0;
@@ -27747,7 +27771,7 @@ impl Octopod {
         let minus_minus_rate_dot_rod_leg8 = t1465 + t5645;
         let t6148 = -minus_minus_rate_rod_leg3;
         let t6159 = -minus_minus_rate_rod_leg6;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t400 * t1607 - t1614 * t1619 + t398 * t1626,
                 t400 * t1734 - t1614 * t1740 + t398 * t1747,
@@ -28117,10 +28141,10 @@ impl Octopod {
     /// 237 operations (105 additions, 132 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 200 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> [[f64; 10]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 10]; 6] {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -28241,11 +28265,11 @@ impl Octopod {
     /// 237 operations (105 additions, 132 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 200 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        pose: &[f64; 7],
-        _joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> [[f64; 10]; 6] {
+        pose: &[::core::primitive::f64; 7],
+        _joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 10]; 6] {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -28368,11 +28392,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        start: &[f64; 7],
-    ) -> Result<[[f64; 10]; 6], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 10]; 6], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -29119,7 +29143,7 @@ impl Octopod {
             - t735 * t1447;
         let t1625 = t305 * t1354 - t356 * t1612 - t410 * t1601 - t306 * t1453
             - t494 * t1449 - t715 * t1447;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t9 * t1577 - t851 + t18 * t1580,
                 t13 * t1577 - t858 + t22 * t1580, t1464 * t1577 - t1462 * t850 + t1467 * t1580,
@@ -29173,10 +29197,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-    ) -> Result<[[f64; 10]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 10]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[4];
         let t1 = pose[5] * t0;
         let t2 = 2.0 * pose[6];
@@ -29523,7 +29547,7 @@ impl Octopod {
             + t460 * t1076 + t458 * t1081;
         let t1138 = t473 * t1076
             - (t942 * t1053 + t946 * t1059 + t951 * t1066 + t477 * t1071) + t471 * t1081;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t340 * t370 - t377 * t382 + t338 * t389, t340 * t497 - t377 * t503 + t338 * t510,
                 t340 * t551 - t377 * t557 + t338 * t564, t340 * t595 - t377 * t600 + t338 * t606,
@@ -29579,9 +29603,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 7],
-        torques: &[f64; 8],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 8],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -29743,7 +29767,7 @@ impl Octopod {
             - minus_grod_wz_leg6 * torques[5];
         let minus_grod_wz_leg7 = t61 * grod_vy_leg7 - t67 * minus_minus_grod_vx_leg7;
         let grod_wz_leg8 = t86 * grod_vx_leg8 - t82 * minus_minus_grod_vy_leg8;
-        Ok([
+        ::core::result::Result::Ok([
             t126 + minus_minus_grod_vx_leg7 * torques[6] + grod_vx_leg8 * torques[7],
             t171 + grod_vy_leg7 * torques[6] + minus_minus_grod_vy_leg8 * torques[7],
             t194 + grod_vz_leg7 * torques[6] + grod_vz_leg8 * torques[7],
@@ -29765,9 +29789,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 7],
-        torques: &[f64; 8],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 8],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -30049,7 +30073,7 @@ impl Octopod {
         let t743 = grod_wy_leg6 * t726
             - (minus_minus_grod_vx_leg6 * t712 + grod_vy_leg6 * t708
                 + grod_vz_leg6 * t717 + grod_wx_leg6 * t722) - minus_grod_wz_leg6 * t706;
-        Ok([
+        ::core::result::Result::Ok([
             torques[0] + torques[2] * t442 + torques[5] * t478,
             torques[1] + torques[2] * t518 + torques[5] * t531,
             torques[3] - torques[2] * t549 - torques[5] * t562,
@@ -30073,11 +30097,11 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-        parameters: &[f64; 204],
-    ) -> Result<[f64; 8], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 204],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -31625,7 +31649,9 @@ impl Octopod {
         let t3583 = grod_vx_leg8 * t3495 + minus_minus_grod_vy_leg8 * t3485
             + grod_vz_leg8 * t3477 - minus_grod_wx_leg8 * t3471 + grod_wy_leg8 * t3467
             + grod_wz_leg8 * t3465;
-        Ok([t3506, t3517, t3528, t3539, t3550, t3561, t3572, t3583])
+        ::core::result::Result::Ok([
+            t3506, t3517, t3528, t3539, t3550, t3561, t3572, t3583,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -31643,12 +31669,12 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 7],
-        joints: &[f64; 24],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-        parameters: &[f64; 204],
-    ) -> Result<[f64; 8], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        joints: &[::core::primitive::f64; 24],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 204],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let [(minus_c_cross_leg1, s_cross_leg1),
         (minus_c_cylinder_leg1, s_cylinder_leg1), (minus_c_cross_leg2, s_cross_leg2),
         (minus_c_cylinder_leg2, s_cylinder_leg2), (minus_c_cross_leg3, s_cross_leg3),
@@ -33121,7 +33147,9 @@ impl Octopod {
         let t3455 = grod_vz_leg8 * t3347
             - (minus_grod_vx_leg8 * t3368 + minus_grod_vy_leg8 * t3358)
             - minus_grod_wx_leg8 * t3341 + grod_wy_leg8 * t3337 + grod_wz_leg8 * t3335;
-        Ok([t3378, t3389, t3400, t3411, t3422, t3433, t3444, t3455])
+        ::core::result::Result::Ok([
+            t3378, t3389, t3400, t3411, t3422, t3433, t3444, t3455,
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -33139,12 +33167,12 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 8],
-        actuator_velocities: &[f64; 8],
-        actuator_accelerations: &[f64; 8],
-        parameters: &[f64; 204],
-        start: &[f64; 7],
-    ) -> Result<[f64; 8], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 8],
+        actuator_velocities: &[::core::primitive::f64; 8],
+        actuator_accelerations: &[::core::primitive::f64; 8],
+        parameters: &[::core::primitive::f64; 204],
+        start: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
@@ -34876,7 +34904,9 @@ impl Octopod {
         let t3996 = grod_vx_leg8 * t3908 + minus_minus_grod_vy_leg8 * t3898
             + grod_vz_leg8 * t3890 - minus_grod_wx_leg8 * t3884 + grod_wy_leg8 * t3880
             + grod_wz_leg8 * t3878;
-        Ok([t3919, t3930, t3941, t3952, t3963, t3974, t3985, t3996])
+        ::core::result::Result::Ok([
+            t3919, t3930, t3941, t3952, t3963, t3974, t3985, t3996,
+        ])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -34891,9 +34921,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 7],
-        parameters: &[f64; 204],
-    ) -> Result<[[f64; 6]; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        parameters: &[::core::primitive::f64; 204],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 6]; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -37146,7 +37176,7 @@ impl Octopod {
         let t5370 = t5360 + parameters[194] * t5341 + parameters[195] * t5344
             + parameters[196] * t5348 + parameters[197] * t5351
             + parameters[198] * t5355;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t140 + t255 + t377 + t493 + t606 + t719 + t832 + t945 + t947, t1643, t2306, -t3745,
                 t3805, t3865,
@@ -37174,10 +37204,10 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        parameters: &[f64; 204],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 204],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -38477,7 +38507,7 @@ impl Octopod {
         let t2918 = t2908 + parameters[194] * t2879 + parameters[195] * t2885
             + parameters[196] * t2892 + parameters[197] * t2896
             + parameters[198] * t2903;
-        Ok([
+        ::core::result::Result::Ok([
             t2199 + t2218, t2282 + t2298,
             t2362 + t2379 + parameters[202] * t2371 + 9.81 * parameters[203],
             t2503 + t2573 + parameters[201] * t2554 + parameters[202] * t2557,
@@ -38501,12 +38531,12 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 7],
-        twist: &[f64; 6],
-        acceleration: &[f64; 6],
-        parameters: &[f64; 204],
-        preload: &[f64; 2],
-    ) -> Result<[f64; 8], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        twist: &[::core::primitive::f64; 6],
+        acceleration: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 204],
+        preload: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t1 = pose[5] * t0;
         let t3 = 2.0 * pose[6];
@@ -40148,7 +40178,7 @@ impl Octopod {
         let t3939 = grod_vx_leg8 * t3667 + minus_minus_grod_vy_leg8 * t3656
             + grod_vz_leg8 * t3648 - minus_grod_wx_leg8 * t3642 + grod_wy_leg8 * t3638
             - grod_wz_leg8 * t3636;
-        Ok([
+        ::core::result::Result::Ok([
             t3507 - preload[0] * t3599 - preload[1] * ((t3678 + t3599 * t3690) * t3708),
             t3722 - preload[0] * t3734 - preload[1] * ((t3747 + t3734 * t3690) * t3708),
             t3763 + preload[0] * t3597,
@@ -40172,9 +40202,9 @@ impl Octopod {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 7],
-        torques: &[f64; 8],
-    ) -> Result<[f64; 8], ::overact::Error> {
+        pose: &[::core::primitive::f64; 7],
+        torques: &[::core::primitive::f64; 8],
+    ) -> ::core::result::Result<[::core::primitive::f64; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -40536,7 +40566,7 @@ impl Octopod {
         let t862 = grod_vx_leg8 * t774 + minus_minus_grod_vy_leg8 * t764
             + grod_vz_leg8 * t756 - minus_grod_wx_leg8 * t750 + grod_wy_leg8 * t746
             + grod_wz_leg8 * t744;
-        Ok([t785, t796, t807, t818, t829, t840, t851, t862])
+        ::core::result::Result::Ok([t785, t796, t807, t818, t829, t840, t851, t862])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
@@ -40549,7 +40579,9 @@ impl Octopod {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 7]) -> Result<[[f64; 2]; 8], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 7],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 8], ::overact::Error> {
         let t0 = 2.0 * pose[5];
         let t3 = 2.0 * pose[6];
         let t4 = pose[6] * t3;
@@ -40932,7 +40964,7 @@ impl Octopod {
         let t946 = grod_vx_leg8 * t849 + minus_minus_grod_vy_leg8 * t838
             + grod_vz_leg8 * t830 - minus_grod_wx_leg8 * t824 + grod_wy_leg8 * t820
             - grod_wz_leg8 * t818;
-        Ok([
+        ::core::result::Result::Ok([
             [-t711, -((t860 + t711 * t759) * t878)], [-t723, -((t890 + t723 * t759) * t878)],
             [t709, 0.0], [-t735, -((t904 + t735 * t759) * t878)],
             [-t747, -((t918 + t747 * t759) * t878)], [-t759, t877],
@@ -40944,9 +40976,9 @@ impl Octopod {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -40965,7 +40997,7 @@ impl Octopod {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace_quaternion,
             )
@@ -40999,9 +41031,9 @@ impl ::overact::Model for Octopod {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(24, inputs, output, Self::joints)
@@ -41037,7 +41069,7 @@ impl ::overact::Model for Octopod {
                     60,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -41061,7 +41093,7 @@ impl ::overact::Model for Octopod {
                 ::overact::block::map1(16, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -41072,17 +41104,21 @@ impl ::overact::Model for Octopod {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
-    fn displace(&self, pose: &mut [f64], step: &[f64]) {
+    fn displace(
+        &self,
+        pose: &mut [::core::primitive::f64],
+        step: &[::core::primitive::f64],
+    ) {
         ::overact::forward::displace_quaternion(pose, step);
     }
 }

@@ -4,46 +4,62 @@
 ///
 /// 3 legs, 12 joints, 3 actuators, 3 degrees of freedom; 100 standard parameters, 43 base parameters.
 /// Source: Wenger and Chablat 2000; bar length of the prototype, other dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Orthoglide;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Orthoglide {
     /// The robot's name.
-    pub const NAME: &'static str = "Orthoglide";
+    pub const NAME: &'static ::core::primitive::str = "Orthoglide";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["along_x", "along_y", "along_z"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = [
+        "along_x", "along_y", "along_z",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["along_x", "along_y", "along_z"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "along_x", "along_y", "along_z",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "along_x.drive", "along_x.foot", "along_x.left_bar", "along_x.wrist", "along_y.drive",
         "along_y.foot", "along_y.left_bar", "along_y.wrist", "along_z.drive", "along_z.foot",
         "along_z.left_bar", "along_z.wrist",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "z"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "z"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 4, 8];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 4, 8];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [false, false, false];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        false, false, false,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.25, 0.0, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.25, 0.0, 0.0, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -396,8 +412,8 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = actuators[0] - 0.56;
         let t1 = t0 * t0;
         let t2 = actuators[1] - 0.56;
@@ -416,7 +432,9 @@ impl Orthoglide {
         let t42 = t20 * (0.0961 - (t21 * t21 + t30 * t30 + t38 * t38));
         ::overact::guard::reach(t42, "along_x")?;
         let t43 = ::overact::math::sqrt(t42);
-        Ok([t0 - t21 + t2 * t6 * t43, t30 + t7 * t43, t38 + t13 * t43])
+        ::core::result::Result::Ok([
+            t0 - t21 + t2 * t6 * t43, t30 + t7 * t43, t38 + t13 * t43,
+        ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -429,7 +447,9 @@ impl Orthoglide {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t3, "along_x")?;
@@ -455,7 +475,7 @@ impl Orthoglide {
         ::overact::guard::reach(t43, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t43);
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
-        Ok([
+        ::core::result::Result::Ok([
             pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
             ::overact::math::atan2(-minus_s_foot_along_x, c_foot_along_x),
             ::overact::math::atan2(-minus_s_left_bar_along_x, c_left_bar_along_x),
@@ -481,7 +501,9 @@ impl Orthoglide {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t3 = 1.0 - 10.40582726326743 * (pose[1] * pose[1]);
         ::overact::guard::reach(t3, "along_z")?;
         let c_left_bar_along_z = ::overact::math::sqrt(t3);
@@ -505,7 +527,7 @@ impl Orthoglide {
         let t32 = 1.0 - t7;
         ::overact::guard::reach(t32, "along_z")?;
         let c_foot_along_z = ::overact::math::sqrt(t32);
-        Ok([
+        ::core::result::Result::Ok([
             pose[0] + 0.56 - 0.31 * (c_left_bar_along_x * c_foot_along_x),
             pose[1] + 0.56 - 0.31 * (c_left_bar_along_y * c_foot_along_y),
             pose[2] + 0.56 - 0.31 * (c_left_bar_along_z * c_foot_along_z),
@@ -522,7 +544,9 @@ impl Orthoglide {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
@@ -566,7 +590,7 @@ impl Orthoglide {
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        Ok([
+        ::core::result::Result::Ok([
             [1.0, gdrive_vy_along_x, gdrive_vz_along_x],
             [gdrive_vx_along_y, 1.0, gdrive_vz_along_y],
             [gdrive_vx_along_z, gdrive_vy_along_z, 1.0],
@@ -585,9 +609,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let [(minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z), (minus_c_foot_along_x, s_foot_along_x),
@@ -609,7 +633,7 @@ impl Orthoglide {
         let minus_gdrive_vy_along_z = t13 * s_left_bar_along_z;
         let minus_gdrive_vz_along_x = t21 * s_left_bar_along_x;
         let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t5;
-        Ok([
+        ::core::result::Result::Ok([
             [1.0, -minus_gdrive_vy_along_x, -minus_gdrive_vz_along_x],
             [-minus_gdrive_vx_along_y, 1.0, -minus_gdrive_vz_along_y],
             [-minus_gdrive_vx_along_z, -minus_gdrive_vy_along_z, 1.0],
@@ -626,7 +650,9 @@ impl Orthoglide {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
@@ -701,7 +727,7 @@ impl Orthoglide {
         let t100 = gdrive_vy_along_z - gdrive_vx_along_z * t42;
         let t106 = t72 * (1.0 - gdrive_vx_along_z * t60 - t63 * t100);
         let t108 = t49 * t100 - t63 * t106;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t32 - t42 * t78 - t60 * t76, gdrive_vx_along_y * t32 - t42 * t93 - t60 * t91,
                 gdrive_vx_along_z * t32 - t42 * t108 - t60 * t106,
@@ -721,9 +747,9 @@ impl Orthoglide {
     /// 24 operations (0 additions, 24 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 21 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let [(minus_c_foot_along_x, s_foot_along_x),
         (s_left_bar_along_x, c_left_bar_along_x),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
@@ -780,9 +806,9 @@ impl Orthoglide {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 12],
-    ) -> [[f64; 3]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 12] {
         [
             [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0],
             [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
@@ -802,9 +828,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let [(s_left_bar_along_x, c_left_bar_along_x),
         (minus_c_foot_along_x, s_foot_along_x), (s_left_bar_along_y, c_left_bar_along_y),
         (minus_c_foot_along_y, s_foot_along_y), (s_left_bar_along_z, c_left_bar_along_z),
@@ -829,7 +855,7 @@ impl Orthoglide {
         let minus_gdrive_vy_along_z = t25 * s_left_bar_along_z;
         let minus_gdrive_vz_along_x = t29 * s_left_bar_along_x;
         let minus_gdrive_vz_along_y = minus_c_foot_along_y * c_left_bar_along_y * t14;
-        Ok([
+        ::core::result::Result::Ok([
             [-t6, t6 * minus_gdrive_vy_along_x, t6 * minus_gdrive_vz_along_x],
             [t13 * minus_gdrive_vx_along_y, -t13, t13 * minus_gdrive_vz_along_y],
             [t23 * minus_gdrive_vx_along_z, t23 * minus_gdrive_vy_along_z, -t23],
@@ -846,9 +872,9 @@ impl Orthoglide {
     /// 9 operations (0 additions, 9 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 12 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(_, c_left_bar_along_x), (_, s_foot_along_x), (_, c_left_bar_along_y),
         (_, s_foot_along_y), (_, c_left_bar_along_z), (_, s_foot_along_z)] = ::overact::math::sin_cos_all([
             joints[2], joints[1], joints[6], joints[5], joints[10], joints[9],
@@ -878,9 +904,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t2, "along_x")?;
@@ -946,7 +972,7 @@ impl Orthoglide {
             * (minus_s_left_bar_along_z * minus_s_foot_along_z * t27);
         let minus_rate_foot_along_z = t58 + minus_gfoot_vy_along_z * twist[1];
         let minus_rate_left_bar_along_z = minus_gleft_bar_vy_along_z * twist[1];
-        Ok([
+        ::core::result::Result::Ok([
             rate_drive_along_x, -minus_rate_foot_along_x, -minus_rate_left_bar_along_x,
             minus_rate_foot_along_x, rate_drive_along_y, -minus_rate_foot_along_y,
             -minus_rate_left_bar_along_y, minus_rate_foot_along_y, rate_drive_along_z,
@@ -967,10 +993,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
@@ -1070,7 +1096,7 @@ impl Orthoglide {
         let minus_rate_dot_foot_along_z = minus_gfoot_vx_along_z * t128
             + minus_gfoot_vy_along_z * t133;
         let minus_rate_dot_left_bar_along_z = minus_gleft_bar_vy_along_z * t133;
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_drive_along_x, -minus_rate_dot_foot_along_x, -minus_rate_dot_left_bar_along_x,
             minus_rate_dot_foot_along_x, rate_dot_drive_along_y, -minus_rate_dot_foot_along_y,
             -minus_rate_dot_left_bar_along_y, minus_rate_dot_foot_along_y, rate_dot_drive_along_z,
@@ -1091,9 +1117,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
@@ -1166,7 +1192,7 @@ impl Orthoglide {
             + gdrive_vz_along_y * actuator_velocities[1] + actuator_velocities[2]
             - t31 * t70 - t73 * t60) / t89;
         let t92 = t54 * t60 - t73 * t90;
-        Ok([t31 * t36 - t47 * t92 - t70 * t90, t92, t90])
+        ::core::result::Result::Ok([t31 * t36 - t47 * t92 - t70 * t90, t92, t90])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1182,10 +1208,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t2, "along_x")?;
@@ -1293,7 +1319,7 @@ impl Orthoglide {
         let t165 = (gdrive_vz_along_x * t31 + gdrive_vz_along_y * t78 + t116
             - t118 * t145 - t148 * t138) / t164;
         let t167 = t132 * t138 - t148 * t165;
-        Ok([t118 * t123 - t127 * t167 - t145 * t165, t167, t165])
+        ::core::result::Result::Ok([t118 * t123 - t127 * t167 - t145 * t165, t167, t165])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1310,10 +1336,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let t2 = 1.0 - 10.40582726326743 * (pose[2] * pose[2]);
         ::overact::guard::reach(t2, "along_x")?;
         let c_left_bar_along_x = ::overact::math::sqrt(t2);
@@ -1574,7 +1600,7 @@ impl Orthoglide {
         let t457 = gdrive_vy_along_z * t448 - minus_gfoot_vy_along_z * t450
             + 3.225806451612903 * t394;
         let t459 = t399 - 0.31 * t361;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, -t82, t93,
@@ -1683,11 +1709,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
         (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
@@ -1943,7 +1969,7 @@ impl Orthoglide {
         let t462 = 3.225806451612903 * t393 + minus_gdrive_vy_along_z * t454
             - s_left_bar_along_z * t398;
         let t464 = 0.31 * t359 - t397;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, 0.0, t64, t75,
@@ -2082,11 +2108,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t1 = 10.40582726326743 * (pose[2] * pose[2]);
         let t2 = 1.0 - t1;
@@ -2395,7 +2421,7 @@ impl Orthoglide {
         let t515 = gdrive_vy_along_z * t507 - minus_s_left_bar_along_z * t435
             + 3.225806451612903 * t440;
         let t517 = t431 + 0.31 * t455;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, 0.0, -t195, t204,
@@ -2460,10 +2486,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         let t2 = 1.0 - t1;
@@ -2800,7 +2826,7 @@ impl Orthoglide {
             - minus_s_foot_along_z * t565 + t539 * t646 - t573 * t648;
         let t668 = t541 + 0.31 * t581 - 0.31 * t579;
         let t670 = minus_rate_foot_along_z * t503;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, -t102, t98 * t123 - t127, t136,
@@ -2860,11 +2886,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
         (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
@@ -3199,7 +3225,7 @@ impl Orthoglide {
             + minus_c_foot_along_z * t565 - t539 * t647 + t573 * t645;
         let t667 = 0.31 * t579 + t541 + 0.31 * t581;
         let t669 = minus_rate_foot_along_z * t499;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_drive_along_x, rate_dot_drive_along_x, rate_drive_along_x,
                 ::overact::math::sign(rate_drive_along_x), 1.0, t105, t128 + t101 * t129, t139,
@@ -3259,11 +3285,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 100]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 100]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 10.40582726326743 * (pose[2] * pose[2]);
         let t3 = 1.0 - t2;
@@ -3647,7 +3673,7 @@ impl Orthoglide {
             - minus_s_foot_along_z * t635 + t609 * t715 - t643 * t717;
         let t737 = t611 + 0.31 * t651 - 0.31 * t649;
         let t739 = minus_rate_foot_along_z * t186;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, -t232, t61 * t253 - t257, t266,
@@ -3706,10 +3732,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t3 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         ::overact::guard::reach(t3, "along_x")?;
@@ -3900,7 +3926,7 @@ impl Orthoglide {
         let t413 = t186 - 0.31 * t278;
         let t418 = t194 + 0.31 * t290;
         let t423 = t208 - 0.31 * t301;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], rate_dot_drive_along_x, gdrive_vx_along_y * rate_dot_drive_along_y,
                 gdrive_vx_along_z * t133, gdrive_vx_along_z * rate_dot_drive_along_z,
@@ -4025,11 +4051,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
         (s_left_bar_along_x, c_left_bar_along_x),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_y, s_foot_along_y),
@@ -4201,7 +4227,7 @@ impl Orthoglide {
         let t406 = t178 + 0.31 * t269;
         let t411 = t183 + t283 / t47;
         let t415 = t199 + 0.31 * t296;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], rate_dot_drive_along_x,
                 -(minus_gdrive_vx_along_y * rate_dot_drive_along_y),
@@ -4330,11 +4356,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t2 = 1.0 - minus_s_left_bar_along_x * minus_s_left_bar_along_x;
@@ -4558,7 +4584,7 @@ impl Orthoglide {
         let t475 = t252 - 0.31 * t346;
         let t480 = t267 + t358 / t25;
         let t484 = t273 - 0.31 * t368;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t201, actuator_accelerations[0], gdrive_vx_along_y * actuator_accelerations[1],
                 gdrive_vx_along_z * t207, gdrive_vx_along_z * actuator_accelerations[2],
@@ -4680,10 +4706,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let t1 = 10.40582726326743 * (pose[0] * pose[0]);
         let t2 = 1.0 - t1;
         ::overact::guard::reach(t2, "along_y")?;
@@ -4913,7 +4939,7 @@ impl Orthoglide {
         let t577 = t255 + 0.31 * t380 - 0.31 * t378;
         let t590 = t263 + 0.31 * t399 - 0.31 * t397;
         let t592 = minus_rate_foot_along_z * t167;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t58 * acceleration[0] - t60 * acceleration[1] - t63 * t64, rate_dot_drive_along_x,
                 0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
@@ -5028,11 +5054,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let [(minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
         (s_left_bar_along_z, c_left_bar_along_z), (minus_c_foot_along_x, s_foot_along_x),
@@ -5256,7 +5282,7 @@ impl Orthoglide {
         let t570 = minus_rate_foot_along_y * t122;
         let t583 = 0.31 * t390 + t256 + 0.31 * t392;
         let t585 = minus_rate_foot_along_z * t156;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t38 * acceleration[0] + t40 * acceleration[1] - t43 * t44, rate_dot_drive_along_x,
                 0.0, 0.0, 0.0, rate_drive_along_x, 0.0, 0.0,
@@ -5370,11 +5396,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 43]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 43]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let t1 = minus_s_left_bar_along_z * minus_s_left_bar_along_z;
@@ -5649,7 +5675,7 @@ impl Orthoglide {
         let t647 = t325 + 0.31 * t450 - 0.31 * t448;
         let t660 = t333 + 0.31 * t469 - 0.31 * t467;
         let t662 = minus_rate_foot_along_z * t178;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t50 * t217 - t219 * t213 - t222 * t223, actuator_accelerations[0], 0.0, 0.0, 0.0,
                 actuator_velocities[0], 0.0, 0.0, ::overact::math::sign(actuator_velocities[0]),
@@ -5760,10 +5786,10 @@ impl Orthoglide {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        _pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [-(-9.81 - acceleration[2])]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -5780,11 +5806,11 @@ impl Orthoglide {
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        _pose: &[f64; 3],
-        _joints: &[f64; 12],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 1]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 1]; 3] {
         [[acceleration[0]], [acceleration[1]], [-(-9.81 - acceleration[2])]]
     }
     /// The payload's columns of case 1, eq. (38).
@@ -5803,11 +5829,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
@@ -5931,7 +5957,9 @@ impl Orthoglide {
             * (gdrive_vz_along_x * t108 + gdrive_vz_along_y * t142 + t173 - t51 * t175
                 - t69 * t182);
         let t194 = t68 * t182 - t69 * t192;
-        Ok([[t33 * t175 - t65 * t194 - t51 * t192], [t194], [-(-9.81 - t192)]])
+        ::core::result::Result::Ok([
+            [t33 * t175 - t65 * t194 - t51 * t192], [t194], [-(-9.81 - t192)],
+        ])
     }
     /// The payload's columns of case 2, eq. (38).
     ///
@@ -5948,10 +5976,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 3],
-        _twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 1]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        _twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let minus_s_left_bar_along_z = 3.225806451612903 * pose[1];
         let t2 = 1.0 - minus_s_left_bar_along_z * minus_s_left_bar_along_z;
         ::overact::guard::reach(t2, "along_z")?;
@@ -6014,7 +6042,7 @@ impl Orthoglide {
             - (gdrive_vz_along_y - gdrive_vz_along_x * gdrive_vx_along_y) * t46
                 * acceleration[1]
             - (1.0 - gdrive_vy_along_x * gdrive_vx_along_y) * t46 * t53;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t24 * t46 * acceleration[0] - t38 * t46 * acceleration[1]
                     - t43 * t46 * t53,
@@ -6036,9 +6064,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t2 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
         ::overact::guard::reach(t2, "along_y")?;
@@ -6083,7 +6111,7 @@ impl Orthoglide {
         let gdrive_vy_along_z = pose[1] * minus_gfoot_vx_along_z;
         let gdrive_vz_along_x = pose[2] * minus_gfoot_vy_along_x;
         let gdrive_vz_along_y = pose[2] * minus_gfoot_vz_along_y;
-        Ok([
+        ::core::result::Result::Ok([
             torques[0] + gdrive_vx_along_y * torques[1] + gdrive_vx_along_z * torques[2],
             gdrive_vy_along_x * torques[0] + torques[1] + gdrive_vy_along_z * torques[2],
             gdrive_vz_along_x * torques[0] + gdrive_vz_along_y * torques[1] + torques[2],
@@ -6099,7 +6127,10 @@ impl Orthoglide {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 3], torques: &[f64; 3]) -> [f64; 3] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> [::core::primitive::f64; 3] {
         [torques[0], torques[1], torques[2]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -6117,11 +6148,11 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 101],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 101],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         let t2 = 1.0 - t1;
@@ -6550,7 +6581,7 @@ impl Orthoglide {
             - t902 * t893) / t966;
         let t969 = t757 * t893 - t902 * t967;
         let t973 = t741 * t746 - t750 * t969 - t899 * t967;
-        Ok([
+        ::core::result::Result::Ok([
             t973 + gdrive_vy_along_x * t969 + gdrive_vz_along_x * t967,
             gdrive_vx_along_y * t973 + t969 + gdrive_vz_along_y * t967,
             gdrive_vx_along_z * t973 + gdrive_vy_along_z * t969 + t967,
@@ -6572,12 +6603,12 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 101],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 101],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(minus_c_foot_along_x, s_foot_along_x),
         (s_left_bar_along_x, c_left_bar_along_x), (minus_c_foot_along_y, s_foot_along_y),
         (s_left_bar_along_y, c_left_bar_along_y), (minus_c_foot_along_z, s_foot_along_z),
@@ -6995,7 +7026,7 @@ impl Orthoglide {
             - t905 * t894) / t969;
         let t972 = t757 * t894 - t905 * t970;
         let t976 = t740 * t745 - t750 * t972 - t902 * t970;
-        Ok([
+        ::core::result::Result::Ok([
             t976 - minus_gdrive_vy_along_x * t972 - minus_gdrive_vz_along_x * t970,
             t972 - minus_gdrive_vx_along_y * t976 - minus_gdrive_vz_along_y * t970,
             t970 - (minus_gdrive_vx_along_z * t976 + minus_gdrive_vy_along_z * t972),
@@ -7017,12 +7048,12 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 101],
-        start: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 101],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t1 = minus_s_left_bar_along_y * minus_s_left_bar_along_y;
@@ -7481,7 +7512,7 @@ impl Orthoglide {
                 - t79 * t938);
         let t998 = t58 * t938 - t79 * t996;
         let t1002 = t33 * t800 - t55 * t998 - t71 * t996;
-        Ok([
+        ::core::result::Result::Ok([
             t1002 + gdrive_vy_along_x * t998 + gdrive_vz_along_x * t996,
             gdrive_vx_along_y * t1002 + t998 + gdrive_vz_along_y * t996,
             gdrive_vx_along_z * t1002 + gdrive_vy_along_z * t998 + t996,
@@ -7500,9 +7531,9 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 101],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 101],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = parameters[0] + parameters[1];
         let minus_s_left_bar_along_y = 3.225806451612903 * pose[0];
         let t7 = 1.0 - minus_s_left_bar_along_y * minus_s_left_bar_along_y;
@@ -7864,7 +7895,9 @@ impl Orthoglide {
                         + t315 * parameters[32]));
         let t819 = t809 + gdrive_vz_along_y * t587 - minus_gfoot_vz_along_y * t625 + t198
             + parameters[74] + parameters[84] + parameters[94] + parameters[98] + t310;
-        Ok([[t311, t489, t642], [t489, t730, t780], [t642, t780, t819]])
+        ::core::result::Result::Ok([
+            [t311, t489, t642], [t489, t730, t780], [t642, t780, t819],
+        ])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -7880,10 +7913,10 @@ impl Orthoglide {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 101],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 101],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let minus_s_left_bar_along_x = 3.225806451612903 * pose[2];
         let t1 = minus_s_left_bar_along_x * minus_s_left_bar_along_x;
         let t2 = 1.0 - t1;
@@ -8288,18 +8321,20 @@ impl Orthoglide {
         let t869 = gdrive_vz_along_x * t157 - minus_gfoot_vz_along_x * t779
             - minus_gleft_bar_vz_along_x * t862 + gdrive_vz_along_y * t320
             - minus_gfoot_vz_along_y * t406 + t609;
-        Ok([t696, t822, t869 + 9.81 * (parameters[99] + parameters[100])])
+        ::core::result::Result::Ok([
+            t696, t822, t869 + 9.81 * (parameters[99] + parameters[100]),
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps. It is `pose_in_closed_form` where that has a value.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        if let Ok(pose) = Self::pose_in_closed_form(actuators) {
-            return Ok(pose);
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
+            return ::core::result::Result::Ok(pose);
         }
         let mut pose = *start;
         ::overact::forward::gauss_newton(
@@ -8319,7 +8354,7 @@ impl Orthoglide {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -8353,9 +8388,9 @@ impl ::overact::Model for Orthoglide {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -8391,7 +8426,7 @@ impl ::overact::Model for Orthoglide {
                     3,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -8409,7 +8444,7 @@ impl ::overact::Model for Orthoglide {
                 ::overact::block::map3(3, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -8420,14 +8455,14 @@ impl ::overact::Model for Orthoglide {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

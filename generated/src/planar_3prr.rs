@@ -4,44 +4,58 @@
 ///
 /// 3 legs, 9 joints, 3 actuators, 3 degrees of freedom; 37 standard parameters, 28 base parameters.
 /// Source: After Zhang, Mills and Cleghorn 2007; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Planar3Prr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Planar3Prr {
     /// The robot's name.
-    pub const NAME: &'static str = "Planar3Prr";
+    pub const NAME: &'static ::core::primitive::str = "Planar3Prr";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 9;
+    pub const JOINTS: ::core::primitive::usize = 9;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "leg1", "leg2", "leg3",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 9] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 9] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 3, 6];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [false, false, false];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        false, false, false,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.25922962793636145, 4.008668472301665, -5.579464799096567, 0.25922962793636145,
         4.008668472301665, -7.673859901489763, 0.25922962793636106, 4.008668472301664,
         -9.768255003882958,
@@ -189,7 +203,9 @@ impl Planar3Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t4 = 0.08 * c_phi;
@@ -229,7 +245,7 @@ impl Planar3Prr {
             + s23_leg3 * minus_s2_leg3;
         let s3_leg3 = 2.9411764705882355 * (t111 * s23_leg3)
             - minus_c23_leg3 * minus_s2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             -(pose[0] - t2 - 0.34 * minus_s2_leg1),
             ::overact::math::atan2(
                 0.6470588235292607 * minus_s2_leg1 + 2.242470829899291 * t6,
@@ -270,7 +286,9 @@ impl Planar3Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t4 = 0.08 * c_phi;
@@ -294,7 +312,7 @@ impl Planar3Prr {
         let t53 = 8.650519031141869 * (t46 * t46 - (t41 * t41 + t44 * t44 - 0.1156));
         ::overact::guard::reach(t53, "leg3")?;
         let minus_s2_leg3 = ::overact::math::sqrt(t53);
-        Ok([
+        ::core::result::Result::Ok([
             -(pose[0] - t2 - 0.34 * minus_s2_leg1), t29 + 0.34 * minus_s2_leg2,
             t46 + 0.34 * minus_s2_leg3,
         ])
@@ -310,7 +328,9 @@ impl Planar3Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -354,7 +374,7 @@ impl Planar3Prr {
         let g1_wz_leg1 = t2 * minus_g1_vy_leg1 + t11;
         let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t6 * g1_vy_leg3 + t15 * minus_g1_vx_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [-1.0, -minus_g1_vy_leg1, g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, -minus_g1_wz_leg2],
             [-minus_g1_vx_leg3, g1_vy_leg3, g1_wz_leg3],
@@ -373,9 +393,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s2_leg1, c2_leg1), (s_phi, c_phi),
         ] = ::overact::math::sin_cos_all([joints[4], joints[7], joints[1], pose[2]]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
@@ -395,7 +415,7 @@ impl Planar3Prr {
         let t36 = 0.06928203230275509 * c_phi;
         let g1_wz_leg2 = g1_vx_leg2 * (t31 + t32) - minus_g1_vy_leg2 * (t35 - t36);
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t36 + t35) + g1_vx_leg3 * (t31 - t32);
-        Ok([
+        ::core::result::Result::Ok([
             [-1.0, g1_vy_leg1, g1_wz_leg1], [g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3, -minus_g1_wz_leg3],
         ])
@@ -411,7 +431,9 @@ impl Planar3Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -485,7 +507,7 @@ impl Planar3Prr {
         let t154 = g1_vy_leg3 + minus_g1_vx_leg3 * t85;
         let t160 = t126 * (g1_wz_leg3 + minus_g1_vx_leg3 * t113 - t116 * t154);
         let t162 = t93 * t154 - t116 * t160;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t64 + t85 * t132 + t113 * t130),
                 -(minus_g1_vx_leg2 * t64 + t85 * t147 + t113 * t145),
@@ -506,9 +528,9 @@ impl Planar3Prr {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 18 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 9]; 9] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 9]; 9] {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7],
         ]);
@@ -547,9 +569,9 @@ impl Planar3Prr {
     /// 10 operations (4 additions, 6 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 6 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 9],
-    ) -> [[f64; 3]; 9] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 9] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t4 = 0.06928203230275509 * s_phi;
         let t5 = 0.04 * c_phi;
@@ -574,9 +596,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi),
         ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7], pose[2]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
@@ -601,7 +623,7 @@ impl Planar3Prr {
         let minus_g1_vy_leg3 = t22 * t47;
         let g1_vx_leg3 = t13 * t47;
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t41 + t40) + g1_vx_leg3 * (t35 - t36);
-        Ok([
+        ::core::result::Result::Ok([
             [-t2, 0.34 * c2_leg1, t2 * g1_wz_leg1],
             [0.34 * t7, -(0.34 * t18), 0.34 * s2_leg2 * g1_wz_leg2],
             [0.34 * t13, -(0.34 * t22), -(0.34 * s2_leg3 * minus_g1_wz_leg3)],
@@ -618,9 +640,9 @@ impl Planar3Prr {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 3 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7],
         ]);
@@ -642,9 +664,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t6 = pose[1] + t2 - 0.3;
@@ -698,7 +720,7 @@ impl Planar3Prr {
         let g2_vx_leg3 = 2.5471335405424664 * t90;
         let minus_g2_vy_leg3 = 1.4705882352941178 * t90;
         let rate_2_leg3 = g2_vx_leg3 * t100 - minus_g2_vy_leg3 * t93;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2,
             -minus_rate_2_leg2, minus_rate_2_leg2 + twist[2], rate_1_leg3, rate_2_leg3,
             twist[2] - rate_2_leg3,
@@ -718,10 +740,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t5 = 0.08 * s_phi;
@@ -797,7 +819,7 @@ impl Planar3Prr {
         let minus_rate_dot_1_leg3 = t118 * t148;
         let minus_rate_dot_2_leg3 = 2.9411764705882355 * t118
             * (0.5 * t136 - 0.8660254037844386 * t129 - t121 * t146);
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
             -minus_rate_dot_1_leg3, -minus_rate_dot_2_leg3, minus_rate_dot_2_leg3 + acceleration[2],
@@ -816,9 +838,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -891,7 +913,7 @@ impl Planar3Prr {
             - minus_g1_wz_leg2 * actuator_velocities[1]
             + g1_wz_leg3 * actuator_velocities[2] + t63 * t124 - t127 * t105) / t145;
         let t148 = t98 * t105 - t127 * t146;
-        Ok([-(t63 * t68 + t90 * t148 + t124 * t146), t148, t146])
+        ::core::result::Result::Ok([-(t63 * t68 + t90 * t148 + t124 * t146), t148, t146])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -907,10 +929,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t3 = t2 * twist[2];
@@ -1011,7 +1033,9 @@ impl Planar3Prr {
         let t197 = (g1_wz_leg1 * t33 - minus_g1_wz_leg2 * t81 + g1_wz_leg3 * t126
             + t128 * t175 - t178 * t156) / t196;
         let t199 = t149 * t156 - t178 * t197;
-        Ok([-(t128 * t133 + t141 * t199 + t175 * t197), t199, t197])
+        ::core::result::Result::Ok([
+            -(t128 * t133 + t141 * t199 + t175 * t197), t199, t197,
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1028,10 +1052,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t3 = t2 * twist[2];
@@ -1146,7 +1170,7 @@ impl Planar3Prr {
         let t271 = twist[2] - rate_2_leg3;
         let t276 = 12.5 * t20;
         let t277 = 12.5 * t7;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, minus_rate_1_leg1,
                 ::overact::math::sign(minus_rate_1_leg1), -1.0, 0.0, -t43, -t42,
@@ -1227,11 +1251,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
@@ -1332,7 +1356,7 @@ impl Planar3Prr {
         let t247 = twist[2] - rate_2_leg3;
         let t252 = 12.5 * t15;
         let t253 = 12.5 * t7;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 minus_rate_dot_1_leg1, minus_rate_dot_1_leg1, -rate_1_leg1,
                 -::overact::math::sign(rate_1_leg1), -1.0, 0.0, t39, -t38, minus_rate_dot_1_leg1,
@@ -1406,11 +1430,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
@@ -1567,7 +1591,7 @@ impl Planar3Prr {
         let t351 = minus_rate_2_leg3 + rate_3_leg1;
         let t356 = 12.5 * t219;
         let t357 = 12.5 * t315;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -actuator_accelerations[0], -actuator_accelerations[0], -actuator_velocities[0],
                 -::overact::math::sign(actuator_velocities[0]), -1.0, 0.0, -t224, -t221,
@@ -1642,10 +1666,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t3 = t2 * twist[2];
@@ -1786,7 +1810,7 @@ impl Planar3Prr {
         let t347 = 12.5 * t21;
         let t352 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t370 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, -minus_rate_1_leg1,
                 -::overact::math::sign(minus_rate_1_leg1), 1.0, -(t131 * rate_dot_2_leg1),
@@ -1865,11 +1889,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
@@ -1989,7 +2013,7 @@ impl Planar3Prr {
         let t306 = 12.5 * t7;
         let t311 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t329 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
                 ::overact::math::sign(rate_1_leg1), 1.0, -(t93 * minus_rate_dot_2_leg1),
@@ -2055,11 +2079,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.08 * c_phi;
@@ -2243,7 +2267,7 @@ impl Planar3Prr {
         let t440 = 12.5 * t256;
         let t445 = c_phi * t254 + s_phi * t320;
         let t463 = c_phi * t320 - s_phi * t254;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, -(t110 * rate_dot_2_leg1),
@@ -2321,10 +2345,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * c_phi;
         let t3 = t2 * twist[2];
@@ -2423,7 +2447,7 @@ impl Planar3Prr {
         let t238 = twist[2] - rate_2_leg1;
         let t242 = minus_rate_2_leg2 + twist[2];
         let t247 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
@@ -2500,11 +2524,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         ] = ::overact::math::sin_cos_all([pose[2], joints[1], joints[4], joints[7]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
@@ -2589,7 +2613,7 @@ impl Planar3Prr {
         let t215 = minus_rate_2_leg1 + twist[2];
         let t219 = twist[2] - rate_2_leg2;
         let t224 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], minus_rate_dot_1_leg1,
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3, -rate_1_leg1,
@@ -2661,11 +2685,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
@@ -2809,7 +2833,7 @@ impl Planar3Prr {
         let t322 = rate_3_leg1 - rate_2_leg1;
         let t326 = minus_rate_2_leg2 + rate_3_leg1;
         let t331 = minus_rate_2_leg3 + rate_3_leg1;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t216, t219, -t228, -actuator_accelerations[0],
                 -(minus_g1_vx_leg2 * actuator_accelerations[1]),
@@ -2883,10 +2907,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -3021,7 +3045,7 @@ impl Planar3Prr {
         let t345 = twist[2] - rate_2_leg1;
         let t352 = minus_rate_2_leg2 + twist[2];
         let t359 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t101 * acceleration[2], t112 * t117 - t122 * t127 + t101 * t132,
                 t122 * t117 + t112 * t127 - t101 * t159,
@@ -3083,11 +3107,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi), (s2_leg1, c2_leg1),
         ] = ::overact::math::sin_cos_all([joints[4], joints[7], pose[2], joints[1]]);
         ::overact::guard::leg(s2_leg2, 0.7624400821657589, "leg2")?;
@@ -3201,7 +3225,7 @@ impl Planar3Prr {
         let t307 = minus_rate_2_leg1 + twist[2];
         let t314 = twist[2] - rate_2_leg2;
         let t321 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t62 * acceleration[2], t73 * t78 + t83 * t88 + t62 * t93,
                 t83 * t78 - t73 * t88 - t62 * t120,
@@ -3263,11 +3287,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -3445,7 +3469,7 @@ impl Planar3Prr {
         let t438 = rate_3_leg1 - rate_2_leg1;
         let t445 = minus_rate_2_leg2 + rate_3_leg1;
         let t452 = minus_rate_2_leg3 + rate_3_leg1;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t101 * rate_dot_3_leg1, t253 * t256 - t261 * t264 + t101 * t277,
                 t261 * t256 + t253 * t264 + t101 * t304, -(t261 * t275 + t253 * t269),
@@ -3505,9 +3529,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -3551,7 +3575,7 @@ impl Planar3Prr {
         let g1_wz_leg1 = t6 * minus_g1_vy_leg1 + t15;
         let minus_g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t16 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t5 * g1_vy_leg3 + t14 * minus_g1_vx_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             -(torques[0] + minus_g1_vx_leg2 * torques[1]
                 + minus_g1_vx_leg3 * torques[2]),
             g1_vy_leg3 * torques[2]
@@ -3570,7 +3594,10 @@ impl Planar3Prr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 3], torques: &[f64; 3]) -> [f64; 3] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> [::core::primitive::f64; 3] {
         [torques[0], torques[1], torques[2]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -3588,11 +3615,11 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 37],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 37],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
         let t3 = 0.08 * c_phi;
@@ -3777,7 +3804,7 @@ impl Planar3Prr {
         let t387 = (t296 + t307 - t324 * t334 - t357 * t375) / t386;
         let t392 = t356 * t375 - t357 * t387;
         let t396 = t324 * t333 - t353 * t392 - t334 * t387;
-        Ok([
+        ::core::result::Result::Ok([
             g1_wz_leg1 * t387 - (t396 + minus_g1_vy_leg1 * t392),
             -(minus_g1_vx_leg2 * t396 + minus_g1_vy_leg2 * t392
                 + minus_g1_wz_leg2 * t387),
@@ -3800,12 +3827,12 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 37],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 37],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s_phi, c_phi),
         ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7], pose[2]]);
         ::overact::guard::leg(s2_leg1, 0.7624400821657589, "leg1")?;
@@ -3967,7 +3994,7 @@ impl Planar3Prr {
         let t347 = (t321 + t332 - t281 * t302 - t305 * t283) / t346;
         let t349 = t43 * t283 - t305 * t347;
         let t355 = t281 * t39 + t40 * t349 - t302 * t347;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t349 - t355 + g1_wz_leg1 * t347,
             g1_vx_leg2 * t355 - minus_g1_vy_leg2 * t349 + g1_wz_leg2 * t347,
             g1_vx_leg3 * t355 - minus_g1_vy_leg3 * t349 - minus_g1_wz_leg3 * t347,
@@ -3989,12 +4016,12 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 37],
-        start: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 37],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.08 * s_phi;
@@ -4209,7 +4236,7 @@ impl Planar3Prr {
         let t440 = t125 * (t387 + t398 - t99 * t417 - t122 * t437);
         let t445 = t121 * t437 - t122 * t440;
         let t449 = t98 * t417 - t118 * t445 - t99 * t440;
-        Ok([
+        ::core::result::Result::Ok([
             g1_wz_leg1 * t440 - (t449 + minus_g1_vy_leg1 * t445),
             -(minus_g1_vx_leg2 * t449 + minus_g1_vy_leg2 * t445
                 + minus_g1_wz_leg2 * t440),
@@ -4229,9 +4256,9 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 37],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 37],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -4366,7 +4393,7 @@ impl Planar3Prr {
         let t324 = g1_wz_leg1 * t214 - minus_g2_wz_leg1 * t297
             - (minus_g2_wz_leg2 * t227 - minus_g1_wz_leg2 * t241) + g1_wz_leg3 * t265
             + minus_g2_wz_leg3 * t271;
-        Ok([
+        ::core::result::Result::Ok([
             [t112, -t190, -t275],
             [
                 -t190, t287 + g1_vy_leg3 * t181 + minus_g2_vy_leg3 * t187 + parameters[36], t313,
@@ -4388,10 +4415,10 @@ impl Planar3Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 37],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 37],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c23_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.08 * minus_c23_leg2;
@@ -4537,16 +4564,18 @@ impl Planar3Prr {
         let t300 = g1_wz_leg1 * t152 - t102 * t262 + t260 + t240
             - (minus_g1_wz_leg2 * t230 + minus_g2_wz_leg2 * t241) + g1_wz_leg3 * t99
             - minus_g2_wz_leg3 * t71 + t70;
-        Ok([t251, t272 - (parameters[34] * t246 + parameters[35] * t248), t300])
+        ::core::result::Result::Ok([
+            t251, t272 - (parameters[34] * t246 + parameters[35] * t248), t300,
+        ])
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
     ///
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -4565,7 +4594,7 @@ impl Planar3Prr {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -4599,9 +4628,9 @@ impl ::overact::Model for Planar3Prr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(9, inputs, output, Self::joints)
@@ -4645,7 +4674,7 @@ impl ::overact::Model for Planar3Prr {
                 ::overact::block::map3(3, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -4656,14 +4685,14 @@ impl ::overact::Model for Planar3Prr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

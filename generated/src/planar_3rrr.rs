@@ -4,44 +4,58 @@
 ///
 /// 3 legs, 9 joints, 3 actuators, 3 degrees of freedom; 37 standard parameters, 28 base parameters.
 /// Source: After Gosselin and Angeles 1988; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Planar3Rrr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Planar3Rrr {
     /// The robot's name.
-    pub const NAME: &'static str = "Planar3Rrr";
+    pub const NAME: &'static ::core::primitive::str = "Planar3Rrr";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 9;
+    pub const JOINTS: ::core::primitive::usize = 9;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "leg1", "leg2", "leg3",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 9] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 9] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 3, 6];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.245927859731928, 1.7913295877157316, -5.608053774242556, 2.2459278597319274,
         1.7913295877157318, -7.702448876635752, 2.2459278597319283, 1.7913295877157316,
         -9.796843979028948,
@@ -184,7 +198,9 @@ impl Planar3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 9], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let t3 = pose[0] - t2;
@@ -240,7 +256,7 @@ impl Planar3Rrr {
         let t172 = t134 - t146;
         let t174 = t70 * t170 + t62 * t172;
         let t178 = t70 * t172 - t62 * t170;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 3.1249999999999982 * t15 - 3.903123748999 * t19,
                 -(3.1249999999999982 * t19 + 3.903123748999 * t15),
@@ -290,7 +306,9 @@ impl Planar3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let t3 = pose[0] - t2;
@@ -323,7 +341,7 @@ impl Planar3Rrr {
         let t85 = ::overact::math::sqrt(t84);
         let t87 = 0.5 * t75 - t79 * t85;
         let t91 = 0.5 * t79 + t75 * t85;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 3.1249999999999982 * t15 - 3.903123748999 * t19,
                 -(3.1249999999999982 * t19 + 3.903123748999 * t15),
@@ -349,7 +367,9 @@ impl Planar3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let t3 = pose[0] - t2;
@@ -403,7 +423,7 @@ impl Planar3Rrr {
         let g1_wz_leg1 = t5 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
         let g1_wz_leg2 = t31 * g1_vx_leg2 - t23 * minus_g1_vy_leg2;
         let minus_g1_wz_leg3 = t22 * minus_g1_vy_leg3 + t30 * g1_vx_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
             [g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3, -minus_g1_wz_leg3],
@@ -422,9 +442,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t6 = joints[3] + joints[4];
         let t15 = joints[6] + joints[7];
@@ -451,7 +471,7 @@ impl Planar3Rrr {
         let t45 = 0.08660254037844387 * c_phi;
         let g1_wz_leg2 = g1_vx_leg2 * (t40 + t41) - minus_g1_vy_leg2 * (t44 - t45);
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t45 + t44) + g1_vx_leg3 * (t40 - t41);
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
             [g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3, -minus_g1_wz_leg3],
@@ -468,7 +488,9 @@ impl Planar3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let t3 = pose[0] - t2;
@@ -552,7 +574,7 @@ impl Planar3Rrr {
         let t182 = g1_vx_leg3 * t108 - minus_g1_vy_leg3;
         let t188 = t152 * (minus_g1_wz_leg3 + g1_vx_leg3 * t139 + t142 * t182);
         let t190 = t116 * t182 + t142 * t188;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t108 * t159 - minus_g1_vx_leg1 * t107 - t139 * t157,
                 g1_vx_leg2 * t107 + t108 * t175 - t139 * t173,
@@ -573,9 +595,9 @@ impl Planar3Rrr {
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 45 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 9]; 9] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 9]; 9] {
         let t2 = joints[0] + joints[1];
         let t16 = joints[3] + joints[4];
         let t39 = joints[6] + joints[7];
@@ -626,9 +648,9 @@ impl Planar3Rrr {
     /// 10 operations (4 additions, 6 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 6 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 9],
-    ) -> [[f64; 3]; 9] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 9] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t4 = 0.08660254037844387 * s_phi;
         let t5 = 0.05 * c_phi;
@@ -653,9 +675,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t4 = joints[3] + joints[4];
         let t11 = joints[6] + joints[7];
@@ -686,7 +708,7 @@ impl Planar3Rrr {
         let minus_g1_vy_leg3 = t25 * t57;
         let g1_vx_leg3 = t16 * t57;
         let minus_g1_wz_leg3 = minus_g1_vy_leg3 * (t50 + t49) + g1_vx_leg3 * (t44 - t45);
-        Ok([
+        ::core::result::Result::Ok([
             [-(0.2 * s12_leg1), 0.2 * c12_leg1, 0.04 * s2_leg1 * g1_wz_leg1],
             [0.2 * t9, -(0.2 * t21), 0.04 * s2_leg2 * g1_wz_leg2],
             [0.2 * t16, -(0.2 * t25), -(0.04 * s2_leg3 * minus_g1_wz_leg3)],
@@ -703,9 +725,9 @@ impl Planar3Rrr {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 3 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7],
         ]);
@@ -727,9 +749,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t4 = pose[1] + t2 - 0.35;
@@ -804,7 +826,7 @@ impl Planar3Rrr {
         let g2_vy_leg3 = (2.5 * t121 - 4.330127018922193 * t126) * t131;
         let minus_g2_vx_leg3 = (4.330127018922193 * t121 + 2.5 * t126) * t131;
         let rate_2_leg3 = g2_vy_leg3 * t141 - minus_g2_vx_leg3 * t134;
-        Ok([
+        ::core::result::Result::Ok([
             rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), minus_rate_2_leg1 + twist[2],
             rate_1_leg2, rate_2_leg2 - rate_1_leg2, twist[2] - rate_2_leg2, rate_1_leg3,
             rate_2_leg3 - rate_1_leg3, twist[2] - rate_2_leg3,
@@ -824,10 +846,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t4 = pose[1] + t2 - 0.35;
@@ -944,7 +966,7 @@ impl Planar3Rrr {
             * (t187 * t192 - t196 * t201 + 0.2 * t217 + t225 * t227);
         let rate_dot_2_leg3 = t176
             * (t206 * t201 - t212 * t192 - 0.2 * t225 - t217 * t227);
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_1_leg1, -(rate_dot_1_leg1 + minus_rate_dot_2_leg1),
             minus_rate_dot_2_leg1 + acceleration[2], -minus_rate_dot_1_leg2,
             minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
@@ -964,9 +986,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -1051,7 +1073,7 @@ impl Planar3Rrr {
             - minus_g1_wz_leg3 * actuator_velocities[2] - t89 * t150 - t153 * t129)
             / t171;
         let t174 = t122 * t129 - t153 * t172;
-        Ok([t89 * t95 + t114 * t174 - t150 * t172, t174, t172])
+        ::core::result::Result::Ok([t89 * t95 + t114 * t174 - t150 * t172, t174, t172])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1067,10 +1089,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -1201,7 +1223,7 @@ impl Planar3Rrr {
         let t271 = (g1_wz_leg1 * t129 + g1_wz_leg2 * t80 - minus_g1_wz_leg3 * t198
             - t200 * t249 - t252 * t228) / t261;
         let t273 = t221 * t228 - t252 * t271;
-        Ok([t200 * t206 + t213 * t273 - t249 * t271, t273, t271])
+        ::core::result::Result::Ok([t200 * t206 + t213 * t273 - t249 * t271, t273, t271])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1218,10 +1240,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let t3 = pose[0] - t2;
@@ -1373,7 +1395,7 @@ impl Planar3Rrr {
         let t398 = twist[2] + minus_rate_2_leg3;
         let t403 = 10.0 * t27;
         let t404 = 10.0 * t33;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t57, -t57, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t77,
@@ -1453,11 +1475,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], pose[2], joints[3], joints[4], joints[6], joints[7],
@@ -1585,7 +1607,7 @@ impl Planar3Rrr {
         let t359 = twist[2] - rate_2_leg3;
         let t364 = 10.0 * t19;
         let t365 = 10.0 * t25;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t48, -t48, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t67,
@@ -1662,11 +1684,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
@@ -1865,7 +1887,7 @@ impl Planar3Rrr {
         let t490 = rate_3_leg1 + minus_rate_2_leg3;
         let t495 = 10.0 * t297;
         let t496 = 10.0 * t293;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t20, -t20, -t31,
                 -::overact::math::signed(minus_g1_vx_leg1, actuator_velocities[0]),
@@ -1944,10 +1966,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t4 = pose[1] + t2 - 0.35;
@@ -2124,7 +2146,7 @@ impl Planar3Rrr {
         let t444 = 10.0 * t32;
         let t449 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t467 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, t179 * minus_rate_dot_2_leg1,
@@ -2187,11 +2209,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s_phi, c_phi), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[1], joints[0], pose[2], joints[3], joints[4], joints[6], joints[7],
@@ -2341,7 +2363,7 @@ impl Planar3Rrr {
         let t395 = 10.0 * t24;
         let t400 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t418 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, t138 * rate_dot_2_leg1, t44 * rate_dot_2_leg1 - s2_leg1 * t36 + t138 * t180,
@@ -2401,11 +2423,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 37]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 37]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.1 * s_phi;
@@ -2629,7 +2651,7 @@ impl Planar3Rrr {
         let t554 = 10.0 * t337;
         let t559 = c_phi * t331 - s_phi * t335;
         let t577 = s_phi * t331 + c_phi * t335;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], actuator_accelerations[0], actuator_velocities[0],
                 ::overact::math::sign(actuator_velocities[0]), 1.0, t149 * minus_rate_dot_2_leg1,
@@ -2689,10 +2711,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t3 = t2 * twist[2];
@@ -2828,7 +2850,7 @@ impl Planar3Rrr {
         let t340 = minus_rate_2_leg1 + twist[2];
         let t345 = twist[2] + minus_rate_2_leg2;
         let t350 = twist[2] + minus_rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
@@ -2905,11 +2927,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             pose[2], joints[0], joints[1], joints[3], joints[4], joints[6], joints[7],
@@ -3014,7 +3036,7 @@ impl Planar3Rrr {
         let t299 = twist[2] - rate_2_leg1;
         let t304 = twist[2] - rate_2_leg2;
         let t309 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t8, t13, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
@@ -3090,11 +3112,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
@@ -3280,7 +3302,7 @@ impl Planar3Rrr {
         let t439 = minus_rate_2_leg1 + rate_3_leg1;
         let t444 = rate_3_leg1 + minus_rate_2_leg2;
         let t449 = rate_3_leg1 + minus_rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t285, t288, t297, -(minus_g1_vx_leg1 * actuator_accelerations[0]),
                 g1_vx_leg2 * actuator_accelerations[1], g1_vx_leg3 * actuator_accelerations[2],
@@ -3354,10 +3376,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t4 = 0.05 * s_phi - 0.08660254037844387 * c_phi;
         let t6 = pose[0] + t4 + 0.3031088913245535;
@@ -3526,7 +3548,7 @@ impl Planar3Rrr {
         let t436 = minus_rate_2_leg1 + twist[2];
         let t443 = twist[2] - rate_2_leg2;
         let t450 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t134 * acceleration[2]), -(t146 * t151 + t156 * t161 + t134 * t166),
                 t146 * t161 - t156 * t151 + t134 * t194,
@@ -3582,11 +3604,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg3, c1_leg3),
         (s2_leg3, c2_leg3), (s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
             joints[3], joints[4], joints[6], joints[7], joints[0], joints[1], pose[2],
@@ -3723,7 +3745,7 @@ impl Planar3Rrr {
         let t387 = twist[2] - rate_2_leg1;
         let t394 = twist[2] - rate_2_leg2;
         let t401 = twist[2] - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t90 * acceleration[2], t102 * t107 + t112 * t117 + t90 * t122,
                 t112 * t107 - t102 * t117 - t90 * t150,
@@ -3779,11 +3801,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 28]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 28]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -3999,7 +4021,7 @@ impl Planar3Rrr {
         let t544 = minus_rate_2_leg1 + rate_3_leg1;
         let t551 = rate_3_leg1 - rate_2_leg2;
         let t558 = rate_3_leg1 - rate_2_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t132 * rate_dot_3_leg1), -(t324 * t327 + t332 * t335 + t132 * t348),
                 t324 * t335 - t332 * t327 + t132 * t376, t324 * t346 + t332 * t340,
@@ -4052,10 +4074,10 @@ impl Planar3Rrr {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 4]; 3] {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 4]; 3] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t5 = 0.1 * s_phi;
@@ -4083,11 +4105,11 @@ impl Planar3Rrr {
     /// 18 operations (4 additions, 14 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> [[f64; 4]; 3] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> [[::core::primitive::f64; 4]; 3] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t5 = 0.1 * s_phi;
@@ -4117,11 +4139,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 4]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
@@ -4266,7 +4288,7 @@ impl Planar3Rrr {
         let t297 = 10.0 * (t197 - t2 * rate_dot_3_leg1);
         let t300 = t151 * t288 - t152 * rate_dot_3_leg1;
         let t306 = t127 * t279 + t148 * t300 - t128 * rate_dot_3_leg1;
-        Ok([
+        ::core::result::Result::Ok([
             [0.0, -t294, t297, t306], [0.0, -t297, -t294, t300],
             [
                 rate_dot_3_leg1, c_phi * t300 - s_phi * t306, -(s_phi * t300 + c_phi * t306), 0.0,
@@ -4288,10 +4310,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 4]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
         let t5 = 0.1 * minus_c123_leg2;
@@ -4371,7 +4393,7 @@ impl Planar3Rrr {
         let t173 = t108 * t123;
         let t175 = t112 * t123;
         let t184 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t124 * acceleration[2]), -(t136 * t141 + t146 * t151 + t124 * t156),
                 t136 * t151 - t146 * t141 + t124 * t184,
@@ -4402,9 +4424,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -4458,7 +4480,7 @@ impl Planar3Rrr {
         let g1_wz_leg1 = t11 * minus_g1_vx_leg1 - t2 * g1_vy_leg1;
         let g1_wz_leg2 = t16 * g1_vx_leg2 - t7 * minus_g1_vy_leg2;
         let minus_g1_wz_leg3 = t6 * minus_g1_vy_leg3 + t15 * g1_vx_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -4477,7 +4499,10 @@ impl Planar3Rrr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 3], torques: &[f64; 3]) -> [f64; 3] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 3],
+    ) -> [::core::primitive::f64; 3] {
         [torques[0], torques[1], torques[2]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -4495,11 +4520,11 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 41],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 41],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
         let t4 = pose[1] + t2 - 0.35;
@@ -4724,7 +4749,7 @@ impl Planar3Rrr {
         let t499 = (t467 + t484 - t418 * t441 - t444 * t420) / t498;
         let t501 = t122 * t420 - t444 * t499;
         let t507 = t418 * t118 + t119 * t501 - t441 * t499;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t501 - minus_g1_vx_leg1 * t507 + g1_wz_leg1 * t499,
             g1_vx_leg2 * t507 - minus_g1_vy_leg2 * t501 + g1_wz_leg2 * t499,
             g1_vx_leg3 * t507 - minus_g1_vy_leg3 * t501 - minus_g1_wz_leg3 * t499,
@@ -4746,12 +4771,12 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 41],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 41],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[3], joints[4], joints[6], joints[7], pose[2],
@@ -4941,7 +4966,7 @@ impl Planar3Rrr {
         let t454 = (t422 + t439 - t373 * t396 - t399 * t375) / t453;
         let t456 = t70 * t375 - t399 * t454;
         let t462 = t373 * t66 + t67 * t456 - t396 * t454;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t456 - minus_g1_vx_leg1 * t462 + g1_wz_leg1 * t454,
             g1_vx_leg2 * t462 - minus_g1_vy_leg2 * t456 + g1_wz_leg2 * t454,
             g1_vx_leg3 * t462 - minus_g1_vy_leg3 * t456 - minus_g1_wz_leg3 * t454,
@@ -4963,12 +4988,12 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 41],
-        start: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 41],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * c_phi;
@@ -5236,7 +5261,7 @@ impl Planar3Rrr {
         let t566 = t164 * (t543 + t560 - t151 * t517 - t161 * t519);
         let t568 = t122 * t519 - t161 * t566;
         let t574 = t118 * t517 + t119 * t568 - t151 * t566;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t568 - minus_g1_vx_leg1 * t574 + g1_wz_leg1 * t566,
             g1_vx_leg2 * t574 - minus_g1_vy_leg2 * t568 + g1_wz_leg2 * t566,
             g1_vx_leg3 * t574 - minus_g1_vy_leg3 * t568 - minus_g1_wz_leg3 * t566,
@@ -5255,9 +5280,9 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 41],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 41],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -5426,7 +5451,7 @@ impl Planar3Rrr {
                     + parameters[39] * t359);
         let t412 = g1_wz_leg1 * t319 + g2_wz_leg1 * t325 + g2_wz_leg2 * t296
             - minus_g1_wz_leg2 * t290 + g2_wz_leg3 * t355 - minus_g1_wz_leg3 * t349;
-        Ok([
+        ::core::result::Result::Ok([
             [t178, t269, t369], [t269, t380 + t177, t401],
             [t369, t401, t412 + parameters[33] + parameters[37]],
         ])
@@ -5445,10 +5470,10 @@ impl Planar3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 41],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 41],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.1 * s_phi;
         let minus_c123_leg2 = 0.8660254037844386 * c_phi + 0.5 * s_phi;
@@ -5635,7 +5660,7 @@ impl Planar3Rrr {
         let t404 = g1_wz_leg1 * t214 + g2_wz_leg1 * t224 + t223 + g1_wz_leg2 * t116
             + g2_wz_leg2 * t126 + t125 + g2_wz_leg3 * t340 - minus_g1_wz_leg3 * t330
             + t339;
-        Ok([
+        ::core::result::Result::Ok([
             t343 + parameters[35] * t344 - parameters[34] * t346 - parameters[38] * t346
                 + parameters[39] * t344,
             t364
@@ -5649,9 +5674,9 @@ impl Planar3Rrr {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -5670,7 +5695,7 @@ impl Planar3Rrr {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -5704,9 +5729,9 @@ impl ::overact::Model for Planar3Rrr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(9, inputs, output, Self::joints)
@@ -5742,7 +5767,7 @@ impl ::overact::Model for Planar3Rrr {
                     12,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -5760,7 +5785,7 @@ impl ::overact::Model for Planar3Rrr {
                 ::overact::block::map3(3, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -5771,14 +5796,14 @@ impl ::overact::Model for Planar3Rrr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

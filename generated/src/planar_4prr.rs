@@ -4,47 +4,63 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 48 standard parameters, 36 base parameters.
 /// Source: Redundant variant of the 3-PRR; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Planar4Prr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Planar4Prr {
     /// The robot's name.
-    pub const NAME: &'static str = "Planar4Prr";
+    pub const NAME: &'static ::core::primitive::str = "Planar4Prr";
     /// Numbers in a pose.
-    pub const POSE: usize = 3;
+    pub const POSE: ::core::primitive::usize = 3;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 4;
+    pub const ACTUATORS: ::core::primitive::usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const LEGS: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "leg1.1", "leg1.2", "leg1.3", "leg2.1", "leg2.2", "leg2.3", "leg3.1", "leg3.2", "leg3.3",
         "leg4.1", "leg4.2", "leg4.3",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 3] = ["x", "y", "phi"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 3] = ["x", "y", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 3, 6, 9,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         false, false, false, false,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.25922962793636134, 4.008668472301664, -4.794066635699119, 0.25922962793636145,
         4.008668472301665, -6.364862962494016, 0.25922962793636156, 4.008668472301665,
         -7.935659289288912, 0.25922962793636134, 4.008668472301665, -9.506455616083809,
@@ -226,7 +242,9 @@ impl Planar4Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 3]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -273,7 +291,7 @@ impl Planar4Prr {
         let t144 = t12 - t16;
         let s3_leg4 = minus_s23_leg1 * minus_s2_leg4 + 1.4705882352941178 * (t6 * t144);
         let c3_leg4 = 1.4705882352941178 * (t2 * t144) - c23_leg1 * minus_s2_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             t23 + 0.34 * minus_s2_leg1,
             ::overact::math::atan2(
                 0.6470588235292614 * minus_s2_leg1 + 1.5856663304348126 * t35,
@@ -323,7 +341,9 @@ impl Planar4Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 3]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -354,7 +374,7 @@ impl Planar4Prr {
         let t63 = 8.650519031141869 * (t56 * t56 - (t9 * t9 + t11 * t11 - 0.1156));
         ::overact::guard::reach(t63, "leg4")?;
         let minus_s2_leg4 = ::overact::math::sqrt(t63);
-        Ok([
+        ::core::result::Result::Ok([
             t23 + 0.34 * minus_s2_leg1, -(t34 - 0.34 * minus_s2_leg2), t45 + 0.34 * minus_s2_leg3,
             t56 + 0.34 * minus_s2_leg4,
         ])
@@ -370,7 +390,9 @@ impl Planar4Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 3]) -> Result<[[f64; 3]; 4], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -431,7 +453,7 @@ impl Planar4Prr {
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [-minus_g1_vx_leg3, -minus_g1_vy_leg3, g1_wz_leg3],
@@ -451,9 +473,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10], pose[2],
@@ -480,7 +502,7 @@ impl Planar4Prr {
         let g1_wz_leg2 = t34 * minus_g1_vy_leg2 + t31 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t31 * minus_g1_vy_leg3 + t34 * g1_vx_leg3;
         let g1_wz_leg4 = t31 * g1_vx_leg4 - t34 * minus_g1_vy_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [g1_vx_leg1, g1_vy_leg1, g1_wz_leg1],
             [-minus_g1_vx_leg2, -minus_g1_vy_leg2, g1_wz_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3, g1_wz_leg3],
@@ -498,7 +520,9 @@ impl Planar4Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 3]) -> Result<[[f64; 4]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -595,7 +619,7 @@ impl Planar4Prr {
         let t206 = g1_vy_leg4 + minus_g1_vx_leg4 * t150;
         let t209 = t157 * (g1_wz_leg4 - minus_g1_vx_leg4 * t117 - t154 * t206);
         let t214 = t153 * t206 - t154 * t209;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t117 * t164 - (minus_g1_vx_leg1 * t116 + t150 * t169),
                 t117 * t179 - (minus_g1_vx_leg2 * t116 + t150 * t184),
@@ -617,9 +641,9 @@ impl Planar4Prr {
     /// 16 operations (8 additions, 8 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
@@ -674,9 +698,9 @@ impl Planar4Prr {
     /// 4 operations (2 additions, 2 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 4 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        _joints: &[f64; 12],
-    ) -> [[f64; 3]; 12] {
+        pose: &[::core::primitive::f64; 3],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 12] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
         let t5 = 0.05656854249492381 * (c_phi - s_phi);
@@ -699,9 +723,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4), (s_phi, c_phi)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10], pose[2],
@@ -736,7 +760,7 @@ impl Planar4Prr {
         let g1_vx_leg4 = t14 * t55;
         let minus_g1_vy_leg4 = t22 * t55;
         let g1_wz_leg4 = t30 * g1_vx_leg4 - t34 * minus_g1_vy_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.2404163056034262 * t2, 0.2404163056034262 * t16, 0.34 * s2_leg1 * g1_wz_leg1,
             ],
@@ -763,9 +787,9 @@ impl Planar4Prr {
     /// 4 operations (0 additions, 4 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 4 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 3],
-        joints: &[f64; 12],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _), (s2_leg4, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
         ]);
@@ -787,9 +811,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -868,7 +892,7 @@ impl Planar4Prr {
         let rate_1_leg4 = g1_vy_leg4 * t120 - minus_g1_vx_leg4 * t124;
         let g2_vx_leg4 = 2.079725827019258 * t118;
         let rate_2_leg4 = g2_vx_leg4 * t124 - g2_vx_leg4 * t120;
-        Ok([
+        ::core::result::Result::Ok([
             rate_1_leg1, rate_2_leg1, twist[2] - rate_2_leg1, -minus_rate_1_leg2, rate_2_leg2,
             twist[2] - rate_2_leg2, -minus_rate_1_leg3, -minus_rate_2_leg3,
             minus_rate_2_leg3 + twist[2], rate_1_leg4, rate_2_leg4, twist[2] - rate_2_leg4,
@@ -888,10 +912,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
         let t5 = pose[1] + t3 - 0.21213203435596426;
@@ -988,7 +1012,7 @@ impl Planar4Prr {
             * ((t165 - t166) * t46 - (t166 + t165) * t37 + 0.34 * t178);
         let minus_rate_dot_2_leg4 = 2.9411764705882355 * t163
             * (0.7071067811865476 * t47 - 0.7071067811865476 * t164 * t178);
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_1_leg1, rate_dot_2_leg1, acceleration[2] - rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, -minus_rate_dot_2_leg2, minus_rate_dot_2_leg2 + acceleration[2],
             -minus_rate_dot_1_leg3, -minus_rate_dot_2_leg3, minus_rate_dot_2_leg3 + acceleration[2],
@@ -1008,9 +1032,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 3],
-        actuator_velocities: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -1107,7 +1131,9 @@ impl Planar4Prr {
         ::overact::guard::platform(t183, 0.02560000000000001, "actuators")?;
         let t184 = t172 / t183;
         let t189 = t160 * t170 - t161 * t184;
-        Ok([t117 * t184 - (t131 * t116 + t157 * t189), t189, t184])
+        ::core::result::Result::Ok([
+            t117 * t184 - (t131 * t116 + t157 * t189), t189, t184,
+        ])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1123,10 +1149,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -1254,7 +1280,9 @@ impl Planar4Prr {
         ::overact::guard::platform(t243, 0.02560000000000001, "actuators")?;
         let t244 = t232 / t243;
         let t249 = t220 * t230 - t221 * t244;
-        Ok([t117 * t244 - (t191 * t116 + t217 * t249), t249, t244])
+        ::core::result::Result::Ok([
+            t117 * t244 - (t191 * t116 + t217 * t249), t249, t244,
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1271,10 +1299,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
         let t4 = s_phi + s_phi;
@@ -1458,7 +1486,7 @@ impl Planar4Prr {
         let t356 = ::overact::math::signed(g2_vx_leg4, rate_2_leg4);
         let t358 = twist[2] - rate_2_leg4;
         let t359 = ::overact::math::signed(g2_vx_leg4, t358);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t56, -t56, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t78,
@@ -1537,11 +1565,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             joints[1], pose[2], joints[4], joints[7], joints[10],
@@ -1689,7 +1717,7 @@ impl Planar4Prr {
         let t309 = ::overact::math::signed(minus_g2_vx_leg4, t308);
         let t311 = twist[2] + minus_rate_2_leg4;
         let t312 = ::overact::math::signed(minus_g2_vx_leg4, t311);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t50, t50, g1_vx_leg1 * rate_1_leg1,
                 ::overact::math::signed(g1_vx_leg1, rate_1_leg1), g1_vx_leg1, t69,
@@ -1761,11 +1789,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
@@ -2002,7 +2030,7 @@ impl Planar4Prr {
         let t485 = rate_3_leg1 * rate_3_leg1;
         let t488 = c_phi * t485 + s_phi * rate_dot_3_leg1;
         let t491 = s_phi * t485 - c_phi * rate_dot_3_leg1;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t278, -t278, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t296,
@@ -2076,10 +2104,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -2280,7 +2308,7 @@ impl Planar4Prr {
         let t483 = c_phi * t476 + s_phi * acceleration[2];
         let t488 = c_phi * acceleration[1] - s_phi * acceleration[0];
         let t506 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, t154 * rate_dot_2_leg1,
@@ -2370,11 +2398,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             joints[1], pose[2], joints[4], joints[7], joints[10],
@@ -2530,7 +2558,7 @@ impl Planar4Prr {
         let t436 = c_phi * t433 + s_phi * acceleration[2];
         let t440 = s_phi * t433 - c_phi * acceleration[2];
         let t459 = s_phi * acceleration[1] + c_phi * acceleration[0];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1, rate_dot_1_leg1, rate_1_leg1, ::overact::math::sign(rate_1_leg1),
                 1.0, -(t116 * minus_rate_dot_2_leg1),
@@ -2608,11 +2636,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 48]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 48]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
@@ -2871,7 +2899,7 @@ impl Planar4Prr {
         let t634 = c_phi * t627 + s_phi * rate_dot_3_leg1;
         let t639 = c_phi * t286 - s_phi * t289;
         let t657 = s_phi * t286 + c_phi * t289;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_leg1_2, rate_dot_1_leg1_2, rate_1_leg1,
                 ::overact::math::sign(rate_1_leg1), 1.0, t352 * rate_dot_2_leg1,
@@ -2960,10 +2988,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = twist[2] * twist[2];
         let t5 = c_phi * t2 + s_phi * acceleration[2];
@@ -3116,7 +3144,7 @@ impl Planar4Prr {
         let t301 = ::overact::math::signed(minus_g2_vx_leg3, t300);
         let t304 = twist[2] - rate_2_leg4;
         let t305 = ::overact::math::signed(g2_vx_leg4, t304);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t5, t8, acceleration[0], -(minus_g1_vx_leg1 * rate_dot_1_leg1),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2, minus_g1_vx_leg3 * minus_rate_dot_1_leg3,
@@ -3188,11 +3216,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let [(s_phi, c_phi), (s2_leg1, c2_leg1), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             pose[2], joints[1], joints[4], joints[7], joints[10],
@@ -3317,7 +3345,7 @@ impl Planar4Prr {
         let t266 = ::overact::math::signed(g2_vx_leg3, t265);
         let t269 = twist[2] + minus_rate_2_leg4;
         let t270 = ::overact::math::signed(minus_g2_vx_leg4, t269);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t5, t8, acceleration[0], g1_vx_leg1 * rate_dot_1_leg1,
                 -(minus_g1_vx_leg2 * rate_dot_1_leg2), -(g1_vx_leg3 * minus_rate_dot_1_leg3),
@@ -3388,11 +3416,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
@@ -3604,7 +3632,7 @@ impl Planar4Prr {
         let t449 = ::overact::math::signed(minus_g2_vx_leg3, t448);
         let t452 = rate_3_leg1 - rate_2_leg4;
         let t453 = ::overact::math::signed(g2_vx_leg4, t452);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t257, t260, t269, -(minus_g1_vx_leg1 * rate_dot_1_leg1_2),
                 minus_g1_vx_leg2 * minus_rate_dot_1_leg2_2,
@@ -3676,10 +3704,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = s_phi + c_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -3864,7 +3892,7 @@ impl Planar4Prr {
         let t470 = twist[2] - rate_2_leg2;
         let t477 = minus_rate_2_leg3 + twist[2];
         let t484 = twist[2] - rate_2_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t101 * acceleration[2], t113 * t117 - t122 * t125 + t101 * t130,
                 t122 * t117 + t113 * t125 - t101 * t158,
@@ -3940,11 +3968,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let [(s2_leg2, c2_leg2), (s2_leg3, c2_leg3), (s2_leg1, c2_leg1), (s_phi, c_phi),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             joints[4], joints[7], joints[1], pose[2], joints[10],
@@ -4089,7 +4117,7 @@ impl Planar4Prr {
         let t424 = twist[2] - rate_2_leg2;
         let t431 = twist[2] - rate_2_leg3;
         let t438 = twist[2] - rate_2_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t57 * acceleration[2], t57 * t68 - (t73 * t77 + t82 * t85),
                 t73 * t85 - t82 * t77 - t57 * t114, t73 * acceleration[0] + t82 * acceleration[1],
@@ -4164,11 +4192,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 3],
-    ) -> Result<[[f64; 36]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 36]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = s_phi + c_phi;
@@ -4416,7 +4444,7 @@ impl Planar4Prr {
         let t622 = rate_3_leg1 - rate_2_leg2;
         let t629 = minus_rate_2_leg3 + rate_3_leg1;
         let t636 = rate_3_leg1 - rate_2_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t101 * rate_dot_3_leg1, t312 * t316 - t321 * t324 + t101 * t337,
                 t321 * t316 + t312 * t324 - t101 * t365, t321 * t335 - t312 * t329,
@@ -4488,9 +4516,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -4551,7 +4579,7 @@ impl Planar4Prr {
         let g1_wz_leg2 = t7 * minus_g1_vy_leg2 + t3 * minus_g1_vx_leg2;
         let g1_wz_leg3 = t3 * minus_g1_vy_leg3 - t7 * minus_g1_vx_leg3;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             -(minus_g1_vx_leg1 * torques[0] + minus_g1_vx_leg2 * torques[1]
                 + minus_g1_vx_leg3 * torques[2] + minus_g1_vx_leg4 * torques[3]),
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -4573,9 +4601,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (s_phi + c_phi);
         let t5 = 0.05656854249492381 * (c_phi - s_phi);
@@ -4656,7 +4684,7 @@ impl Planar4Prr {
             * ((minus_g1_vx_leg1 * g1_wz_leg2 - g1_wz_leg1 * minus_g1_vx_leg2) * t121)
             - minus_g1_vx_leg4
                 * ((g1_wz_leg1 * minus_g1_vy_leg2 + g1_vy_leg1 * g1_wz_leg2) * t121);
-        Ok([
+        ::core::result::Result::Ok([
             torques[0]
                 + torques[3]
                     * (g1_wz_leg4
@@ -4686,11 +4714,11 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 48],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 48],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -4940,7 +4968,7 @@ impl Planar4Prr {
         let t499 = t487 / t498;
         let t501 = t115 * t405 - t436 * t499;
         let t507 = t403 * t111 - t112 * t501 + t433 * t499;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t501 - minus_g1_vx_leg1 * t507 + g1_wz_leg1 * t499,
             g1_wz_leg2 * t499 - (minus_g1_vx_leg2 * t507 + minus_g1_vy_leg2 * t501),
             g1_wz_leg3 * t499 - (minus_g1_vx_leg3 * t507 + minus_g1_vy_leg3 * t501),
@@ -4963,12 +4991,12 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 3],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 48],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 48],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s_phi, c_phi), (s2_leg2, c2_leg2), (s2_leg3, c2_leg3),
         (s2_leg4, c2_leg4)] = ::overact::math::sin_cos_all([
             joints[1], pose[2], joints[4], joints[7], joints[10],
@@ -5176,7 +5204,7 @@ impl Planar4Prr {
         let t452 = t440 / t451;
         let t454 = t339 * t358 - t389 * t452;
         let t458 = t312 * t320 - t329 * t454 - t386 * t452;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg1 * t458 + g1_vy_leg1 * t454 + g1_wz_leg1 * t452,
             g1_wz_leg2 * t452 - (minus_g1_vx_leg2 * t458 + minus_g1_vy_leg2 * t454),
             g1_vx_leg3 * t458 - minus_g1_vy_leg3 * t454 + g1_wz_leg3 * t452,
@@ -5199,12 +5227,12 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        parameters: &[f64; 48],
-        start: &[f64; 3],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 48],
+        start: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
@@ -5497,7 +5525,7 @@ impl Planar4Prr {
         let t596 = t157 * t595;
         let t598 = t115 * t543 - t154 * t596;
         let t604 = t111 * t541 - t112 * t598 + t135 * t596;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t598 - minus_g1_vx_leg1 * t604 + g1_wz_leg1 * t596,
             g1_wz_leg2 * t596 - (minus_g1_vx_leg2 * t604 + minus_g1_vy_leg2 * t598),
             g1_wz_leg3 * t596 - (minus_g1_vx_leg3 * t604 + minus_g1_vy_leg3 * t598),
@@ -5517,9 +5545,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 3],
-        parameters: &[f64; 48],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 48],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -5712,7 +5740,7 @@ impl Planar4Prr {
             - 0.1019367991845056 * (parameters[46] * t392 - parameters[45] * t394);
         let t437 = g1_wz_leg1 * t296 + g2_wz_leg1 * t282 + g1_wz_leg2 * t326
             + g2_wz_leg2 * t312 + minus_g1_wz_leg3 * t351 + g2_wz_leg3 * t357;
-        Ok([
+        ::core::result::Result::Ok([
             [t180 + parameters[47], t268, t398], [t268, t409 + parameters[47], t426],
             [
                 t398, t426, t437 + minus_g1_wz_leg4 * t382 - g2_wz_leg4 * t388 + parameters[44],
@@ -5733,10 +5761,10 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        parameters: &[f64; 48],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 48],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -5937,7 +5965,7 @@ impl Planar4Prr {
             + g2_wz_leg2 * t173 + t172 + g1_wz_leg3 * t236 + g2_wz_leg3 * t247 + t246;
         let g1_wz_leg4 = t7 * g1_vy_leg4 - t3 * minus_g1_vx_leg4;
         let g2_wz_leg4 = 0.11764705882352941 * (t2 * t261 - t6 * t261);
-        Ok([
+        ::core::result::Result::Ok([
             t326 + parameters[46] * t328 - parameters[45] * t330,
             t344 - (parameters[45] * t328 + parameters[46] * t330),
             t383 + g1_wz_leg4 * t323 + g2_wz_leg4 * t295 + t294,
@@ -5959,12 +5987,12 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 3],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 48],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 48],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = c_phi - s_phi;
         let t3 = 0.05656854249492381 * t2;
@@ -6237,7 +6265,7 @@ impl Planar4Prr {
             - preload[0]
                 * ((g1_wz_leg3 * t520
                     - (minus_g1_vx_leg3 * t528 + minus_g1_vy_leg3 * t522)) * t540);
-        Ok([
+        ::core::result::Result::Ok([
             t543, t556, t569,
             g1_vy_leg4 * t502 - minus_g1_vx_leg4 * t508 + g1_wz_leg4 * t500
                 + preload[0] * (t538 * t540),
@@ -6256,9 +6284,9 @@ impl Planar4Prr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 3],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 3],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -6352,7 +6380,7 @@ impl Planar4Prr {
         let t185 = t173 / t184;
         let t187 = t115 * t131 - t162 * t185;
         let t193 = t159 * t185 - (t129 * t111 + t112 * t187);
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t187 - minus_g1_vx_leg1 * t193 + g1_wz_leg1 * t185,
             g1_wz_leg2 * t185 - (minus_g1_vx_leg2 * t193 + minus_g1_vy_leg2 * t187),
             g1_wz_leg3 * t185 - (minus_g1_vx_leg3 * t193 + minus_g1_vy_leg3 * t187),
@@ -6370,7 +6398,9 @@ impl Planar4Prr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 3]) -> Result<[[f64; 1]; 4], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t3 = 0.05656854249492381 * (c_phi - s_phi);
         let t5 = pose[0] - t3 + 0.21213203435596426;
@@ -6461,7 +6491,7 @@ impl Planar4Prr {
         let t182 = 1.0
             - (g1_vy_leg4 * t166 - minus_g1_vx_leg4 * t172 + g1_wz_leg4 * t164);
         let t184 = 1.0 / ::overact::math::sqrt(t182);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -((g1_vy_leg1 * t166 - minus_g1_vx_leg1 * t172 + g1_wz_leg1 * t164)
                     * t184),
@@ -6482,9 +6512,9 @@ impl Planar4Prr {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -6503,7 +6533,7 @@ impl Planar4Prr {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -6537,9 +6567,9 @@ impl ::overact::Model for Planar4Prr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -6589,7 +6619,7 @@ impl ::overact::Model for Planar4Prr {
                 ::overact::block::map1(4, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -6600,14 +6630,14 @@ impl ::overact::Model for Planar4Prr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

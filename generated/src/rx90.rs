@@ -4,48 +4,64 @@
 ///
 /// 1 legs, 6 joints, 6 actuators, 6 degrees of freedom; 73 standard parameters, 58 base parameters.
 /// Source: Khalil and Dombre 2002, Modeling, Identification and Control of Robots; dynamics invented.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Rx90;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Rx90 {
     /// The robot's name.
-    pub const NAME: &'static str = "Rx90";
+    pub const NAME: &'static ::core::primitive::str = "Rx90";
     /// Numbers in a pose.
-    pub const POSE: usize = 6;
+    pub const POSE: ::core::primitive::usize = 6;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 6;
+    pub const DOF: ::core::primitive::usize = 6;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 6;
+    pub const ACTUATORS: ::core::primitive::usize = 6;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 6;
+    pub const JOINTS: ::core::primitive::usize = 6;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 1] = ["arm"];
+    pub const LEGS: [&'static ::core::primitive::str; 1] = ["arm"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 6] = [
+        "1", "2", "3", "4", "5", "6",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
+        "1", "2", "3", "4", "5", "6",
+    ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 6] = [
+    pub const COORDINATES: [&'static ::core::primitive::str; 6] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6",
     ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1, 2, 3, 4, 5];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 1, 2, 3, 4, 5,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, true, true, true, true,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 6] = [0, 1, 2, 3, 4, 5];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 2, 3, 4, 5];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 1.0471975511965976, 1.0471975511965976, 0.0, 0.7853981633974483, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -236,7 +252,7 @@ impl Rx90 {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joints(joints: &[f64; 6]) -> [f64; 6] {
+    pub fn joints(joints: &[::core::primitive::f64; 6]) -> [::core::primitive::f64; 6] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -248,7 +264,9 @@ impl Rx90 {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn actuator_positions(joints: &[f64; 6]) -> [f64; 6] {
+    pub fn actuator_positions(
+        joints: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -260,7 +278,9 @@ impl Rx90 {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn inverse_jacobian(_joints: &[f64; 6]) -> [[f64; 6]; 6] {
+    pub fn inverse_jacobian(
+        _joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         [
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
@@ -278,9 +298,9 @@ impl Rx90 {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_velocities(
-        _joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
             joint_velocities[4], joint_velocities[5],
@@ -298,10 +318,10 @@ impl Rx90 {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_accelerations(
-        _joints: &[f64; 6],
-        _joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        _joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             joint_accelerations[0], joint_accelerations[1], joint_accelerations[2],
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
@@ -318,9 +338,9 @@ impl Rx90 {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn twist_from_actuators(
-        _joints: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
@@ -338,10 +358,10 @@ impl Rx90 {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn acceleration_from_actuators(
-        _joints: &[f64; 6],
-        _joint_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        _joint_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             actuator_accelerations[0], actuator_accelerations[1], actuator_accelerations[2],
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
@@ -360,10 +380,10 @@ impl Rx90 {
     /// 623 operations (271 additions, 352 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 497 intermediates.
     #[must_use]
     pub fn idm_red_platform(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [[f64; 73]; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 73]; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -677,10 +697,10 @@ impl Rx90 {
     /// 601 operations (253 additions, 348 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 496 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [[f64; 58]; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 58]; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -961,7 +981,10 @@ impl Rx90 {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_platform(_joints: &[f64; 6], torques: &[f64; 6]) -> [f64; 6] {
+    pub fn project_platform(
+        _joints: &[::core::primitive::f64; 6],
+        torques: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -977,11 +1000,11 @@ impl Rx90 {
     /// 714 operations (334 additions, 380 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 724 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-        parameters: &[f64; 73],
-    ) -> [f64; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> [::core::primitive::f64; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -1268,7 +1291,10 @@ impl Rx90 {
     ///
     /// 717 operations (320 additions, 397 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 0 signs, 706 intermediates.
     #[must_use]
-    pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 73]) -> [[f64; 6]; 6] {
+    pub fn mass_matrix(
+        joints: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -1512,10 +1538,10 @@ impl Rx90 {
     /// 656 operations (297 additions, 359 multiplications, 0 divisions), 0 square roots, 5 trigonometric pairs, 6 signs, 666 intermediates.
     #[must_use]
     pub fn bias(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        parameters: &[f64; 73],
-    ) -> [f64; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> [::core::primitive::f64; 6] {
         let [(s2_arm, c2_arm), (s3_arm, c3_arm), (s4_arm, c4_arm), (s5_arm, c5_arm),
         (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -1765,10 +1791,10 @@ impl Rx90 {
     /// # Errors
     /// None for a robot without a loop, whose pose is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        _start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        Ok(*actuators)
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        _start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::core::result::Result::Ok(*actuators)
     }
 }
 impl ::overact::Model for Rx90 {
@@ -1798,16 +1824,16 @@ impl ::overact::Model for Rx90 {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(
                     6,
                     inputs,
                     output,
-                    |joints| Ok(Self::joints(joints)),
+                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
                 )
             }
             ::overact::Function::ActuatorPositions => {
@@ -1815,7 +1841,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints| Ok(Self::actuator_positions(joints)),
+                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
                 )
             }
             ::overact::Function::InverseJacobian => {
@@ -1823,7 +1849,7 @@ impl ::overact::Model for Rx90 {
                     36,
                     inputs,
                     output,
-                    |joints| Ok(Self::inverse_jacobian(joints)),
+                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
                 )
             }
             ::overact::Function::JointVelocities => {
@@ -1831,7 +1857,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities| Ok(
+                    |joints, joint_velocities| ::core::result::Result::Ok(
                         Self::joint_velocities(joints, joint_velocities),
                     ),
                 )
@@ -1841,7 +1867,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::joint_accelerations(
                             joints,
                             joint_velocities,
@@ -1855,7 +1881,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, actuator_velocities| Ok(
+                    |joints, actuator_velocities| ::core::result::Result::Ok(
                         Self::twist_from_actuators(joints, actuator_velocities),
                     ),
                 )
@@ -1865,7 +1891,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, actuator_accelerations| Ok(
+                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
                         Self::acceleration_from_actuators(
                             joints,
                             joint_velocities,
@@ -1879,7 +1905,7 @@ impl ::overact::Model for Rx90 {
                     438,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::idm_red_platform(
                             joints,
                             joint_velocities,
@@ -1893,7 +1919,9 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, torques| Ok(Self::project_platform(joints, torques)),
+                    |joints, torques| ::core::result::Result::Ok(
+                        Self::project_platform(joints, torques),
+                    ),
                 )
             }
             ::overact::Function::InverseDynamics => {
@@ -1901,7 +1929,7 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations, parameters| Ok(
+                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
                         Self::inverse_dynamics(
                             joints,
                             joint_velocities,
@@ -1916,7 +1944,9 @@ impl ::overact::Model for Rx90 {
                     36,
                     inputs,
                     output,
-                    |joints, parameters| Ok(Self::mass_matrix(joints, parameters)),
+                    |joints, parameters| ::core::result::Result::Ok(
+                        Self::mass_matrix(joints, parameters),
+                    ),
                 )
             }
             ::overact::Function::Bias => {
@@ -1924,13 +1954,13 @@ impl ::overact::Model for Rx90 {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, parameters| Ok(
+                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
                         Self::bias(joints, joint_velocities, parameters),
                     ),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -1941,14 +1971,14 @@ impl ::overact::Model for Rx90 {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

@@ -4,45 +4,63 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 4 degrees of freedom; 72 standard parameters, 60 base parameters.
 /// Source: After H4 and I4, Pierrot, Company, Krut; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Schoenflies4;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Schoenflies4 {
     /// The robot's name.
-    pub const NAME: &'static str = "Schoenflies4";
+    pub const NAME: &'static ::core::primitive::str = "Schoenflies4";
     /// Numbers in a pose.
-    pub const POSE: usize = 4;
+    pub const POSE: ::core::primitive::usize = 4;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 4;
+    pub const DOF: ::core::primitive::usize = 4;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 4;
+    pub const ACTUATORS: ::core::primitive::usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const LEGS: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "leg1.arm", "leg1.cross", "leg1.rod", "leg2.arm", "leg2.cross", "leg2.rod", "leg3.arm",
         "leg3.cross", "leg3.rod", "leg4.arm", "leg4.cross", "leg4.rod",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 4] = ["x", "y", "z", "phi"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 4] = ["x", "y", "z", "phi"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 3, 6, 9,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 4] = [0, 1, 2, 3];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 4] = [0, 1, 2, 3];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0, -0.5, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0, -0.5, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.45242955243589006, 1.9500182292121202, 0.14987519202130234, 0.4524295524358896,
         1.9500182292121202, -0.1498751920213027, 0.4524295524358891, 1.9500182292121206,
         0.14987519202130242, 0.45242955243588945, 1.9500182292121206, -0.14987519202130256,
@@ -316,7 +334,9 @@ impl Schoenflies4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -408,7 +428,7 @@ impl Schoenflies4 {
         let t214 = 0.3016 * c_rod_leg4;
         let s_cross_leg4 = t194 / t214;
         let c_cross_leg4 = (-0.0676 + t190) / t214;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.8993876742748658 * minus_s_arm_leg1
                     + 0.43715193166958316 * c_arm_leg1),
@@ -472,7 +492,9 @@ impl Schoenflies4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -532,7 +554,7 @@ impl Schoenflies4 {
         let t121 = ::overact::math::sqrt(t120);
         let s_arm_leg4 = t112 * (t113 * t121 - t12 * t118);
         let minus_c_arm_leg4 = t112 * (t113 * t118 + t12 * t121);
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 -(0.8993876742748658 * minus_s_arm_leg1
                     + 0.43715193166958316 * c_arm_leg1),
@@ -564,7 +586,9 @@ impl Schoenflies4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 4], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -703,7 +727,7 @@ impl Schoenflies4 {
         let garm_wz_leg2 = t51 * garm_vy_leg2 - t45 * garm_vx_leg2;
         let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
         let garm_wz_leg4 = t45 * garm_vx_leg4 - t51 * garm_vy_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1, garm_wz_leg1],
             [garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2, garm_wz_leg2],
             [garm_vx_leg3, garm_vy_leg3, -minus_garm_vz_leg3, garm_wz_leg3],
@@ -723,9 +747,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t12 = joints[6] + joints[7];
         let t28 = joints[3] + joints[4];
@@ -774,7 +798,7 @@ impl Schoenflies4 {
         let garm_wz_leg2 = t55 * garm_vy_leg2 + minus_garm_vx_leg2 * t57;
         let garm_wz_leg3 = t48 * minus_garm_vy_leg3 - t52 * minus_garm_vx_leg3;
         let garm_wz_leg4 = t55 * minus_garm_vy_leg4 + t57 * garm_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [garm_vx_leg1, garm_vy_leg1, -minus_garm_vz_leg1, garm_wz_leg1],
             [-minus_garm_vx_leg2, garm_vy_leg2, -minus_garm_vz_leg2, garm_wz_leg2],
             [
@@ -794,7 +818,9 @@ impl Schoenflies4 {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 4], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -999,7 +1025,7 @@ impl Schoenflies4 {
             * (garm_wz_leg4 - garm_vx_leg4 * t264 - t283 * t378 - t286 * t383);
         let t393 = t239 * t383 - t286 * t391;
         let t397 = t190 * t378 - t227 * t393 - t283 * t391;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 garm_vx_leg1 * t133 - t180 * t313 + t217 * t309 - t264 * t307,
                 garm_vx_leg2 * t133 - t180 * t341 + t217 * t337 - t264 * t335,
@@ -1022,9 +1048,9 @@ impl Schoenflies4 {
     /// 48 operations (12 additions, 36 multiplications, 0 divisions), 0 square roots, 12 trigonometric pairs, 0 signs, 44 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let t3 = joints[0] + joints[1];
         let t24 = joints[3] + joints[4];
         let t39 = joints[6] + joints[7];
@@ -1100,9 +1126,9 @@ impl Schoenflies4 {
     /// 8 operations (4 additions, 4 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 6 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        pose: &[f64; 4],
-        _joints: &[f64; 12],
-    ) -> [[f64; 4]; 12] {
+        pose: &[::core::primitive::f64; 4],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 12] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * s_phi;
         let t3 = 0.08660254037844387 * c_phi;
@@ -1131,9 +1157,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn closure_platform_jacobian_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let t6 = joints[0] + joints[1];
         let t28 = joints[6] + joints[7];
         let t47 = joints[3] + joints[4];
@@ -1186,7 +1212,7 @@ impl Schoenflies4 {
         let garm_wz_leg2 = t80 * garm_vy_leg2 + minus_garm_vx_leg2 * t82;
         let garm_wz_leg3 = t72 * minus_garm_vy_leg3 - t76 * minus_garm_vx_leg3;
         let garm_wz_leg4 = t80 * minus_garm_vy_leg4 + t82 * garm_vx_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t5 * garm_vx_leg1, garm_vy_leg1 * t5, -(t5 * minus_garm_vz_leg1), t5 * garm_wz_leg1,
             ],
@@ -1215,9 +1241,9 @@ impl Schoenflies4 {
     /// 12 operations (0 additions, 12 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 16 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let [(_, c_rod_leg1), (s_cross_leg1, _), (_, c_rod_leg2), (s_cross_leg2, _),
         (_, c_rod_leg3), (s_cross_leg3, _), (_, c_rod_leg4), (s_cross_leg4, _)] = ::overact::math::sin_cos_all([
             joints[2], joints[1], joints[5], joints[4], joints[8], joints[7], joints[11],
@@ -1243,9 +1269,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -1408,7 +1434,7 @@ impl Schoenflies4 {
         let rate_cross_leg4 = grod_vx_leg4
             * (s_armcross_leg4 * t223 + minus_c_armcross_leg4 * twist[2] - t239 * t229
                 - t233 * t239);
-        Ok([
+        ::core::result::Result::Ok([
             rate_arm_leg1, -(rate_arm_leg1 + minus_rate_cross_leg1), rate_rod_leg1, rate_arm_leg2,
             -(rate_arm_leg2 + minus_rate_cross_leg2), -minus_rate_rod_leg2, rate_arm_leg3,
             rate_cross_leg3 - rate_arm_leg3, -minus_rate_rod_leg3, rate_arm_leg4,
@@ -1429,10 +1455,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -1672,7 +1698,7 @@ impl Schoenflies4 {
             - (t354 - t383 - t383) - t343 * t372 - t364 * t376;
         let rate_dot_cross_leg4 = grod_vx_leg4 * t390;
         let rate_dot_rod_leg4 = grod_vx_leg4 * t376;
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_arm_leg1, -(rate_dot_arm_leg1 + minus_rate_dot_cross_leg1), rate_dot_rod_leg1,
             rate_dot_arm_leg2, -(rate_dot_arm_leg2 + minus_rate_dot_cross_leg2),
             -minus_rate_dot_rod_leg2, rate_dot_arm_leg3, rate_dot_cross_leg3 - rate_dot_arm_leg3,
@@ -1693,9 +1719,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -1895,7 +1921,9 @@ impl Schoenflies4 {
         let t334 = (t318 - t307 * t264) / t333;
         let t336 = t253 * t264 - t307 * t334;
         let t340 = t197 * t206 - t241 * t336 - t304 * t334;
-        Ok([t132 * t140 - t187 * t340 + t231 * t336 - t285 * t334, t340, t336, t334])
+        ::core::result::Result::Ok([
+            t132 * t140 - t187 * t340 + t231 * t336 - t285 * t334, t340, t336, t334,
+        ])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1911,10 +1939,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -2184,7 +2212,9 @@ impl Schoenflies4 {
         let t482 = (t466 - t455 * t412) / t481;
         let t484 = t401 * t412 - t455 * t482;
         let t488 = t357 * t366 - t389 * t484 - t452 * t482;
-        Ok([t326 * t334 - t347 * t488 + t379 * t484 - t433 * t482, t488, t484, t482])
+        ::core::result::Result::Ok([
+            t326 * t334 - t347 * t488 + t379 * t484 - t433 * t482, t488, t484, t482,
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -2201,10 +2231,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -2650,7 +2680,7 @@ impl Schoenflies4 {
         let t1075 = twist[3] * twist[3];
         let t1078 = c_phi * t1075 + s_phi * acceleration[3];
         let t1081 = s_phi * t1075 - c_phi * acceleration[3];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t97, -(garm_vx_leg1 * t106), -(garm_vx_leg1 * t111), t97,
                 garm_vx_leg1 * rate_arm_leg1, ::overact::math::signed(garm_vx_leg1, rate_arm_leg1),
@@ -2819,11 +2849,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1), (s_phi, c_phi),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg2, c_arm_leg2), (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3),
@@ -3190,7 +3220,7 @@ impl Schoenflies4 {
         let t982 = twist[3] * twist[3];
         let t985 = c_phi * t982 + s_phi * acceleration[3];
         let t988 = s_phi * t982 - c_phi * acceleration[3];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t68, -(garm_vx_leg1 * t77), garm_vx_leg1 * t82, t68, garm_vx_leg1 * rate_arm_leg1,
                 ::overact::math::signed(garm_vx_leg1, rate_arm_leg1), garm_vx_leg1,
@@ -3359,11 +3389,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
@@ -3882,7 +3912,7 @@ impl Schoenflies4 {
         let t1273 = t367 * t367;
         let t1276 = c_phi * t1273 + s_phi * t540;
         let t1279 = s_phi * t1273 - c_phi * t540;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t48, -(garm_vx_leg1 * t63), -(garm_vx_leg1 * t68), t48, t73,
                 ::overact::math::signed(garm_vx_leg1, actuator_velocities[0]), garm_vx_leg1,
@@ -4045,10 +4075,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -4588,7 +4618,7 @@ impl Schoenflies4 {
         let t1358 = s_phi * t1351 - c_phi * acceleration[3];
         let t1382 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t1403 = acceleration[2] + 9.81;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t93, -t94, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, -(t327 * t347 + t355),
@@ -4691,11 +4721,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let [(s_cross_leg1, c_cross_leg1), (s_arm_leg1, c_arm_leg1), (s_phi, c_phi),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg2, c_arm_leg2), (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3),
@@ -5141,7 +5171,7 @@ impl Schoenflies4 {
         let t1264 = s_phi * t1257 - c_phi * acceleration[3];
         let t1288 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t1309 = acceleration[2] + 9.81;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_arm_leg1, -t68, t69, rate_dot_arm_leg1, rate_arm_leg1,
                 ::overact::math::sign(rate_arm_leg1), 1.0, -(t230 * t249 + t257),
@@ -5243,11 +5273,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 72]; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 72]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
@@ -5866,7 +5896,7 @@ impl Schoenflies4 {
         let t1571 = s_phi * t1564 - c_phi * t620;
         let t1595 = s_phi * t626 + c_phi * t632;
         let t1616 = t622 + 9.81;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], -t29, -t34, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0,
@@ -5972,10 +6002,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = twist[3] * twist[3];
         let t5 = c_phi * t2 + s_phi * acceleration[3];
@@ -6371,7 +6401,7 @@ impl Schoenflies4 {
         let t942 = t177 * t188 - minus_rate_dot_cross_leg2 * t823;
         let t957 = rate_dot_cross_leg3 * t859 + t253 * t275;
         let t972 = rate_dot_cross_leg4 * t889 + t359 * t363;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 garm_vx_leg2 * rate_dot_arm_leg2, garm_vx_leg3 * rate_dot_arm_leg3,
@@ -6533,11 +6563,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let [(s_phi, c_phi), (s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1),
         (s_rod_leg1, c_rod_leg1), (s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg2, c_arm_leg2), (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3),
@@ -6857,7 +6887,7 @@ impl Schoenflies4 {
         let t850 = t135 * t139 - t738 * minus_rate_dot_cross_leg2;
         let t865 = t450 * rate_dot_cross_leg3 + t174 * t208;
         let t879 = t797 * rate_dot_cross_leg4 + t269 * t274;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t5, t8, acceleration[0], garm_vx_leg1 * rate_dot_arm_leg1,
                 -(minus_garm_vx_leg2 * rate_dot_arm_leg2),
@@ -7012,11 +7042,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
@@ -7471,7 +7501,7 @@ impl Schoenflies4 {
         let t1114 = t375 * (t395 - t393) - minus_rate_dot_cross_leg2 * t651;
         let t1129 = rate_dot_cross_leg3 * t689 + t411 * t425;
         let t1144 = rate_dot_cross_leg4 * t731 + t439 * t453;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 0.0, -t503, t506, t522, garm_vx_leg1 * actuator_accelerations[0],
                 garm_vx_leg2 * actuator_accelerations[1], garm_vx_leg3 * actuator_accelerations[2],
@@ -7621,10 +7651,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.08660254037844387 * s_phi;
         let t3 = 0.05 * c_phi;
@@ -8139,7 +8169,7 @@ impl Schoenflies4 {
         let t1293 = t32 * t1290;
         let t1302 = t1290 * (t858 - rate_dot_rod_leg4) + t1293 * (t1056 + t525)
             - t513 * t848 - t893 * t1276 - t897 * t1281;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t248 * acceleration[3], t248 * t263 - (t276 * t280 + t283 * t286),
                 t276 * t286 - t283 * t280 - t248 * t324,
@@ -8235,11 +8265,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let [(s_cross_leg2, c_cross_leg2), (s_rod_leg2, c_rod_leg2),
         (s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1), (s_arm_leg2, c_arm_leg2),
         (s_arm_leg3, c_arm_leg3), (s_cross_leg3, c_cross_leg3), (s_rod_leg1, c_rod_leg1),
@@ -8659,7 +8689,7 @@ impl Schoenflies4 {
         let t1198 = t737 * s_rod_leg4;
         let t1207 = t1195 * (t759 - rate_dot_rod_leg4) + t1198 * (t957 + t425)
             - t411 * t750 - t794 * t1181 - t798 * t1186;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t147 * acceleration[3], t147 * t162 - (t175 * t179 + t182 * t185),
                 t175 * t185 - t182 * t179 - t147 * t223,
@@ -8752,11 +8782,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 60]; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 60]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.08660254037844387 * s_phi;
@@ -9353,7 +9383,7 @@ impl Schoenflies4 {
         let t1504 = t32 * t1501;
         let t1513 = t1501 * (t1064 - rate_dot_rod_leg4) + t1504 * (t1263 + t516)
             - t511 * t1055 - t1099 * t1487 - t1103 * t1492;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t248 * t577, t248 * t607 - (t620 * t624 + t627 * t630),
                 t620 * t630 - t627 * t624 - t248 * t668, t620 * t605 + t627 * t597 - t694 * t695,
@@ -9450,10 +9480,10 @@ impl Schoenflies4 {
     /// 14 operations (5 additions, 9 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 11 intermediates.
     #[must_use]
     pub fn idm_red_payload(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> [[f64; 4]; 4] {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = twist[3] * twist[3];
         let t5 = c_phi * t2 + s_phi * acceleration[3];
@@ -9481,11 +9511,11 @@ impl Schoenflies4 {
     /// 14 operations (5 additions, 9 multiplications, 0 divisions), 0 square roots, 1 trigonometric pairs, 0 signs, 11 intermediates.
     #[must_use]
     pub fn idm_red_payload_from_joints(
-        pose: &[f64; 4],
-        _joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> [[f64; 4]; 4] {
+        pose: &[::core::primitive::f64; 4],
+        _joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = twist[3] * twist[3];
         let t5 = c_phi * t2 + s_phi * acceleration[3];
@@ -9515,11 +9545,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
@@ -9813,7 +9843,7 @@ impl Schoenflies4 {
         let t534 = t290 * t520 - t291 * t523;
         let t538 = t230 * t507 - t287 * t534 - t231 * t523;
         let t546 = t200 * t496 - t227 * t538 + t266 * t534 - t201 * t523;
-        Ok([
+        ::core::result::Result::Ok([
             [0.0, -t527, t530, t546], [0.0, -t530, -t527, t538], [0.0, 0.0, 0.0, t534 + 9.81],
             [t523, c_phi * t538 - s_phi * t546, -(s_phi * t538 + c_phi * t546), 0.0],
         ])
@@ -9833,10 +9863,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_payload_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.08660254037844387 * s_phi;
         let t3 = 0.05 * c_phi;
@@ -10018,7 +10048,7 @@ impl Schoenflies4 {
         let t320 = s_phi * acceleration[1] + c_phi * acceleration[0];
         let t344 = t230 - t158 * t240;
         let t347 = acceleration[2] + 9.81;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t244 * acceleration[3], t244 * t259 - (t272 * t276 + t279 * t282),
                 t272 * t282 - t279 * t276 - t244 * t320,
@@ -10057,9 +10087,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 4],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -10199,7 +10229,7 @@ impl Schoenflies4 {
         let garm_wz_leg2 = t52 * garm_vy_leg2 - t46 * garm_vx_leg2;
         let garm_wz_leg3 = t15 * garm_vx_leg3 - t4 * garm_vy_leg3;
         let garm_wz_leg4 = t46 * garm_vx_leg4 - t52 * garm_vy_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * torques[0] + garm_vx_leg2 * torques[1]
                 + garm_vx_leg3 * torques[2] + garm_vx_leg4 * torques[3],
             garm_vy_leg1 * torques[0] + garm_vy_leg2 * torques[1]
@@ -10220,7 +10250,10 @@ impl Schoenflies4 {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 4], torques: &[f64; 4]) -> [f64; 4] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 4],
+    ) -> [::core::primitive::f64; 4] {
         [torques[0], torques[1], torques[2], torques[3]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -10238,11 +10271,11 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-        parameters: &[f64; 76],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 76],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -10818,7 +10851,7 @@ impl Schoenflies4 {
         let t1189 = t1039 * t1071 - t1114 * t1187;
         let t1193 = t932 * t1004 - t1027 * t1189 - t1111 * t1187;
         let t1199 = t902 * t910 - t922 * t1193 + t1017 * t1189 - t1092 * t1187;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t1199 + garm_vy_leg1 * t1193 - minus_garm_vz_leg1 * t1189
                 + garm_wz_leg1 * t1187,
             garm_vx_leg2 * t1199 + garm_vy_leg2 * t1193 - minus_garm_vz_leg2 * t1189
@@ -10845,12 +10878,12 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 4],
-        acceleration: &[f64; 4],
-        parameters: &[f64; 76],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 4],
+        acceleration: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 76],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let [(s_arm_leg1, c_arm_leg1), (s_cross_leg1, c_cross_leg1), (s_phi, c_phi),
         (s_rod_leg1, c_rod_leg1), (s_rod_leg2, c_rod_leg2), (s_cross_leg2, c_cross_leg2),
         (s_arm_leg2, c_arm_leg2), (s_rod_leg3, c_rod_leg3), (s_cross_leg3, c_cross_leg3),
@@ -11342,7 +11375,7 @@ impl Schoenflies4 {
         let t1095 = t945 * t977 + t1020 * t1093;
         let t1099 = t838 * t910 - t933 * t1095 - t1017 * t1093;
         let t1105 = t808 * t816 - t828 * t1099 - t930 * t1095 - t1005 * t1093;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t1105 + garm_vy_leg1 * t1099 - minus_garm_vz_leg1 * t1095
                 + garm_wz_leg1 * t1093,
             garm_vy_leg2 * t1099 - minus_garm_vx_leg2 * t1105
@@ -11370,12 +11403,12 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        parameters: &[f64; 76],
-        start: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 76],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
@@ -11994,7 +12027,7 @@ impl Schoenflies4 {
         let t1299 = t274 * t1236 - t328 * t1297;
         let t1303 = t221 * t1203 - t262 * t1299 - t325 * t1297;
         let t1309 = t137 * t1130 - t211 * t1303 + t252 * t1299 - t306 * t1297;
-        Ok([
+        ::core::result::Result::Ok([
             garm_vx_leg1 * t1309 + garm_vy_leg1 * t1303 - minus_garm_vz_leg1 * t1299
                 + garm_wz_leg1 * t1297,
             garm_vx_leg2 * t1309 + garm_vy_leg2 * t1303 - minus_garm_vz_leg2 * t1299
@@ -12018,9 +12051,9 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 4],
-        parameters: &[f64; 76],
-    ) -> Result<[[f64; 4]; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 76],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -12635,7 +12668,7 @@ impl Schoenflies4 {
         let t1291 = t1279 + garm_wz_leg3 * t1015 + gcross_wz_leg3 * t1037
             + grod_wz_leg3 * t1222 + garm_wz_leg4 * t1077 - minus_gcross_wz_leg4 * t1099
             + grod_wz_leg4 * t1110;
-        Ok([
+        ::core::result::Result::Ok([
             [t386 + t387, t641, t844, t1121],
             [
                 t641, t1154 + garm_vy_leg4 * t610 - minus_gcross_vy_leg4 * t629 + t387, t1192,
@@ -12662,10 +12695,10 @@ impl Schoenflies4 {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 4],
-        twist: &[f64; 4],
-        parameters: &[f64; 76],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 76],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[3]);
         let t2 = 0.05 * c_phi;
         let t3 = 0.08660254037844387 * s_phi;
@@ -13173,7 +13206,7 @@ impl Schoenflies4 {
             - t213 * minus_gcross_vy_leg4;
         let t1004 = t980 + garm_wz_leg3 * t589 + gcross_wz_leg3 * t627 + t4 * t910
             + garm_wz_leg4 * t789 - minus_gcross_wz_leg4 * t826 + t207 * t845;
-        Ok([
+        ::core::result::Result::Ok([
             t858, t927,
             t947 + gcross_vz_leg4 * t826 - minus_garm_vz_leg4 * t789
                 + 9.81 * (parameters[71] + parameters[75]),
@@ -13185,9 +13218,9 @@ impl Schoenflies4 {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -13206,7 +13239,7 @@ impl Schoenflies4 {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -13240,9 +13273,9 @@ impl ::overact::Model for Schoenflies4 {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -13278,7 +13311,7 @@ impl ::overact::Model for Schoenflies4 {
                     16,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_payload(pose, twist, acceleration),
                     ),
                 )
@@ -13296,7 +13329,7 @@ impl ::overact::Model for Schoenflies4 {
                 ::overact::block::map3(4, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -13307,14 +13340,14 @@ impl ::overact::Model for Schoenflies4 {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

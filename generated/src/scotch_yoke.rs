@@ -4,42 +4,56 @@
 ///
 /// 2 legs, 2 joints, 2 actuators, 1 degrees of freedom; 11 standard parameters, 5 base parameters.
 /// Source: A textbook Scotch yoke, twice; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct ScotchYoke;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl ScotchYoke {
     /// The robot's name.
-    pub const NAME: &'static str = "ScotchYoke";
+    pub const NAME: &'static ::core::primitive::str = "ScotchYoke";
     /// Numbers in a pose.
-    pub const POSE: usize = 1;
+    pub const POSE: ::core::primitive::usize = 1;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 1;
+    pub const DOF: ::core::primitive::usize = 1;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 2;
+    pub const ACTUATORS: ::core::primitive::usize = 2;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 2;
+    pub const JOINTS: ::core::primitive::usize = 2;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 2] = ["left", "right"];
+    pub const LEGS: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 2] = ["left", "right"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 2] = ["left.crank", "right.crank"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 2] = [
+        "left.crank", "right.crank",
+    ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 1] = ["x"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["x"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 1];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 1] = [0];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 1] = [0];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         1.5707963267948966, -1.5707963267948966,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -102,7 +116,9 @@ impl ScotchYoke {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 1]) -> Result<[f64; 2], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let c_crank_left = 8.333333333333334 * pose[0];
         let t2 = 1.0 - c_crank_left * c_crank_left;
         ::overact::guard::reach(t2, "left")?;
@@ -110,7 +126,7 @@ impl ScotchYoke {
         let s_crank_left = ::overact::math::sqrt(t2);
         let t5 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
         let t7 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(t5, t7) + 1.5707963267948966,
             ::overact::math::atan2(-t5, t7) - 1.5707963267948966,
         ])
@@ -126,7 +142,9 @@ impl ScotchYoke {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 1]) -> Result<[f64; 2], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let c_crank_left = 8.333333333333334 * pose[0];
         let t2 = 1.0 - c_crank_left * c_crank_left;
         ::overact::guard::reach(t2, "left")?;
@@ -134,7 +152,7 @@ impl ScotchYoke {
         let s_crank_left = ::overact::math::sqrt(t2);
         let t5 = 0.00000000000000006123233995736766 * s_crank_left - c_crank_left;
         let t7 = 0.0000000000000005102694996447306 * pose[0] + s_crank_left;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(t5, t7) + 1.5707963267948966,
             ::overact::math::atan2(-t5, t7) - 1.5707963267948966,
         ])
@@ -150,14 +168,16 @@ impl ScotchYoke {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 1]) -> Result<[[f64; 1]; 2], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 2], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
-        Ok([[-minus_gcrank_vx_left], [minus_gcrank_vx_left]])
+        ::core::result::Result::Ok([[-minus_gcrank_vx_left], [minus_gcrank_vx_left]])
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
     ///
@@ -172,9 +192,9 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-    ) -> Result<[[f64; 1]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 2], ::overact::Error> {
         let [(s_crank_left, _), (s_crank_right, _)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -182,7 +202,7 @@ impl ScotchYoke {
         ::overact::guard::leg(s_crank_right, 1.0, "right")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
         let minus_gcrank_vx_right = 8.333333333333334 / s_crank_right;
-        Ok([[-minus_gcrank_vx_left], [-minus_gcrank_vx_right]])
+        ::core::result::Result::Ok([[-minus_gcrank_vx_left], [-minus_gcrank_vx_right]])
     }
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
     ///
@@ -195,13 +215,15 @@ impl ScotchYoke {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 1]) -> Result<[[f64; 2]; 1], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
         let t4 = 0.06 * s_crank_left;
-        Ok([[-t4, t4]])
+        ::core::result::Result::Ok([[-t4, t4]])
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
     ///
@@ -214,9 +236,9 @@ impl ScotchYoke {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 2 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         let [(s_crank_left, _), (s_crank_right, _)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -233,9 +255,9 @@ impl ScotchYoke {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 1]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [1.0]]
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -249,9 +271,9 @@ impl ScotchYoke {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 1]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [1.0]]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -265,9 +287,9 @@ impl ScotchYoke {
     /// 2 operations (0 additions, 2 multiplications, 0 divisions), 0 square roots, 2 trigonometric pairs, 0 signs, 2 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         let [(s_crank_left, _), (s_crank_right, _)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -286,9 +308,9 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -296,7 +318,7 @@ impl ScotchYoke {
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
         let minus_rate_crank_left = minus_gcrank_vx_left * twist[0];
-        Ok([-minus_rate_crank_left, minus_rate_crank_left])
+        ::core::result::Result::Ok([-minus_rate_crank_left, minus_rate_crank_left])
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
     ///
@@ -312,10 +334,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -326,7 +348,9 @@ impl ScotchYoke {
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (acceleration[0]
                 + pose[0] * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([-minus_rate_dot_crank_left, minus_rate_dot_crank_left])
+        ::core::result::Result::Ok([
+            -minus_rate_dot_crank_left, minus_rate_dot_crank_left,
+        ])
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
     ///
@@ -341,16 +365,16 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 1],
-        actuator_velocities: &[f64; 2],
-    ) -> Result<[f64; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        actuator_velocities: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
-        Ok([
+        ::core::result::Result::Ok([
             (minus_gcrank_vx_left * actuator_velocities[1]
                 - minus_gcrank_vx_left * actuator_velocities[0]) * (0.0072 * t2),
         ])
@@ -369,10 +393,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        actuator_accelerations: &[f64; 2],
-    ) -> Result<[f64; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -382,7 +406,7 @@ impl ScotchYoke {
         let minus_rate_crank_left = minus_gcrank_vx_left * twist[0];
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (pose[0] * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([
+        ::core::result::Result::Ok([
             (minus_gcrank_vx_left
                 * (actuator_accelerations[1] - minus_rate_dot_crank_left)
                 - minus_gcrank_vx_left
@@ -405,10 +429,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -422,7 +446,7 @@ impl ScotchYoke {
         let t10 = minus_gcrank_vx_left * minus_rate_dot_crank_left;
         let t11 = minus_gcrank_vx_left * minus_rate_crank_left;
         let t12 = ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t10, t10, t11, t12, -minus_gcrank_vx_left, t10, t10, t11, t12, minus_gcrank_vx_left,
                 acceleration[0],
@@ -445,11 +469,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let [(s_crank_left, c_crank_left), (s_crank_right, c_crank_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -468,7 +492,7 @@ impl ScotchYoke {
                 + 0.12 * c_crank_right
                     * (minus_rate_crank_right * minus_rate_crank_right));
         let t21 = minus_gcrank_vx_right * minus_rate_dot_crank_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t9, t9, minus_gcrank_vx_left * minus_rate_crank_left,
                 ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left),
@@ -494,11 +518,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
@@ -518,7 +542,7 @@ impl ScotchYoke {
         let t18 = minus_gcrank_vx_left * minus_rate_dot_crank_left_2;
         let t19 = minus_gcrank_vx_left * minus_rate_crank_left;
         let t20 = ::overact::math::signed(minus_gcrank_vx_left, minus_rate_crank_left);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t18, t18, t19, t20, -minus_gcrank_vx_left, t18, t18, t19, t20, minus_gcrank_vx_left,
                 t15,
@@ -540,10 +564,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -555,7 +579,7 @@ impl ScotchYoke {
             * (acceleration[0]
                 + pose[0] * (minus_rate_crank_left * minus_rate_crank_left));
         let t10 = ::overact::math::sign(minus_rate_crank_left);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_crank_left, -minus_rate_dot_crank_left, -minus_rate_crank_left,
                 -t10, 1.0, -minus_rate_dot_crank_left, -minus_rate_dot_crank_left,
@@ -579,11 +603,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let [(s_crank_left, c_crank_left), (s_crank_right, c_crank_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -603,7 +627,7 @@ impl ScotchYoke {
                 + 0.12 * c_crank_right
                     * (minus_rate_crank_right * minus_rate_crank_right));
         let t21 = t13 * minus_rate_dot_crank_right;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_crank_left, -minus_rate_dot_crank_left, -minus_rate_crank_left,
                 -::overact::math::sign(minus_rate_crank_left), 1.0, -t21, -t21,
@@ -629,11 +653,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 1],
-    ) -> Result<[[f64; 11]; 1], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 11]; 1], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
@@ -654,7 +678,7 @@ impl ScotchYoke {
                     * (actuator_accelerations[0] + minus_rate_dot_crank_left));
         let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t19 + t12);
         let t22 = ::overact::math::sign(minus_rate_crank_left);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_crank_left_2, -minus_rate_dot_crank_left_2, -minus_rate_crank_left,
                 -t22, 1.0, -minus_rate_dot_crank_left_2, -minus_rate_dot_crank_left_2,
@@ -677,10 +701,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -691,7 +715,7 @@ impl ScotchYoke {
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (acceleration[0]
                 + pose[0] * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], minus_gcrank_vx_left * minus_rate_dot_crank_left,
                 minus_gcrank_vx_left * minus_rate_crank_left,
@@ -716,11 +740,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let (s_crank_left, c_crank_left) = ::overact::math::sin_cos(joints[0]);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
@@ -728,7 +752,7 @@ impl ScotchYoke {
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (acceleration[0]
                 + 0.12 * c_crank_left * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], minus_gcrank_vx_left * minus_rate_dot_crank_left,
                 minus_gcrank_vx_left * minus_rate_crank_left,
@@ -753,11 +777,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
@@ -774,7 +798,7 @@ impl ScotchYoke {
                 * (actuator_accelerations[1] - minus_rate_dot_crank_left
                     - (actuator_accelerations[0] + minus_rate_dot_crank_left)));
         let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t15 + t9);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t15, minus_gcrank_vx_left * minus_rate_dot_crank_left_2,
                 minus_gcrank_vx_left * minus_rate_crank_left,
@@ -798,10 +822,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -812,7 +836,7 @@ impl ScotchYoke {
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (acceleration[0]
                 + pose[0] * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(0.12 * s_crank_left * acceleration[0]), -minus_rate_dot_crank_left,
                 -minus_rate_crank_left, -::overact::math::sign(minus_rate_crank_left), 1.0,
@@ -835,11 +859,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let (s_crank_left, c_crank_left) = ::overact::math::sin_cos(joints[0]);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
@@ -847,7 +871,7 @@ impl ScotchYoke {
         let minus_rate_dot_crank_left = minus_gcrank_vx_left
             * (acceleration[0]
                 + 0.12 * c_crank_left * (minus_rate_crank_left * minus_rate_crank_left));
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(0.12 * s_crank_left * acceleration[0]), -minus_rate_dot_crank_left,
                 -minus_rate_crank_left, -::overact::math::sign(minus_rate_crank_left), 1.0,
@@ -870,11 +894,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        start: &[f64; 1],
-    ) -> Result<[[f64; 5]; 1], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 5]; 1], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
@@ -894,7 +918,7 @@ impl ScotchYoke {
                 - minus_gcrank_vx_left
                     * (actuator_accelerations[0] + minus_rate_dot_crank_left));
         let minus_rate_dot_crank_left_2 = minus_gcrank_vx_left * (t20 + t13);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(0.12 * s_crank_left * t20), -minus_rate_dot_crank_left_2, -minus_rate_crank_left,
                 -::overact::math::sign(minus_rate_crank_left), 1.0,
@@ -914,16 +938,18 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 1],
-        torques: &[f64; 2],
-    ) -> Result<[f64; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
         let s_crank_left = ::overact::math::sqrt(t2);
         ::overact::guard::leg(s_crank_left, 1.0, "left")?;
         let minus_gcrank_vx_left = 8.333333333333334 / s_crank_left;
-        Ok([minus_gcrank_vx_left * torques[1] - minus_gcrank_vx_left * torques[0]])
+        ::core::result::Result::Ok([
+            minus_gcrank_vx_left * torques[1] - minus_gcrank_vx_left * torques[0],
+        ])
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
     ///
@@ -935,7 +961,10 @@ impl ScotchYoke {
     ///
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 1], torques: &[f64; 2]) -> [f64; 1] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 1] {
         [torques[0] - torques[1]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -953,11 +982,11 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 11],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 11],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -982,7 +1011,7 @@ impl ScotchYoke {
                     - parameters[0] * minus_rate_dot_crank_left);
         let t33 = minus_gcrank_vx_left
             * ((t28 + acceleration[0] * parameters[10]) * (0.0072 * t2));
-        Ok([-t33, t33])
+        ::core::result::Result::Ok([-t33, t33])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -1000,12 +1029,12 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 1],
-        joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 11],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 1],
+        joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 11],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let [(s_crank_left, c_crank_left), (s_crank_right, c_crank_right)] = ::overact::math::sin_cos_all([
             joints[0], joints[1],
         ]);
@@ -1038,7 +1067,9 @@ impl ScotchYoke {
                     - parameters[5] * minus_rate_dot_crank_right);
         let t45 = (acceleration[0] * parameters[10] - t39)
             / (69.44444444444444 * (t2 * t2 + t22 * t22));
-        Ok([-(minus_gcrank_vx_left * t45), -(minus_gcrank_vx_right * t45)])
+        ::core::result::Result::Ok([
+            -(minus_gcrank_vx_left * t45), -(minus_gcrank_vx_right * t45),
+        ])
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
     ///
@@ -1056,12 +1087,12 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        parameters: &[f64; 11],
-        start: &[f64; 1],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 11],
+        start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
@@ -1094,7 +1125,7 @@ impl ScotchYoke {
                         + ::overact::math::signed(parameters[3], minus_rate_crank_left))
                     - parameters[0] * minus_rate_dot_crank_left_2);
         let t44 = minus_gcrank_vx_left * (t5 * (t40 + t19 * parameters[10]));
-        Ok([-t44, t44])
+        ::core::result::Result::Ok([-t44, t44])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -1109,9 +1140,9 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 1],
-        parameters: &[f64; 11],
-    ) -> Result<[[f64; 1]; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 11],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -1124,7 +1155,7 @@ impl ScotchYoke {
             + minus_gcrank_vx_left
                 * (minus_gcrank_vx_left * parameters[1]
                     + minus_gcrank_vx_left * parameters[0]) + parameters[10];
-        Ok([[t14]])
+        ::core::result::Result::Ok([[t14]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -1140,10 +1171,10 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        parameters: &[f64; 11],
-    ) -> Result<[f64; 1], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 11],
+    ) -> ::core::result::Result<[::core::primitive::f64; 1], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -1165,7 +1196,7 @@ impl ScotchYoke {
                         + parameters[2] * minus_rate_crank_left
                         + ::overact::math::signed(parameters[3], minus_rate_crank_left))
                     - parameters[0] * minus_rate_dot_crank_left);
-        Ok([t27])
+        ::core::result::Result::Ok([t27])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -1183,12 +1214,12 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 11],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 11],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = 0.7071067811865476 * preload[0];
         let t3 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t3, "left")?;
@@ -1214,7 +1245,7 @@ impl ScotchYoke {
                     - parameters[0] * minus_rate_dot_crank_left);
         let t34 = minus_gcrank_vx_left
             * ((t29 + acceleration[0] * parameters[10]) * (0.0072 * t3));
-        Ok([t0 - t34, t34 + t0])
+        ::core::result::Result::Ok([t0 - t34, t34 + t0])
     }
     /// τ* = (I - N Nᵀ) τ: the torques without their internal part, eq. (50).
     ///
@@ -1229,9 +1260,9 @@ impl ScotchYoke {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 1],
-        torques: &[f64; 2],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = 1.0 - 69.44444444444444 * (pose[0] * pose[0]);
         ::overact::guard::reach(t2, "left")?;
         ::overact::guard::reach(t2, "right")?;
@@ -1241,7 +1272,7 @@ impl ScotchYoke {
         let t10 = minus_gcrank_vx_left
             * ((minus_gcrank_vx_left * torques[1] - minus_gcrank_vx_left * torques[0])
                 * (0.0072 * t2));
-        Ok([-t10, t10])
+        ::core::result::Result::Ok([-t10, t10])
     }
     /// N: orthonormal basis of the null space of (J_p^inv)ᵀ; column k is positive on the k-th actuator that case 2 projects.
     ///
@@ -1252,7 +1283,9 @@ impl ScotchYoke {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn null_space(_pose: &[f64; 1]) -> [[f64; 1]; 2] {
+    pub fn null_space(
+        _pose: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[0.7071067811865476], [0.7071067811865476]]
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
@@ -1260,9 +1293,9 @@ impl ScotchYoke {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -1281,7 +1314,7 @@ impl ScotchYoke {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -1315,9 +1348,9 @@ impl ::overact::Model for ScotchYoke {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(2, inputs, output, Self::joints)
@@ -1368,11 +1401,11 @@ impl ::overact::Model for ScotchYoke {
                     2,
                     inputs,
                     output,
-                    |pose| Ok(Self::null_space(pose)),
+                    |pose| ::core::result::Result::Ok(Self::null_space(pose)),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -1383,14 +1416,14 @@ impl ::overact::Model for ScotchYoke {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

@@ -4,45 +4,61 @@
 ///
 /// 3 legs, 9 joints, 3 actuators, 3 degrees of freedom; 54 standard parameters, 40 base parameters.
 /// Source: Gosselin and Hamel 1994; masses and inertias assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Spherical3Rrr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Spherical3Rrr {
     /// The robot's name.
-    pub const NAME: &'static str = "Spherical3Rrr";
+    pub const NAME: &'static ::core::primitive::str = "Spherical3Rrr";
     /// Numbers in a pose.
-    pub const POSE: usize = 4;
+    pub const POSE: ::core::primitive::usize = 4;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 9;
+    pub const JOINTS: ::core::primitive::usize = 9;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "leg1", "leg2", "leg3",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 9] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 9] = [
         "leg1.proximal", "leg1.distal", "leg1.wrist", "leg2.proximal", "leg2.distal", "leg2.wrist",
         "leg3.proximal", "leg3.distal", "leg3.wrist",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 4] = ["qw", "qx", "qy", "qz"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 4] = [
+        "qw", "qx", "qy", "qz",
+    ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 3, 6];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [1.0, 0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [1.0, 0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -226,7 +242,9 @@ impl Spherical3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 9], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[1];
@@ -272,7 +290,7 @@ impl Spherical3Rrr {
         let c_proximal_leg3 = t27 / c_distal_leg3;
         let s_wrist_leg3 = t4 / c_distal_leg3;
         let c_wrist_leg3 = t35 / c_distal_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
             ::overact::math::atan2(s_wrist_leg1, c_wrist_leg1),
@@ -295,7 +313,9 @@ impl Spherical3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -332,7 +352,7 @@ impl Spherical3Rrr {
         let t46 = 1.0 / (t40 * c_distal_leg3);
         let s_proximal_leg3 = t46 * (t40 * (t6 + t7));
         let c_proximal_leg3 = t46 * (t40 * t40);
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(s_proximal_leg2, c_proximal_leg2),
             ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
@@ -349,7 +369,9 @@ impl Spherical3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -395,7 +417,7 @@ impl Spherical3Rrr {
         let minus_gproximal_wz_leg1 = s_proximal_leg1 * t39;
         let c_proximal_leg2 = (t29 - t15) * t11;
         let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
-        Ok([
+        ::core::result::Result::Ok([
             [1.0, -minus_gproximal_wy_leg1, -minus_gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, 1.0, -minus_gproximal_wz_leg2],
             [-minus_gproximal_wx_leg3, -minus_gproximal_wy_leg3, 1.0],
@@ -414,9 +436,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 9],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg2, minus_c_proximal_leg2),
         (c_distal_leg2, minus_s_distal_leg2),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
@@ -437,7 +459,7 @@ impl Spherical3Rrr {
         let gproximal_wy_leg3 = minus_s_proximal_leg3 * t10;
         let gproximal_wz_leg1 = minus_s_proximal_leg1 * t16;
         let gproximal_wz_leg2 = minus_c_proximal_leg2 * t4;
-        Ok([
+        ::core::result::Result::Ok([
             [1.0, gproximal_wy_leg1, gproximal_wz_leg1],
             [gproximal_wx_leg2, 1.0, gproximal_wz_leg2],
             [gproximal_wx_leg3, gproximal_wy_leg3, 1.0],
@@ -454,7 +476,9 @@ impl Spherical3Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -532,7 +556,7 @@ impl Spherical3Rrr {
         let t114 = minus_gproximal_wx_leg3 * t52 - minus_gproximal_wy_leg3;
         let t120 = t86 * (1.0 + minus_gproximal_wx_leg3 * t74 - t77 * t114);
         let t122 = t59 * t114 - t77 * t120;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t32 + t52 * t92 - t74 * t90,
                 -(minus_gproximal_wx_leg2 * t32 + t52 * t107 + t74 * t105),
@@ -553,9 +577,9 @@ impl Spherical3Rrr {
     /// 6 operations (0 additions, 6 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 3 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 9],
-    ) -> [[f64; 9]; 9] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 9]; 9] {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -605,9 +629,9 @@ impl Spherical3Rrr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 4],
-        _joints: &[f64; 9],
-    ) -> [[f64; 3]; 9] {
+        _pose: &[::core::primitive::f64; 4],
+        _joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 9] {
         [
             [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
             [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0],
@@ -624,9 +648,9 @@ impl Spherical3Rrr {
     /// 6 operations (0 additions, 6 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 9 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
         (c_distal_leg2, minus_s_distal_leg2),
@@ -661,9 +685,9 @@ impl Spherical3Rrr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 9],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(_, minus_s_distal_leg1), (_, minus_s_distal_leg2), (_, minus_s_distal_leg3),
         ] = ::overact::math::sin_cos_all([joints[1], joints[4], joints[7]]);
         [
@@ -684,9 +708,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[2] * t0;
         let t2 = 2.0 * pose[3];
@@ -737,7 +761,7 @@ impl Spherical3Rrr {
             * (c_proximal_leg3 * twist[0] + s_proximal_leg3 * twist[1]);
         let rate_proximal_leg3 = twist[2] - minus_s_distal_leg3 * rate_wrist_leg3;
         let rate_distal_leg3 = c_proximal_leg3 * twist[1] - s_proximal_leg3 * twist[0];
-        Ok([
+        ::core::result::Result::Ok([
             rate_proximal_leg1, -minus_rate_distal_leg1, rate_wrist_leg1, rate_proximal_leg2,
             -minus_rate_distal_leg2, rate_wrist_leg2, rate_proximal_leg3, rate_distal_leg3,
             rate_wrist_leg3,
@@ -757,10 +781,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 9], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 9], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -835,7 +859,7 @@ impl Spherical3Rrr {
         let rate_dot_distal_leg3 = c_proximal_leg3 * acceleration[1]
             - s_proximal_leg3 * acceleration[0] - t95 * rate_proximal_leg3;
         let rate_dot_wrist_leg3 = t89 * t110;
-        Ok([
+        ::core::result::Result::Ok([
             rate_dot_proximal_leg1, -minus_rate_dot_distal_leg1, rate_dot_wrist_leg1,
             rate_dot_proximal_leg2, -minus_rate_dot_distal_leg2, rate_dot_wrist_leg2,
             rate_dot_proximal_leg3, rate_dot_distal_leg3, rate_dot_wrist_leg3,
@@ -854,9 +878,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 4],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -934,7 +958,7 @@ impl Spherical3Rrr {
                 + minus_gproximal_wz_leg2 * actuator_velocities[1]) - t31 * t84
             - t87 * t70) / t103;
         let t106 = t64 * t70 - t87 * t104;
-        Ok([t31 * t36 - t57 * t106 - t84 * t104, t106, t104])
+        ::core::result::Result::Ok([t31 * t36 - t57 * t106 - t84 * t104, t106, t104])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -950,10 +974,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[2] * t0;
         let t2 = 2.0 * pose[3];
@@ -1053,7 +1077,7 @@ impl Spherical3Rrr {
         let t148 = (t91 - (minus_gproximal_wz_leg1 * t33 + minus_gproximal_wz_leg2 * t62)
             - t93 * t128 - t131 * t118) / t147;
         let t150 = t112 * t118 - t131 * t148;
-        Ok([t93 * t98 - t105 * t150 - t128 * t148, t150, t148])
+        ::core::result::Result::Ok([t93 * t98 - t105 * t150 - t128 * t148, t150, t148])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1070,10 +1094,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -1272,7 +1296,7 @@ impl Spherical3Rrr {
         let t425 = t378 - t396;
         let t427 = t393 - t354;
         let t430 = t370 + t349;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_proximal_leg1, -t43, t46, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, -t58, t69, -t89,
@@ -1365,11 +1389,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -1555,7 +1579,7 @@ impl Spherical3Rrr {
         let t430 = t380 - t401;
         let t432 = t398 - t355;
         let t435 = t372 + t345;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_proximal_leg1, -t28, t31, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, t43, t54, t74,
@@ -1683,11 +1707,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[1] + pose[1];
         let t2 = 1.0 - pose[1] * t0;
@@ -1921,7 +1945,7 @@ impl Spherical3Rrr {
         let t490 = t440 - t461;
         let t492 = t458 - t414;
         let t495 = t432 + t409;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], -t23, t26, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t122,
@@ -2099,10 +2123,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -2335,7 +2359,7 @@ impl Spherical3Rrr {
         let t560 = t501 - t396 + t75 * t454;
         let t574 = 9.81 * minus_s_distal_leg1;
         let t583 = 9.81 * minus_s_distal_leg2;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_proximal_leg1, -t39, t40, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, -t97,
@@ -2472,11 +2496,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -2694,7 +2718,7 @@ impl Spherical3Rrr {
         let t590 = 9.81 * t357;
         let t599 = 9.81 * t367;
         let t601 = 9.81 * t363;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_proximal_leg1, -t24, t25, rate_dot_proximal_leg1, rate_proximal_leg1,
                 ::overact::math::sign(rate_proximal_leg1), 1.0, t68,
@@ -2834,11 +2858,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 54]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 54]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
@@ -3114,7 +3138,7 @@ impl Spherical3Rrr {
         let t634 = t575 - t466 + t78 * t528;
         let t648 = 9.81 * minus_s_distal_leg1;
         let t657 = 9.81 * minus_s_distal_leg2;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 actuator_accelerations[0], -t14, t20, actuator_accelerations[0],
                 actuator_velocities[0], ::overact::math::sign(actuator_velocities[0]), 1.0, -t138,
@@ -3252,10 +3276,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -3432,7 +3456,7 @@ impl Spherical3Rrr {
             - c_distal_leg3 * (t328 - t376);
         let t419 = minus_s_distal_leg1 * t236;
         let t425 = minus_s_distal_leg2 * t239;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t5 * t24 + t46 - t66, t5 * t98 + minus_s_distal_leg1 * t101 + t37 * t106,
                 t5 * t124 + minus_s_distal_leg1 * t127 + t37 * t130,
@@ -3525,11 +3549,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -3700,7 +3724,7 @@ impl Spherical3Rrr {
         let t423 = c_distal_leg1 * t239;
         let t430 = c_distal_leg2 * t242;
         let t437 = 9.81 * c_distal_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
@@ -3788,11 +3812,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
@@ -4009,7 +4033,7 @@ impl Spherical3Rrr {
             - c_distal_leg3 * (t400 - t448);
         let t491 = minus_s_distal_leg1 * t314;
         let t497 = t46 * t307;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t5 * t182 + t190 - t196, t5 * t218 + minus_s_distal_leg1 * t221 + t42 * t226,
                 t5 * t244 + minus_s_distal_leg1 * t247 + t42 * t250,
@@ -4137,10 +4161,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[2];
@@ -4357,7 +4381,7 @@ impl Spherical3Rrr {
         let t563 = 9.81 * t53;
         let t568 = 9.81 * t5;
         let t574 = 9.81 * minus_s_distal_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t61 * t93 + t95 * t100 + t103 * t108, t61 * t169 + t95 * t175 + t103 * t182,
                 t61 * t208 + t95 * t214 + t103 * t221, t61 * t237 + t95 * t242 + t103 * t248,
@@ -4445,11 +4469,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg2, minus_c_proximal_leg2),
         (c_distal_leg2, minus_s_distal_leg2),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
@@ -4652,7 +4676,7 @@ impl Spherical3Rrr {
         let t567 = minus_s_distal_leg1 * t384;
         let t572 = minus_s_distal_leg2 * t385;
         let t578 = 9.81 * c_distal_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t32 * t82 - t84 * t89 + t92 * t97, t32 * t143 - t84 * t149 + t92 * t156,
                 t32 * t182 - t84 * t188 + t92 * t195, t32 * t211 - t84 * t216 + t92 * t222,
@@ -4743,11 +4767,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 40]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 40]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
@@ -5006,7 +5030,7 @@ impl Spherical3Rrr {
         let t640 = 9.81 * t53;
         let t645 = 9.81 * t5;
         let t651 = 9.81 * minus_s_distal_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t61 * t212 + t214 * t219 + t222 * t227, t61 * t278 + t214 * t284 + t222 * t291,
                 t61 * t317 + t214 * t323 + t222 * t330, t61 * t346 + t214 * t351 + t222 * t357,
@@ -5092,9 +5116,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 4],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -5140,7 +5164,7 @@ impl Spherical3Rrr {
         let minus_gproximal_wz_leg1 = s_proximal_leg1 * t43;
         let c_proximal_leg2 = (t33 - t17) * t11;
         let minus_gproximal_wz_leg2 = c_proximal_leg2 * t13;
-        Ok([
+        ::core::result::Result::Ok([
             torques[0] - minus_gproximal_wx_leg2 * torques[1]
                 - minus_gproximal_wx_leg3 * torques[2],
             torques[1] - minus_gproximal_wy_leg1 * torques[0]
@@ -5160,7 +5184,10 @@ impl Spherical3Rrr {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 4], torques: &[f64; 3]) -> [f64; 3] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 3],
+    ) -> [::core::primitive::f64; 3] {
         [torques[0], torques[1], torques[2]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -5178,11 +5205,11 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 54],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 54],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -5467,7 +5494,7 @@ impl Spherical3Rrr {
         let t596 = (t585 - t536 * t523) / t595;
         let t598 = t449 * t523 - t536 * t596;
         let t602 = t430 * t435 - t442 * t598 - t533 * t596;
-        Ok([
+        ::core::result::Result::Ok([
             t602 - minus_gproximal_wy_leg1 * t598 - minus_gproximal_wz_leg1 * t596,
             t598 - minus_gproximal_wx_leg2 * t602 - minus_gproximal_wz_leg2 * t596,
             t596 - (minus_gproximal_wx_leg3 * t602 + minus_gproximal_wy_leg3 * t598),
@@ -5489,12 +5516,12 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 9],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 54],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 9],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 54],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -5765,7 +5792,7 @@ impl Spherical3Rrr {
         let t600 = (t589 - t540 * t527) / t599;
         let t602 = t453 * t527 - t540 * t600;
         let t606 = t434 * t439 - t446 * t602 - t537 * t600;
-        Ok([
+        ::core::result::Result::Ok([
             t606 + gproximal_wy_leg1 * t602 + gproximal_wz_leg1 * t600,
             gproximal_wx_leg2 * t606 + t602 + gproximal_wz_leg2 * t600,
             gproximal_wx_leg3 * t606 + gproximal_wy_leg3 * t602 + t600,
@@ -5787,12 +5814,12 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 54],
-        start: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 54],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
@@ -6102,7 +6129,7 @@ impl Spherical3Rrr {
         let t640 = t109 * (t637 - t100 * t587);
         let t642 = t75 * t587 - t100 * t640;
         let t646 = t32 * t512 - t72 * t642 - t97 * t640;
-        Ok([
+        ::core::result::Result::Ok([
             t646 - minus_gproximal_wy_leg1 * t642 - minus_gproximal_wz_leg1 * t640,
             t642 - minus_gproximal_wx_leg2 * t646 - minus_gproximal_wz_leg2 * t640,
             t640 - (minus_gproximal_wx_leg3 * t646 + minus_gproximal_wy_leg3 * t642),
@@ -6121,9 +6148,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 4],
-        parameters: &[f64; 54],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 54],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = parameters[0] + parameters[3];
         let t1 = 2.0 * pose[1];
         let t2 = pose[2] * t1;
@@ -6288,7 +6315,7 @@ impl Spherical3Rrr {
             + parameters[46] * (2.0 * (minus_s_distal_leg3 * t139))
             + parameters[47] * (2.0 * (minus_s_distal_leg3 * t23))
             + t139 * t139 * parameters[48];
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t116 + t127 + parameters[49] * (2.0 * (minus_s_distal_leg1 * t34))
                     + t34 * t34 * parameters[50],
@@ -6317,10 +6344,10 @@ impl Spherical3Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        parameters: &[f64; 54],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 54],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[1];
@@ -6548,7 +6575,7 @@ impl Spherical3Rrr {
         let t492 = c_proximal_leg1 * t399 - minus_gproximal_wz_leg1 * t101
             - (minus_gproximal_wz_leg2 * t215 + s_proximal_leg2 * t155) + t297 + t488
             + parameters[50] * (t478 - t460);
-        Ok([
+        ::core::result::Result::Ok([
             t101 + c_proximal_leg2 * t155 - minus_gproximal_wx_leg2 * t215
                 - (minus_gproximal_wx_leg3 * t297 + s_proximal_leg3 * t317) + t379,
             t215 - (minus_gproximal_wy_leg1 * t101 + s_proximal_leg1 * t399)
@@ -6561,9 +6588,9 @@ impl Spherical3Rrr {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -6582,7 +6609,7 @@ impl Spherical3Rrr {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace_quaternion,
             )
@@ -6616,9 +6643,9 @@ impl ::overact::Model for Spherical3Rrr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(9, inputs, output, Self::joints)
@@ -6662,7 +6689,7 @@ impl ::overact::Model for Spherical3Rrr {
                 ::overact::block::map3(3, inputs, output, Self::bias)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -6673,17 +6700,21 @@ impl ::overact::Model for Spherical3Rrr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
-    fn displace(&self, pose: &mut [f64], step: &[f64]) {
+    fn displace(
+        &self,
+        pose: &mut [::core::primitive::f64],
+        step: &[::core::primitive::f64],
+    ) {
         ::overact::forward::displace_quaternion(pose, step);
     }
 }

@@ -4,45 +4,65 @@
 ///
 /// 4 legs, 12 joints, 4 actuators, 3 degrees of freedom; 73 standard parameters, 53 base parameters.
 /// Source: Redundant variant of the Agile Eye; masses and inertias assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Spherical4Rrr;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Spherical4Rrr {
     /// The robot's name.
-    pub const NAME: &'static str = "Spherical4Rrr";
+    pub const NAME: &'static ::core::primitive::str = "Spherical4Rrr";
     /// Numbers in a pose.
-    pub const POSE: usize = 4;
+    pub const POSE: ::core::primitive::usize = 4;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 3;
+    pub const DOF: ::core::primitive::usize = 3;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 4;
+    pub const ACTUATORS: ::core::primitive::usize = 4;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 12;
+    pub const JOINTS: ::core::primitive::usize = 12;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const LEGS: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 4] = ["leg1", "leg2", "leg3", "leg4"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 4] = [
+        "leg1", "leg2", "leg3", "leg4",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 12] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 12] = [
         "leg1.proximal", "leg1.distal", "leg1.wrist", "leg2.proximal", "leg2.distal", "leg2.wrist",
         "leg3.proximal", "leg3.distal", "leg3.wrist", "leg4.proximal", "leg4.distal", "leg4.wrist",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 4] = ["qw", "qx", "qy", "qz"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 4] = [
+        "qw", "qx", "qy", "qz",
+    ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 3, 6, 9];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 3, 6, 9,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 3] = [0, 1, 2];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 3] = [0, 1, 2];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [1.0, 0.0, 0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [1.0, 0.0, 0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -296,7 +316,9 @@ impl Spherical4Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 4]) -> Result<[f64; 12], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[2] * t0;
         let t2 = 2.0 * pose[3];
@@ -370,7 +392,7 @@ impl Spherical4Rrr {
         let c_proximal_leg4 = t74 / c_distal_leg4;
         let s_wrist_leg4 = 0.7071067811865475 * (t18 - t4) / c_distal_leg4;
         let c_wrist_leg4 = t55 / c_distal_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_distal_leg1, c_distal_leg1),
             ::overact::math::atan2(s_wrist_leg1, c_wrist_leg1),
@@ -396,7 +418,9 @@ impl Spherical4Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 4]) -> Result<[f64; 4], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -458,7 +482,7 @@ impl Spherical4Rrr {
         let t91 = 1.0 / (0.5 * (c_distal_leg4 * t88));
         let minus_s_proximal_leg4 = t91 * (0.35355339059327373 * ((t52 + t9) * t88));
         let c_proximal_leg4 = t91 * (0.25 * (t88 * t88));
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(s_proximal_leg1, c_proximal_leg1),
             ::overact::math::atan2(-minus_s_proximal_leg2, c_proximal_leg2),
             ::overact::math::atan2(s_proximal_leg3, c_proximal_leg3),
@@ -476,7 +500,9 @@ impl Spherical4Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 4]) -> Result<[[f64; 3]; 4], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -562,7 +588,7 @@ impl Spherical4Rrr {
         let gproximal_wz_leg2 = 0.7071067811865475 * (t106 + c_distal_leg2) * t57;
         let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t73 - c_distal_leg3) * t76;
         let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t119 - c_distal_leg4) * t94;
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_gproximal_wx_leg1, -minus_gproximal_wy_leg1, gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, -minus_gproximal_wy_leg2, gproximal_wz_leg2],
             [
@@ -586,9 +612,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> Result<[[f64; 3]; 4], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 4], ::overact::Error> {
         let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg1, minus_c_proximal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -626,7 +652,7 @@ impl Spherical4Rrr {
         let minus_gproximal_wz_leg2 = (t37 - t38) * t15;
         let minus_gproximal_wz_leg3 = (t22 - t23) * t25;
         let minus_gproximal_wz_leg4 = (t44 - t45) * t32;
-        Ok([
+        ::core::result::Result::Ok([
             [gproximal_wx_leg1, gproximal_wy_leg1, -minus_gproximal_wz_leg1],
             [-minus_gproximal_wx_leg2, gproximal_wy_leg2, -minus_gproximal_wz_leg2],
             [
@@ -646,7 +672,9 @@ impl Spherical4Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 4]) -> Result<[[f64; 4]; 3], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -782,7 +810,7 @@ impl Spherical4Rrr {
         let t244 = t194
             * (minus_gproximal_wx_leg4 * t179 - minus_gproximal_wz_leg4 - t182 * t238);
         let t246 = t149 * t238 - t182 * t244;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(minus_gproximal_wx_leg1 * t103 + t139 * t201 + t179 * t199),
                 -(minus_gproximal_wx_leg2 * t103 + t139 * t216 + t179 * t214),
@@ -804,9 +832,9 @@ impl Spherical4Rrr {
     /// 28 operations (8 additions, 20 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 24 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> [[f64; 12]; 12] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 12]; 12] {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -891,9 +919,9 @@ impl Spherical4Rrr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 4],
-        _joints: &[f64; 12],
-    ) -> [[f64; 3]; 12] {
+        _pose: &[::core::primitive::f64; 4],
+        _joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 12] {
         [
             [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
             [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0],
@@ -911,9 +939,9 @@ impl Spherical4Rrr {
     /// 24 operations (8 additions, 16 multiplications, 0 divisions), 0 square roots, 8 trigonometric pairs, 0 signs, 28 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> [[f64; 3]; 4] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 3]; 4] {
         let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg1, minus_c_proximal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -949,9 +977,9 @@ impl Spherical4Rrr {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 4],
-        joints: &[f64; 12],
-    ) -> [[f64; 4]; 4] {
+        _pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+    ) -> [[::core::primitive::f64; 4]; 4] {
         let [(_, minus_s_distal_leg1), (_, minus_s_distal_leg2),
         (_, minus_s_distal_leg3), (_, minus_s_distal_leg4)] = ::overact::math::sin_cos_all([
             joints[1], joints[4], joints[7], joints[10],
@@ -974,9 +1002,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -1089,7 +1117,7 @@ impl Spherical4Rrr {
         let minus_rate_wrist_leg4 = s_distal_leg4 * minus_rate_proximal_leg4
             + 0.7071067811865475
                 * (t75 * twist[0] + t64 * twist[1] + t66 * twist[2] + t157);
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_proximal_leg1, rate_distal_leg1, rate_wrist_leg1, -minus_rate_proximal_leg2,
             rate_distal_leg2, rate_wrist_leg2, -minus_rate_proximal_leg3, rate_distal_leg3,
             -minus_rate_wrist_leg3, -minus_rate_proximal_leg4, rate_distal_leg4,
@@ -1110,10 +1138,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[f64; 12], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 12], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -1278,7 +1306,7 @@ impl Spherical4Rrr {
             + 0.7071067811865475
                 * (t100 * acceleration[0] + t90 * acceleration[1] + t92 * acceleration[2]
                     + t241) + t288 * rate_distal_leg4;
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_proximal_leg1, rate_dot_distal_leg1, -minus_rate_dot_wrist_leg1,
             -minus_rate_dot_proximal_leg2, rate_dot_distal_leg2, -minus_rate_dot_wrist_leg2,
             -minus_rate_dot_proximal_leg3, rate_dot_distal_leg3, -minus_rate_dot_wrist_leg3,
@@ -1298,9 +1326,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -1435,7 +1463,9 @@ impl Spherical4Rrr {
         ::overact::guard::platform(t218, 1.9999999999999996, "actuators")?;
         let t219 = t207 / t218;
         let t221 = t156 * t165 - t196 * t219;
-        Ok([-(t102 * t110 + t146 * t221 + t193 * t219), t221, t219])
+        ::core::result::Result::Ok([
+            -(t102 * t110 + t146 * t221 + t193 * t219), t221, t219,
+        ])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -1451,10 +1481,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        actuator_accelerations: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -1638,7 +1668,9 @@ impl Spherical4Rrr {
         ::overact::guard::platform(t323, 1.9999999999999996, "actuators")?;
         let t324 = t312 / t323;
         let t326 = t269 * t278 - t301 * t324;
-        Ok([-(t238 * t246 + t259 * t326 + t298 * t324), t326, t324])
+        ::core::result::Result::Ok([
+            -(t238 * t246 + t259 * t326 + t298 * t324), t326, t324,
+        ])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -1655,10 +1687,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let t0 = pose[2] + pose[2];
         let t1 = pose[2] * t0;
         let t2 = 1.0 - t1;
@@ -1977,7 +2009,7 @@ impl Spherical4Rrr {
         let t706 = t11 * t656;
         let t710 = t679 - t636;
         let t713 = t653 + t633;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t75, minus_gproximal_wx_leg1 * t80, t85, t75,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
@@ -2220,11 +2252,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -2549,7 +2581,7 @@ impl Spherical4Rrr {
         let t689 = t639 - t660;
         let t691 = t657 - t614;
         let t694 = t631 + t604;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -t44, -t50, -t54, -t44, -(gproximal_wx_leg1 * minus_rate_proximal_leg1),
                 -::overact::math::signed(gproximal_wx_leg1, minus_rate_proximal_leg1),
@@ -2774,11 +2806,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
@@ -3170,7 +3202,7 @@ impl Spherical4Rrr {
         let t839 = t11 * t789;
         let t843 = t812 - t769;
         let t846 = t786 + t766;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t340, minus_gproximal_wx_leg1 * t343, t348, t340,
                 minus_gproximal_wx_leg1 * minus_rate_proximal_leg1,
@@ -3412,10 +3444,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -3766,7 +3798,7 @@ impl Spherical4Rrr {
         let t909 = 9.81 * t135;
         let t918 = 9.81 * t37;
         let t920 = 9.81 * t9;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t75,
                 -minus_rate_dot_proximal_leg1, -minus_rate_proximal_leg1,
@@ -3964,11 +3996,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg2, minus_s_distal_leg2),
@@ -4310,7 +4342,7 @@ impl Spherical4Rrr {
         let t879 = 9.81 * t646;
         let t888 = 9.81 * t656;
         let t890 = 9.81 * t652;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_proximal_leg1, -t45, -t46, -minus_rate_dot_proximal_leg1,
                 -minus_rate_proximal_leg1, -::overact::math::sign(minus_rate_proximal_leg1), 1.0,
@@ -4506,11 +4538,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 73]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 73]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
@@ -4932,7 +4964,7 @@ impl Spherical4Rrr {
         let t1041 = 9.81 * t108;
         let t1050 = 9.81 * t27;
         let t1052 = 9.81 * t9;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_proximal_leg1, -(6.936717523440031 * s_proximal_leg1), -t376,
                 -minus_rate_dot_proximal_leg1, -minus_rate_proximal_leg1,
@@ -5129,10 +5161,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let t0 = pose[1] + pose[1];
         let t1 = pose[1] * t0;
         let t2 = 1.0 - t1;
@@ -5408,7 +5440,7 @@ impl Spherical4Rrr {
         let t691 = gdistal_wx_leg3 * t690;
         let t699 = 6.936717523440031 * t320;
         let t703 = t371 * (0.7071067811865475 * t309);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t9 * t20 + t38 - t48, t9 * t65 + t22 * t68 + t28 * t77,
                 t9 * t95 - t22 * t73 + t28 * t99, t22 * t64 - t113 + t48,
@@ -5590,11 +5622,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let [(minus_s_proximal_leg1, minus_c_proximal_leg1),
         (c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -5869,7 +5901,7 @@ impl Spherical4Rrr {
         let t672 = minus_gdistal_wy_leg2 * t668;
         let t677 = t290 * t360;
         let t690 = t339 * t364;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t5 * t17 + t38 - t48, t5 * t65 + t19 * t68 + t25 * t73,
                 t5 * t91 + t19 * t94 + t25 * t97, t19 * t64 - t111 + t48,
@@ -6041,11 +6073,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
         let t1 = pose[1] * t0;
@@ -6391,7 +6423,7 @@ impl Spherical4Rrr {
         let t818 = gdistal_wx_leg3 * t817;
         let t826 = 6.936717523440031 * t94;
         let t830 = t502 * (0.7071067811865475 * t97);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t9 * t340 + t343 - t346, t9 * t363 + t46 * t366 + t15 * t371,
                 t9 * t389 - t46 * t369 + t15 * t393, t46 * t362 - t407 + t346,
@@ -6569,10 +6601,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
         let t3 = 2.0 * pose[3];
@@ -6892,7 +6924,7 @@ impl Spherical4Rrr {
         let t875 = t35 * 6.936717523440031;
         let t881 = 6.936717523440031 * t507;
         let t883 = t492 * 6.936717523440031;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t130 * t157 - t162 * t167 + t173 * t178, t130 * t221 - t162 * t227 + t173 * t234,
                 t130 * t260 - t162 * t266 + t173 * t273, t130 * t289 - t162 * t294 + t173 * t300,
@@ -7009,11 +7041,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let [(c_distal_leg2, minus_s_distal_leg2),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
         (minus_s_proximal_leg3, minus_c_proximal_leg3),
@@ -7327,7 +7359,7 @@ impl Spherical4Rrr {
         let t835 = 9.81 * t450;
         let t841 = 9.81 * t503;
         let t843 = c_distal_leg4 * t527;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t60 * t110 - t115 * t120 - t126 * t131, t60 * t174 - t115 * t180 - t126 * t187,
                 t60 * t213 - t115 * t219 - t126 * t226, t60 * t242 - t115 * t247 - t126 * t253,
@@ -7442,11 +7474,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        start: &[f64; 4],
-    ) -> Result<[[f64; 53]; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 53]; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[1];
         let t2 = 1.0 - pose[1] * t0;
@@ -7835,7 +7867,7 @@ impl Spherical4Rrr {
         let t998 = t34 * 6.936717523440031;
         let t1004 = 6.936717523440031 * t158;
         let t1006 = t127 * 6.936717523440031;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t121 * t399 - t404 * t409 + t415 * t420, t121 * t463 - t404 * t469 + t415 * t476,
                 t121 * t502 - t404 * t508 + t415 * t515, t121 * t531 - t404 * t536 + t415 * t542,
@@ -7949,9 +7981,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 4],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -8037,7 +8069,7 @@ impl Spherical4Rrr {
         let gproximal_wz_leg2 = 0.7071067811865475 * (t114 + c_distal_leg2) * t58;
         let minus_gproximal_wz_leg3 = 0.7071067811865475 * (t76 - c_distal_leg3) * t79;
         let minus_gproximal_wz_leg4 = 0.7071067811865475 * (t131 - c_distal_leg4) * t99;
-        Ok([
+        ::core::result::Result::Ok([
             -(minus_gproximal_wx_leg1 * torques[0] + minus_gproximal_wx_leg2 * torques[1]
                 + minus_gproximal_wx_leg3 * torques[2]
                 + minus_gproximal_wx_leg4 * torques[3]),
@@ -8062,9 +8094,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 4],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[1];
@@ -8179,7 +8211,7 @@ impl Spherical4Rrr {
                 * (minus_gproximal_wy_leg4 * (t121 * t142)
                     - minus_gproximal_wx_leg4 * (t134 * t142)
                     - minus_gproximal_wz_leg4 * (t139 * t142));
-        Ok([
+        ::core::result::Result::Ok([
             torques[0]
                 + torques[3]
                     * (t157
@@ -8212,11 +8244,11 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 73],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -8620,7 +8652,7 @@ impl Spherical4Rrr {
         let t879 = (t618 + t686 - t752 * t768 - t802 * t865) / t878;
         let t884 = t801 * t865 - t802 * t879;
         let t888 = t752 * t767 - t798 * t884 - t768 * t879;
-        Ok([
+        ::core::result::Result::Ok([
             gproximal_wz_leg1 * t879
                 - (minus_gproximal_wx_leg1 * t888 + minus_gproximal_wy_leg1 * t884),
             gproximal_wz_leg2 * t879
@@ -8647,12 +8679,12 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        pose: &[f64; 4],
-        joints: &[f64; 12],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 73],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        joints: &[::core::primitive::f64; 12],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let [(c_distal_leg1, minus_s_distal_leg1),
         (minus_s_proximal_leg1, minus_c_proximal_leg1),
         (minus_s_proximal_leg2, minus_c_proximal_leg2),
@@ -9048,7 +9080,7 @@ impl Spherical4Rrr {
         let t851 = (t796 + t834 - t666 * t782 - t785 * t762) / t850;
         let t853 = t697 * t762 - t785 * t851;
         let t857 = t666 * t674 - t687 * t853 - t782 * t851;
-        Ok([
+        ::core::result::Result::Ok([
             gproximal_wx_leg1 * t857 + gproximal_wy_leg1 * t853
                 - minus_gproximal_wz_leg1 * t851,
             gproximal_wy_leg2 * t853 - minus_gproximal_wx_leg2 * t857
@@ -9075,12 +9107,12 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 4],
-        actuator_velocities: &[f64; 4],
-        actuator_accelerations: &[f64; 4],
-        parameters: &[f64; 73],
-        start: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 4],
+        actuator_velocities: &[::core::primitive::f64; 4],
+        actuator_accelerations: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 73],
+        start: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
@@ -9524,7 +9556,7 @@ impl Spherical4Rrr {
         let t956 = t186 * (t758 + t826 - t135 * t888 - t183 * t953);
         let t961 = t182 * t953 - t183 * t956;
         let t965 = t134 * t888 - t179 * t961 - t135 * t956;
-        Ok([
+        ::core::result::Result::Ok([
             gproximal_wz_leg1 * t956
                 - (minus_gproximal_wx_leg1 * t965 + minus_gproximal_wy_leg1 * t961),
             gproximal_wz_leg2 * t956
@@ -9548,9 +9580,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 4],
-        parameters: &[f64; 73],
-    ) -> Result<[[f64; 3]; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -9826,7 +9858,7 @@ impl Spherical4Rrr {
             + parameters[66] * (2.0 * (t4 * t8));
         let t626 = t616 + parameters[67] * (t124 * t124)
             + parameters[68] * (2.0 * (t124 * t8)) + parameters[69] * (t8 * t8);
-        Ok([
+        ::core::result::Result::Ok([
             [t70 - (t121 + t172) + t222 + t243, t389, t520],
             [
                 t389,
@@ -9851,10 +9883,10 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        parameters: &[f64; 73],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 73],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = 2.0 * pose[1];
         let t1 = pose[3] * t0;
         let t2 = 2.0 * pose[2];
@@ -10199,7 +10231,7 @@ impl Spherical4Rrr {
         let t712 = t4 * t573;
         let t722 = t711 + parameters[67] * (t695 - t712)
             + parameters[68] * (t4 * t597 - t295 * t569 + t8 * t567);
-        Ok([
+        ::core::result::Result::Ok([
             t566 + t616, t631 - (minus_gproximal_wy_leg4 * t563 + t634) + t677,
             t693 + t722 + parameters[69] * (t712 - t694),
         ])
@@ -10220,12 +10252,12 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 4],
-        twist: &[f64; 3],
-        acceleration: &[f64; 3],
-        parameters: &[f64; 73],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        twist: &[::core::primitive::f64; 3],
+        acceleration: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 73],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -10658,7 +10690,7 @@ impl Spherical4Rrr {
             + preload[0]
                 * ((minus_gproximal_wx_leg3 * t908 - minus_gproximal_wy_leg3 * t904
                     - minus_gproximal_wz_leg3 * t902) * t921);
-        Ok([
+        ::core::result::Result::Ok([
             t924, t937, -t950,
             preload[0] * t920
                 - (minus_gproximal_wx_leg4 * t889 + minus_gproximal_wy_leg4 * t885
@@ -10678,9 +10710,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 4],
-        torques: &[f64; 4],
-    ) -> Result<[f64; 4], ::overact::Error> {
+        pose: &[::core::primitive::f64; 4],
+        torques: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[::core::primitive::f64; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -10813,7 +10845,7 @@ impl Spherical4Rrr {
         let t219 = t207 / t218;
         let t221 = t156 * t165 - t196 * t219;
         let t225 = t102 * t110 + t146 * t221 + t193 * t219;
-        Ok([
+        ::core::result::Result::Ok([
             minus_gproximal_wx_leg1 * t225 - minus_gproximal_wy_leg1 * t221
                 + gproximal_wz_leg1 * t219,
             minus_gproximal_wx_leg2 * t225 - minus_gproximal_wy_leg2 * t221
@@ -10835,7 +10867,9 @@ impl Spherical4Rrr {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 4]) -> Result<[[f64; 1]; 4], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 4],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 4], ::overact::Error> {
         let t0 = 2.0 * pose[2];
         let t1 = pose[2] * t0;
         let t3 = 2.0 * pose[3];
@@ -10965,7 +10999,7 @@ impl Spherical4Rrr {
                     - minus_gproximal_wz_leg4 * t198),
         );
         let t217 = 1.0 / t216;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -((minus_gproximal_wx_leg1 * t204 - minus_gproximal_wy_leg1 * t200
                     + gproximal_wz_leg1 * t198) * t217),
@@ -10986,9 +11020,9 @@ impl Spherical4Rrr {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -11007,7 +11041,7 @@ impl Spherical4Rrr {
                     positions.copy_from_slice(&Self::actuator_positions(pose)?);
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose)?.as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace_quaternion,
             )
@@ -11041,9 +11075,9 @@ impl ::overact::Model for Spherical4Rrr {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(12, inputs, output, Self::joints)
@@ -11093,7 +11127,7 @@ impl ::overact::Model for Spherical4Rrr {
                 ::overact::block::map1(4, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -11104,17 +11138,21 @@ impl ::overact::Model for Spherical4Rrr {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
-    fn displace(&self, pose: &mut [f64], step: &[f64]) {
+    fn displace(
+        &self,
+        pose: &mut [::core::primitive::f64],
+        step: &[::core::primitive::f64],
+    ) {
         ::overact::forward::displace_quaternion(pose, step);
     }
 }

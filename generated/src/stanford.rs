@@ -4,48 +4,64 @@
 ///
 /// 1 legs, 6 joints, 6 actuators, 6 degrees of freedom; 75 standard parameters, 55 base parameters.
 /// Source: Scheinman 1969, Paul 1981; dynamics rounded, friction invented.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct Stanford;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl Stanford {
     /// The robot's name.
-    pub const NAME: &'static str = "Stanford";
+    pub const NAME: &'static ::core::primitive::str = "Stanford";
     /// Numbers in a pose.
-    pub const POSE: usize = 6;
+    pub const POSE: ::core::primitive::usize = 6;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 6;
+    pub const DOF: ::core::primitive::usize = 6;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 6;
+    pub const ACTUATORS: ::core::primitive::usize = 6;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 6;
+    pub const JOINTS: ::core::primitive::usize = 6;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 1] = ["arm"];
+    pub const LEGS: [&'static ::core::primitive::str; 1] = ["arm"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 6] = [
+        "1", "2", "3", "4", "5", "6",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 6] = ["1", "2", "3", "4", "5", "6"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
+        "1", "2", "3", "4", "5", "6",
+    ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 6] = [
+    pub const COORDINATES: [&'static ::core::primitive::str; 6] = [
         "q_1", "q_2", "q_3", "q_4", "q_5", "q_6",
     ];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1, 2, 3, 4, 5];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [
+        0, 1, 2, 3, 4, 5,
+    ];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
         true, true, false, true, true, true,
     ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 6] = [0, 1, 2, 3, 4, 5];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 6] = [0, 1, 2, 3, 4, 5];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [
         0.0, 1.0471975511965976, 0.5, 0.0, 0.7853981633974483, 0.0,
     ];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         0.0, 1.0471975511965976, 0.5, 0.0, 0.7853981633974483, 0.0,
     ];
     /// The standard parameters whose columns are not identically zero, in column order.
@@ -220,7 +236,7 @@ impl Stanford {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joints(joints: &[f64; 6]) -> [f64; 6] {
+    pub fn joints(joints: &[::core::primitive::f64; 6]) -> [::core::primitive::f64; 6] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -232,7 +248,9 @@ impl Stanford {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn actuator_positions(joints: &[f64; 6]) -> [f64; 6] {
+    pub fn actuator_positions(
+        joints: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [joints[0], joints[1], joints[2], joints[3], joints[4], joints[5]]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -244,7 +262,9 @@ impl Stanford {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn inverse_jacobian(_joints: &[f64; 6]) -> [[f64; 6]; 6] {
+    pub fn inverse_jacobian(
+        _joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         [
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
@@ -262,9 +282,9 @@ impl Stanford {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_velocities(
-        _joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             joint_velocities[0], joint_velocities[1], joint_velocities[2], joint_velocities[3],
             joint_velocities[4], joint_velocities[5],
@@ -282,10 +302,10 @@ impl Stanford {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_accelerations(
-        _joints: &[f64; 6],
-        _joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        _joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             joint_accelerations[0], joint_accelerations[1], joint_accelerations[2],
             joint_accelerations[3], joint_accelerations[4], joint_accelerations[5],
@@ -302,9 +322,9 @@ impl Stanford {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn twist_from_actuators(
-        _joints: &[f64; 6],
-        actuator_velocities: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        actuator_velocities: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             actuator_velocities[0], actuator_velocities[1], actuator_velocities[2],
             actuator_velocities[3], actuator_velocities[4], actuator_velocities[5],
@@ -322,10 +342,10 @@ impl Stanford {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn acceleration_from_actuators(
-        _joints: &[f64; 6],
-        _joint_velocities: &[f64; 6],
-        actuator_accelerations: &[f64; 6],
-    ) -> [f64; 6] {
+        _joints: &[::core::primitive::f64; 6],
+        _joint_velocities: &[::core::primitive::f64; 6],
+        actuator_accelerations: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [
             actuator_accelerations[0], actuator_accelerations[1], actuator_accelerations[2],
             actuator_accelerations[3], actuator_accelerations[4], actuator_accelerations[5],
@@ -344,10 +364,10 @@ impl Stanford {
     /// 575 operations (250 additions, 325 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 458 intermediates.
     #[must_use]
     pub fn idm_red_platform(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [[f64; 75]; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 75]; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
@@ -622,10 +642,10 @@ impl Stanford {
     /// 563 operations (236 additions, 327 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 458 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-    ) -> [[f64; 55]; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 55]; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
@@ -866,7 +886,10 @@ impl Stanford {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_platform(_joints: &[f64; 6], torques: &[f64; 6]) -> [f64; 6] {
+    pub fn project_platform(
+        _joints: &[::core::primitive::f64; 6],
+        torques: &[::core::primitive::f64; 6],
+    ) -> [::core::primitive::f64; 6] {
         [torques[0], torques[1], torques[2], torques[3], torques[4], torques[5]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -882,11 +905,11 @@ impl Stanford {
     /// 694 operations (325 additions, 369 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 702 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        joint_accelerations: &[f64; 6],
-        parameters: &[f64; 75],
-    ) -> [f64; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        joint_accelerations: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 75],
+    ) -> [::core::primitive::f64; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
@@ -1150,7 +1173,10 @@ impl Stanford {
     ///
     /// 649 operations (287 additions, 362 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 0 signs, 637 intermediates.
     #[must_use]
-    pub fn mass_matrix(joints: &[f64; 6], parameters: &[f64; 75]) -> [[f64; 6]; 6] {
+    pub fn mass_matrix(
+        joints: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 75],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
@@ -1368,10 +1394,10 @@ impl Stanford {
     /// 642 operations (294 additions, 348 multiplications, 0 divisions), 0 square roots, 4 trigonometric pairs, 6 signs, 650 intermediates.
     #[must_use]
     pub fn bias(
-        joints: &[f64; 6],
-        joint_velocities: &[f64; 6],
-        parameters: &[f64; 75],
-    ) -> [f64; 6] {
+        joints: &[::core::primitive::f64; 6],
+        joint_velocities: &[::core::primitive::f64; 6],
+        parameters: &[::core::primitive::f64; 75],
+    ) -> [::core::primitive::f64; 6] {
         let [(s2_arm, c2_arm), (s4_arm, c4_arm), (s5_arm, c5_arm), (s6_arm, c6_arm)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[4], joints[5],
         ]);
@@ -1604,10 +1630,10 @@ impl Stanford {
     /// # Errors
     /// None for a robot without a loop, whose pose is its joint positions.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        _start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        Ok(*actuators)
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        _start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        ::core::result::Result::Ok(*actuators)
     }
 }
 impl ::overact::Model for Stanford {
@@ -1637,16 +1663,16 @@ impl ::overact::Model for Stanford {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(
                     6,
                     inputs,
                     output,
-                    |joints| Ok(Self::joints(joints)),
+                    |joints| ::core::result::Result::Ok(Self::joints(joints)),
                 )
             }
             ::overact::Function::ActuatorPositions => {
@@ -1654,7 +1680,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints| Ok(Self::actuator_positions(joints)),
+                    |joints| ::core::result::Result::Ok(Self::actuator_positions(joints)),
                 )
             }
             ::overact::Function::InverseJacobian => {
@@ -1662,7 +1688,7 @@ impl ::overact::Model for Stanford {
                     36,
                     inputs,
                     output,
-                    |joints| Ok(Self::inverse_jacobian(joints)),
+                    |joints| ::core::result::Result::Ok(Self::inverse_jacobian(joints)),
                 )
             }
             ::overact::Function::JointVelocities => {
@@ -1670,7 +1696,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities| Ok(
+                    |joints, joint_velocities| ::core::result::Result::Ok(
                         Self::joint_velocities(joints, joint_velocities),
                     ),
                 )
@@ -1680,7 +1706,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::joint_accelerations(
                             joints,
                             joint_velocities,
@@ -1694,7 +1720,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, actuator_velocities| Ok(
+                    |joints, actuator_velocities| ::core::result::Result::Ok(
                         Self::twist_from_actuators(joints, actuator_velocities),
                     ),
                 )
@@ -1704,7 +1730,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, actuator_accelerations| Ok(
+                    |joints, joint_velocities, actuator_accelerations| ::core::result::Result::Ok(
                         Self::acceleration_from_actuators(
                             joints,
                             joint_velocities,
@@ -1718,7 +1744,7 @@ impl ::overact::Model for Stanford {
                     450,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations| Ok(
+                    |joints, joint_velocities, joint_accelerations| ::core::result::Result::Ok(
                         Self::idm_red_platform(
                             joints,
                             joint_velocities,
@@ -1732,7 +1758,9 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, torques| Ok(Self::project_platform(joints, torques)),
+                    |joints, torques| ::core::result::Result::Ok(
+                        Self::project_platform(joints, torques),
+                    ),
                 )
             }
             ::overact::Function::InverseDynamics => {
@@ -1740,7 +1768,7 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, joint_accelerations, parameters| Ok(
+                    |joints, joint_velocities, joint_accelerations, parameters| ::core::result::Result::Ok(
                         Self::inverse_dynamics(
                             joints,
                             joint_velocities,
@@ -1755,7 +1783,9 @@ impl ::overact::Model for Stanford {
                     36,
                     inputs,
                     output,
-                    |joints, parameters| Ok(Self::mass_matrix(joints, parameters)),
+                    |joints, parameters| ::core::result::Result::Ok(
+                        Self::mass_matrix(joints, parameters),
+                    ),
                 )
             }
             ::overact::Function::Bias => {
@@ -1763,13 +1793,13 @@ impl ::overact::Model for Stanford {
                     6,
                     inputs,
                     output,
-                    |joints, joint_velocities, parameters| Ok(
+                    |joints, joint_velocities, parameters| ::core::result::Result::Ok(
                         Self::bias(joints, joint_velocities, parameters),
                     ),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -1780,14 +1810,14 @@ impl ::overact::Model for Stanford {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

@@ -4,44 +4,58 @@
 ///
 /// 3 legs, 6 joints, 3 actuators, 2 degrees of freedom; 31 standard parameters, 22 base parameters.
 /// Source: After Kock and Schumacher 1998; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct ThreeLegPoint;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl ThreeLegPoint {
     /// The robot's name.
-    pub const NAME: &'static str = "ThreeLegPoint";
+    pub const NAME: &'static ::core::primitive::str = "ThreeLegPoint";
     /// Numbers in a pose.
-    pub const POSE: usize = 2;
+    pub const POSE: ::core::primitive::usize = 2;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 2;
+    pub const DOF: ::core::primitive::usize = 2;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 3;
+    pub const ACTUATORS: ::core::primitive::usize = 3;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 6;
+    pub const JOINTS: ::core::primitive::usize = 6;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const LEGS: [&'static ::core::primitive::str; 3] = ["leg1", "leg2", "leg3"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 3] = ["leg1", "leg2", "leg3"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 3] = [
+        "leg1", "leg2", "leg3",
+    ];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 6] = [
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 6] = [
         "leg1.1", "leg1.2", "leg2.1", "leg2.2", "leg3.1", "leg3.2",
     ];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 2] = ["x", "y"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 2] = ["x", "y"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 2, 4];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 2, 4];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [true, true, true];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        true, true, true,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 2] = [0, 1];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 2] = [0, 1];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0, 0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0, 0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [
         2.387899760924694, 1.5073857853212624, 2.387899760924693, 1.5073857853212629,
         2.3878997609246957, 1.5073857853212607,
     ];
@@ -143,8 +157,8 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn pose_in_closed_form(
-        actuators: &[f64; 3],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let [(s1_leg2, c1_leg2), (s1_leg1, c1_leg1)] = ::overact::math::sin_cos_all([
             actuators[1], actuators[0],
         ]);
@@ -157,7 +171,9 @@ impl ThreeLegPoint {
         let t26 = (0.0576 - 0.25 * t23) / t23;
         ::overact::guard::reach(t26, "leg1")?;
         let t27 = ::overact::math::sqrt(t26);
-        Ok([0.5 * t10 - t9 + t20 * t27, t19 - 0.5 * t20 + t10 * t27])
+        ::core::result::Result::Ok([
+            0.5 * t10 - t9 + t20 * t27, t19 - 0.5 * t20 + t10 * t27,
+        ])
     }
     /// Positions q_t of all joints (m, rad): inverse kinematics, eq. (7), in the working mode of the home configuration.
     ///
@@ -170,7 +186,9 @@ impl ThreeLegPoint {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn joints(pose: &[f64; 2]) -> Result<[f64; 6], ::overact::Error> {
+    pub fn joints(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -203,7 +221,7 @@ impl ThreeLegPoint {
         let t87 = 0.5 * t75 + t36 * t81;
         let t96 = t78 * t81;
         let t98 = t78 - 0.1152;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 3.0381944443178988 * t9 - 2.8514006434780375 * t13,
                 -(3.0381944443178988 * t13 + 2.8514006434780375 * t9),
@@ -241,7 +259,9 @@ impl ThreeLegPoint {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn actuator_positions(pose: &[f64; 2]) -> Result<[f64; 3], ::overact::Error> {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t1 = pose[1] - 0.35;
         let t6 = 0.0576 / (t1 * t1 + pose[0] * pose[0]) - 0.25;
         ::overact::guard::reach(t6, "leg1")?;
@@ -265,7 +285,7 @@ impl ThreeLegPoint {
         let t61 = ::overact::math::sqrt(t60);
         let t63 = 0.5 * t26 - t55 * t61;
         let t67 = 0.5 * t55 + t26 * t61;
-        Ok([
+        ::core::result::Result::Ok([
             ::overact::math::atan2(
                 3.0381944443178988 * t9 - 2.8514006434780375 * t13,
                 -(3.0381944443178988 * t13 + 2.8514006434780375 * t9),
@@ -291,7 +311,9 @@ impl ThreeLegPoint {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn inverse_jacobian(pose: &[f64; 2]) -> Result<[[f64; 2]; 3], ::overact::Error> {
+    pub fn inverse_jacobian(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -333,7 +355,7 @@ impl ThreeLegPoint {
             * t39;
         let minus_g1_vy_leg3 = (2.0833333333333335 * t51 - 3.608439182435161 * t55)
             * t59;
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
         ])
@@ -351,9 +373,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-    ) -> Result<[[f64; 2]; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 3], ::overact::Error> {
         let t0 = joints[0] + joints[1];
         let t6 = joints[2] + joints[3];
         let t15 = joints[4] + joints[5];
@@ -373,7 +395,7 @@ impl ThreeLegPoint {
         let g1_vy_leg1 = c12_leg1 * t4;
         let minus_g1_vy_leg2 = (0.8660254037844386 * s12_leg2 + 0.5 * c12_leg2) * t13;
         let minus_g1_vy_leg3 = (0.5 * c12_leg3 - 0.8660254037844386 * s12_leg3) * t22;
-        Ok([
+        ::core::result::Result::Ok([
             [-minus_g1_vx_leg1, g1_vy_leg1], [g1_vx_leg2, -minus_g1_vy_leg2],
             [g1_vx_leg3, -minus_g1_vy_leg3],
         ])
@@ -389,7 +411,9 @@ impl ThreeLegPoint {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn jacobian(pose: &[f64; 2]) -> Result<[[f64; 3]; 2], ::overact::Error> {
+    pub fn jacobian(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 3]; 2], ::overact::Error> {
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -445,7 +469,7 @@ impl ThreeLegPoint {
         let t95 = t92 * (g1_vy_leg1 - minus_g1_vx_leg1 * t84);
         let t102 = t92 * (g1_vx_leg2 * t84 - minus_g1_vy_leg2);
         let t108 = t92 * (g1_vx_leg3 * t84 - minus_g1_vy_leg3);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t84 * t95 - minus_g1_vx_leg1 * t83, g1_vx_leg2 * t83 + t84 * t102,
                 g1_vx_leg3 * t83 + t84 * t108,
@@ -464,9 +488,9 @@ impl ThreeLegPoint {
     /// 45 operations (17 additions, 28 multiplications, 0 divisions), 0 square roots, 6 trigonometric pairs, 0 signs, 45 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-    ) -> [[f64; 6]; 6] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 6]; 6] {
         let t2 = joints[0] + joints[1];
         let t16 = joints[2] + joints[3];
         let t39 = joints[4] + joints[5];
@@ -510,9 +534,9 @@ impl ThreeLegPoint {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 2],
-        _joints: &[f64; 6],
-    ) -> [[f64; 2]; 6] {
+        _pose: &[::core::primitive::f64; 2],
+        _joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 2]; 6] {
         [[1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -526,9 +550,9 @@ impl ThreeLegPoint {
     /// 21 operations (7 additions, 14 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 21 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-    ) -> [[f64; 2]; 3] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 2]; 3] {
         let t0 = joints[0] + joints[1];
         let t4 = joints[2] + joints[3];
         let t11 = joints[4] + joints[5];
@@ -558,9 +582,9 @@ impl ThreeLegPoint {
     /// 3 operations (0 additions, 3 multiplications, 0 divisions), 0 square roots, 3 trigonometric pairs, 0 signs, 3 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-    ) -> [[f64; 3]; 3] {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+    ) -> [[::core::primitive::f64; 3]; 3] {
         let [(s2_leg1, _), (s2_leg2, _), (s2_leg3, _)] = ::overact::math::sin_cos_all([
             joints[1], joints[3], joints[5],
         ]);
@@ -582,9 +606,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_velocities(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -647,7 +671,7 @@ impl ThreeLegPoint {
         let minus_g2_vx_leg3 = (3.608439182435161 * t87 + 2.0833333333333335 * t92)
             * t97;
         let rate_2_leg3 = g2_vy_leg3 * twist[1] - minus_g2_vx_leg3 * twist[0];
-        Ok([
+        ::core::result::Result::Ok([
             rate_1_leg1, -(rate_1_leg1 + minus_rate_2_leg1), rate_1_leg2, rate_2_leg2 - rate_1_leg2,
             rate_1_leg3, rate_2_leg3 - rate_1_leg3,
         ])
@@ -666,10 +690,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn joint_accelerations(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[f64; 6], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 6], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t3 = t0 * t0 + pose[0] * pose[0];
         let t5 = 0.0576 / t3 - 0.25;
@@ -761,7 +785,7 @@ impl ThreeLegPoint {
         let rate_dot_2_leg3 = t126
             * (t146 * acceleration[1] - t151 * acceleration[0] - 0.24 * t163
                 - t155 * t165);
-        Ok([
+        ::core::result::Result::Ok([
             -minus_rate_dot_1_leg1, minus_rate_dot_1_leg1 - minus_rate_dot_2_leg1,
             -minus_rate_dot_1_leg2, minus_rate_dot_1_leg2 - minus_rate_dot_2_leg2, rate_dot_1_leg3,
             rate_dot_2_leg3 - rate_dot_1_leg3,
@@ -780,9 +804,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn twist_from_actuators(
-        pose: &[f64; 2],
-        actuator_velocities: &[f64; 3],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
@@ -840,7 +864,7 @@ impl ThreeLegPoint {
         let t105 = (g1_vy_leg1 * actuator_velocities[0]
             - minus_g1_vy_leg2 * actuator_velocities[1]
             - minus_g1_vy_leg3 * actuator_velocities[2] + t65 * t90) / t104;
-        Ok([t65 * t71 + t90 * t105, t105])
+        ::core::result::Result::Ok([t65 * t71 + t90 * t105, t105])
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
     ///
@@ -856,10 +880,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn acceleration_from_actuators(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        actuator_accelerations: &[f64; 3],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
         let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
@@ -947,7 +971,7 @@ impl ThreeLegPoint {
         ::overact::guard::platform(t173, 26.146658848896372, "actuators")?;
         let t174 = (g1_vy_leg1 * t93 - minus_g1_vy_leg2 * t56 - minus_g1_vy_leg3 * t144
             + t146 * t159) / t173;
-        Ok([t146 * t152 + t159 * t174, t174])
+        ::core::result::Result::Ok([t146 * t152 + t159 * t174, t174])
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
     ///
@@ -964,10 +988,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
@@ -1077,7 +1101,7 @@ impl ThreeLegPoint {
         let t230 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         let t231 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let t248 = -(minus_rate_2_leg3 + rate_1_leg3);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t39, t39, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t53,
@@ -1126,11 +1150,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -1208,7 +1232,7 @@ impl ThreeLegPoint {
         let t203 = minus_g2_vx_leg3 * rate_dot_2_leg3;
         let t204 = g2_vy_leg3 * rate_dot_2_leg3;
         let t220 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t32, t32, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, -t45,
@@ -1256,11 +1280,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
@@ -1403,7 +1427,7 @@ impl ThreeLegPoint {
         let t290 = minus_g2_vx_leg3 * minus_rate_dot_2_leg3;
         let t291 = minus_g2_vy_leg3 * minus_rate_dot_2_leg3;
         let t308 = -(minus_rate_2_leg3 + rate_1_leg3);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t190, t190, -(minus_g1_vx_leg1 * rate_1_leg1),
                 -::overact::math::signed(minus_g1_vx_leg1, rate_1_leg1), -minus_g1_vx_leg1, t204,
@@ -1451,10 +1475,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t3 = t0 * t0 + pose[0] * pose[0];
         let t5 = 0.0576 / t3 - 0.25;
@@ -1576,7 +1600,7 @@ impl ThreeLegPoint {
         let t251 = minus_g2_vx_leg3 * t102 - g2_vy_leg3 * t104;
         let t252 = t251 * rate_dot_2_leg3;
         let t268 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
                 ::overact::math::sign(rate_1_leg1), 1.0, -t91,
@@ -1616,11 +1640,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let [(s2_leg1, c2_leg1), (s1_leg1, c1_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[1], joints[0], joints[2], joints[3], joints[4], joints[5],
@@ -1715,7 +1739,7 @@ impl ThreeLegPoint {
         let t222 = minus_g2_vx_leg3 * t72 - g2_vy_leg3 * t70;
         let t223 = t222 * rate_dot_2_leg3;
         let t239 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
                 ::overact::math::sign(rate_1_leg1), 1.0, -t69,
@@ -1755,11 +1779,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 31]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 31]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[1] - 0.35;
         let t3 = t0 * t0 + pose[0] * pose[0];
@@ -1919,7 +1943,7 @@ impl ThreeLegPoint {
         let t312 = minus_g2_vx_leg3 * t229 - g2_vy_leg3 * t231;
         let t313 = t312 * rate_dot_2_leg3;
         let t329 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -minus_rate_dot_1_leg1, -minus_rate_dot_1_leg1, rate_1_leg1,
                 ::overact::math::sign(rate_1_leg1), 1.0, -t218,
@@ -1958,10 +1982,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let t0 = 0.5 * pose[0];
         let t1 = pose[1] - 0.35;
         let t4 = t1 * t1 + pose[0] * pose[0];
@@ -2058,7 +2082,7 @@ impl ThreeLegPoint {
         let t210 = rate_1_leg1 + minus_rate_2_leg1;
         let t216 = -(minus_rate_2_leg2 + rate_1_leg2);
         let t222 = -(minus_rate_2_leg3 + rate_1_leg3);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
@@ -2109,11 +2133,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -2178,7 +2202,7 @@ impl ThreeLegPoint {
         let t185 = rate_2_leg1 - rate_1_leg1;
         let t190 = rate_2_leg2 - rate_1_leg2;
         let t195 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 acceleration[0], minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
                 -(g1_vx_leg2 * minus_rate_dot_1_leg2), g1_vx_leg3 * rate_dot_1_leg3,
@@ -2229,11 +2253,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] + 0.3031088913245535;
         let t2 = pose[1] + 0.175;
@@ -2363,7 +2387,7 @@ impl ThreeLegPoint {
         let t271 = rate_1_leg1 + minus_rate_2_leg1;
         let t276 = rate_2_leg2 - rate_1_leg2;
         let t282 = -(minus_rate_2_leg3 + rate_1_leg3);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 t183, minus_g1_vx_leg1 * minus_rate_dot_1_leg1,
                 g1_vx_leg2 * minus_minus_rate_dot_1_leg2, g1_vx_leg3 * rate_dot_1_leg3_2,
@@ -2414,10 +2438,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
@@ -2527,7 +2551,7 @@ impl ThreeLegPoint {
         let t238 = rate_1_leg1 + minus_rate_2_leg1;
         let t241 = rate_2_leg2 - rate_1_leg2;
         let t246 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t57 * acceleration[0] + t59 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
                 t141 * rate_dot_1_leg3, rate_1_leg1, 0.0, t141 * rate_1_leg3,
@@ -2565,11 +2589,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let [(s1_leg2, c1_leg2), (s2_leg2, c2_leg2), (s1_leg1, c1_leg1),
         (s2_leg1, c2_leg1), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[2], joints[3], joints[0], joints[1], joints[4], joints[5],
@@ -2652,7 +2676,7 @@ impl ThreeLegPoint {
         let t209 = rate_2_leg1 - rate_1_leg1;
         let t212 = rate_2_leg2 - rate_1_leg2;
         let t217 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t36 * acceleration[0] + t38 * acceleration[1]), -minus_rate_dot_1_leg1, 0.0,
                 t111 * rate_dot_1_leg3, rate_1_leg1, 0.0, t111 * rate_1_leg3,
@@ -2689,11 +2713,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        start: &[f64; 2],
-    ) -> Result<[[f64; 22]; 2], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 22]; 2], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
@@ -2841,7 +2865,7 @@ impl ThreeLegPoint {
         let t299 = rate_1_leg1 + minus_rate_2_leg1;
         let t302 = rate_2_leg2 - rate_1_leg2;
         let t307 = rate_2_leg3 - rate_1_leg3;
-        Ok([
+        ::core::result::Result::Ok([
             [
                 -(t57 * t198 + t200 * t196), -minus_rate_dot_1_leg1, 0.0, t222 * rate_dot_1_leg3_2,
                 rate_1_leg1, 0.0, t222 * rate_1_leg3, ::overact::math::sign(rate_1_leg1), 0.0,
@@ -2876,9 +2900,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_platform(
-        pose: &[f64; 2],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t0 = pose[0] - 0.3031088913245535;
         let t2 = pose[1] + 0.175;
         let t4 = 0.5 * t0 + 0.8660254037844386 * t2;
@@ -2920,7 +2944,7 @@ impl ThreeLegPoint {
             * t26;
         let minus_g1_vy_leg3 = (2.0833333333333335 * t54 - 3.608439182435161 * t58)
             * t62;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vx_leg2 * torques[1] - minus_g1_vx_leg1 * torques[0]
                 + g1_vx_leg3 * torques[2],
             g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
@@ -2940,9 +2964,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_actuators(
-        pose: &[f64; 2],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
         let t4 = 0.8660254037844386 * (pose[0] - 0.3031088913245535) - t3;
@@ -2988,7 +3012,7 @@ impl ThreeLegPoint {
         ::overact::guard::platform(t71, 15.09578052481963, "kept actuators")?;
         let t72 = 1.0 / t71;
         let g1_vx_leg3 = (3.608439182435161 * t18 + 2.0833333333333335 * t22) * t26;
-        Ok([
+        ::core::result::Result::Ok([
             torques[0]
                 + torques[2]
                     * (minus_g1_vy_leg3 * (g1_vx_leg2 * t72)
@@ -3014,11 +3038,11 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-        parameters: &[f64; 31],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 31],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -3177,7 +3201,7 @@ impl ThreeLegPoint {
         ::overact::guard::platform(t328, 26.146658848896372, "actuators")?;
         let t329 = (t292 + acceleration[1] * parameters[30] + t307 * t319) / t328;
         let t333 = t307 * t318 + t319 * t329;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t329 - minus_g1_vx_leg1 * t333,
             g1_vx_leg2 * t333 - minus_g1_vy_leg2 * t329,
             g1_vx_leg3 * t333 - minus_g1_vy_leg3 * t329,
@@ -3199,12 +3223,12 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 2],
-        joints: &[f64; 6],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-        parameters: &[f64; 31],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        _pose: &[::core::primitive::f64; 2],
+        joints: &[::core::primitive::f64; 6],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 31],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let [(s1_leg1, c1_leg1), (s2_leg1, c2_leg1), (s1_leg2, c1_leg2),
         (s2_leg2, c2_leg2), (s1_leg3, c1_leg3), (s2_leg3, c2_leg3)] = ::overact::math::sin_cos_all([
             joints[0], joints[1], joints[2], joints[3], joints[4], joints[5],
@@ -3328,7 +3352,7 @@ impl ThreeLegPoint {
         ::overact::guard::platform(t295, 26.146658848631322, "actuators")?;
         let t296 = (t259 + acceleration[1] * parameters[30] + t274 * t286) / t295;
         let t300 = t274 * t285 + t286 * t296;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t296 - minus_g1_vx_leg1 * t300,
             g1_vx_leg2 * t300 - minus_g1_vy_leg2 * t296,
             g1_vx_leg3 * t300 - minus_g1_vy_leg3 * t296,
@@ -3350,12 +3374,12 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        actuators: &[f64; 3],
-        actuator_velocities: &[f64; 3],
-        actuator_accelerations: &[f64; 3],
-        parameters: &[f64; 31],
-        start: &[f64; 2],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        actuators: &[::core::primitive::f64; 3],
+        actuator_velocities: &[::core::primitive::f64; 3],
+        actuator_accelerations: &[::core::primitive::f64; 3],
+        parameters: &[::core::primitive::f64; 31],
+        start: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let pose = &Self::pose_from_actuators(actuators, start)?;
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
@@ -3542,7 +3566,7 @@ impl ThreeLegPoint {
         let t368 = t366 + t194 * parameters[30];
         let t371 = t98 * (t353 + t192 * parameters[30] + t95 * t368);
         let t375 = t94 * t368 + t95 * t371;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t371 - minus_g1_vx_leg1 * t375,
             g1_vx_leg2 * t375 - minus_g1_vy_leg2 * t371,
             g1_vx_leg3 * t375 - minus_g1_vy_leg3 * t371,
@@ -3561,9 +3585,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn mass_matrix(
-        pose: &[f64; 2],
-        parameters: &[f64; 31],
-    ) -> Result<[[f64; 2]; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 31],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 2]; 2], ::overact::Error> {
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
         let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
@@ -3678,7 +3702,7 @@ impl ThreeLegPoint {
                 - minus_g2_vx_leg1 * t240);
         let t255 = g1_vy_leg1 * t234 + minus_g2_vy_leg1 * t240 + g2_vy_leg2 * t211
             + minus_g1_vy_leg2 * t205 + g2_vy_leg3 * t181 - minus_g1_vy_leg3 * t175;
-        Ok([[t153, t244], [t244, t255 + parameters[30]]])
+        ::core::result::Result::Ok([[t153, t244], [t244, t255 + parameters[30]]])
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
     ///
@@ -3694,10 +3718,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn bias(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        parameters: &[f64; 31],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 31],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let t2 = pose[1] + 0.175;
         let t3 = 0.5 * t2;
         let t4 = 0.8660254037844386 * (pose[0] + 0.3031088913245535) + t3;
@@ -3825,7 +3849,7 @@ impl ThreeLegPoint {
             - minus_g2_vx_leg3 * t259;
         let t273 = g1_vy_leg1 * t163 - minus_g2_vy_leg1 * t170 + g2_vy_leg2 * t93
             - minus_g1_vy_leg2 * t86 + g2_vy_leg3 * t259 - minus_g1_vy_leg3 * t252;
-        Ok([t262, t273])
+        ::core::result::Result::Ok([t262, t273])
     }
     /// Actuator torques of least norm plus N `preload`, N being the basis that `null_space` gives.
     ///
@@ -3843,12 +3867,12 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_preloaded(
-        pose: &[f64; 2],
-        twist: &[f64; 2],
-        acceleration: &[f64; 2],
-        parameters: &[f64; 31],
-        preload: &[f64; 1],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 2],
+        acceleration: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 31],
+        preload: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -4015,7 +4039,7 @@ impl ThreeLegPoint {
         let t343 = g1_vx_leg3 * t94 + t95 * t339;
         let t349 = 1.0 - (g1_vx_leg3 * t343 - minus_g1_vy_leg3 * t339);
         let t351 = 1.0 / ::overact::math::sqrt(t349);
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t330 - minus_g1_vx_leg1 * t334
                 - preload[0] * ((g1_vy_leg1 * t339 - minus_g1_vx_leg1 * t343) * t351),
             g1_vx_leg2 * t334 - minus_g1_vy_leg2 * t330
@@ -4036,9 +4060,9 @@ impl ThreeLegPoint {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn project_torques(
-        pose: &[f64; 2],
-        torques: &[f64; 3],
-    ) -> Result<[f64; 3], ::overact::Error> {
+        pose: &[::core::primitive::f64; 2],
+        torques: &[::core::primitive::f64; 3],
+    ) -> ::core::result::Result<[::core::primitive::f64; 3], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -4095,7 +4119,7 @@ impl ThreeLegPoint {
         let t104 = (g1_vy_leg1 * torques[0] - minus_g1_vy_leg2 * torques[1]
             - minus_g1_vy_leg3 * torques[2] + t82 * t94) / t103;
         let t108 = t82 * t93 + t94 * t104;
-        Ok([
+        ::core::result::Result::Ok([
             g1_vy_leg1 * t104 - minus_g1_vx_leg1 * t108,
             g1_vx_leg2 * t108 - minus_g1_vy_leg2 * t104,
             g1_vx_leg3 * t108 - minus_g1_vy_leg3 * t104,
@@ -4112,7 +4136,9 @@ impl ThreeLegPoint {
     ///
     /// # Errors
     /// A pose out of reach, or a singular configuration.
-    pub fn null_space(pose: &[f64; 2]) -> Result<[[f64; 1]; 3], ::overact::Error> {
+    pub fn null_space(
+        pose: &[::core::primitive::f64; 2],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 1]; 3], ::overact::Error> {
         let t0 = pose[1] - 0.35;
         let t4 = t0 * t0 + pose[0] * pose[0];
         let t6 = 0.0576 / t4 - 0.25;
@@ -4168,7 +4194,7 @@ impl ThreeLegPoint {
         let t98 = g1_vx_leg3 * t83 + t84 * t94;
         let t104 = 1.0 - (g1_vx_leg3 * t98 - minus_g1_vy_leg3 * t94);
         let t106 = 1.0 / ::overact::math::sqrt(t104);
-        Ok([
+        ::core::result::Result::Ok([
             [-((g1_vy_leg1 * t94 - minus_g1_vx_leg1 * t98) * t106)],
             [-((g1_vx_leg2 * t98 - minus_g1_vy_leg2 * t94) * t106)], [t104 * t106],
         ])
@@ -4178,10 +4204,10 @@ impl ThreeLegPoint {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
-        let from = |mut pose: [f64; Self::POSE]| {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+        let from = |mut pose: [::core::primitive::f64; Self::POSE]| {
             ::overact::forward::gauss_newton(
                     ::overact::forward::Measured {
                         positions: actuators,
@@ -4201,7 +4227,7 @@ impl ThreeLegPoint {
                             .copy_from_slice(
                                 Self::inverse_jacobian(pose)?.as_flattened(),
                             );
-                        Ok(())
+                        ::core::result::Result::Ok(())
                     },
                     ::overact::forward::displace,
                 )
@@ -4209,8 +4235,8 @@ impl ThreeLegPoint {
         };
         from(*start)
             .or_else(|error| match Self::pose_in_closed_form(actuators) {
-                Ok(pose) => from(pose),
-                Err(_) => Err(error),
+                ::core::result::Result::Ok(pose) => from(pose),
+                ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
             })
     }
 }
@@ -4241,9 +4267,9 @@ impl ::overact::Model for ThreeLegPoint {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
                 ::overact::block::map1(6, inputs, output, Self::joints)
@@ -4293,7 +4319,7 @@ impl ::overact::Model for ThreeLegPoint {
                 ::overact::block::map1(3, inputs, output, Self::null_space)
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -4304,14 +4330,14 @@ impl ::overact::Model for ThreeLegPoint {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

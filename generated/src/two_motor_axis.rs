@@ -4,42 +4,54 @@
 ///
 /// 2 legs, 2 joints, 2 actuators, 1 degrees of freedom; 9 standard parameters, 4 base parameters.
 /// Source: Briot, Krut, Gautier 2015, Fig. 1; dimensions and masses assumed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(
+    ::core::fmt::Debug,
+    ::core::clone::Clone,
+    ::core::marker::Copy,
+    ::core::cmp::PartialEq,
+    ::core::cmp::Eq,
+    ::core::default::Default,
+)]
 pub struct TwoMotorAxis;
 #[allow(
     clippy::all,
     clippy::pedantic,
-    reason = "straight-line code with the names of the derivation"
+    nonstandard_style,
+    unused,
+    unused_qualifications,
+    reason = "straight-line code with the names of the derivation, in whatever scope it stands"
 )]
 impl TwoMotorAxis {
     /// The robot's name.
-    pub const NAME: &'static str = "TwoMotorAxis";
+    pub const NAME: &'static ::core::primitive::str = "TwoMotorAxis";
     /// Numbers in a pose.
-    pub const POSE: usize = 1;
+    pub const POSE: ::core::primitive::usize = 1;
     /// r, independent platform coordinates.
-    pub const DOF: usize = 1;
+    pub const DOF: ::core::primitive::usize = 1;
     /// n, actuated joints.
-    pub const ACTUATORS: usize = 2;
+    pub const ACTUATORS: ::core::primitive::usize = 2;
     /// n_t, joints of all legs.
-    pub const JOINTS: usize = 2;
+    pub const JOINTS: ::core::primitive::usize = 2;
     /// Names of the legs.
-    pub const LEGS: [&'static str; 2] = ["left", "right"];
+    pub const LEGS: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the actuators, in the order of q and τ.
-    pub const ACTUATOR_NAMES: [&'static str; 2] = ["left", "right"];
+    pub const ACTUATOR_NAMES: [&'static ::core::primitive::str; 2] = ["left", "right"];
     /// Names of the joints, in the order of q_t.
-    pub const JOINT_NAMES: [&'static str; 2] = ["left.1", "right.1"];
+    pub const JOINT_NAMES: [&'static ::core::primitive::str; 2] = ["left.1", "right.1"];
     /// Names of the pose's numbers.
-    pub const COORDINATES: [&'static str; 1] = ["x"];
+    pub const COORDINATES: [&'static ::core::primitive::str; 1] = ["x"];
     /// Indices of the actuated joints among all joints.
-    pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [0, 1];
+    pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [0, 1];
     /// Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N).
-    pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [false, false];
+    pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [
+        false, false,
+    ];
     /// Kept actuators of case 2.
-    pub const KEPT_ACTUATORS: [usize; 1] = [0];
+    pub const KEPT_ACTUATORS: [::core::primitive::usize; 1] = [0];
     /// Pose of the home configuration (m, rad).
-    pub const HOME_POSE: [f64; Self::POSE] = [0.0];
+    pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [0.0];
     /// Joint positions of the home configuration, which fixes the working mode (m, rad).
-    pub const HOME_JOINTS: [f64; Self::JOINTS] = [0.3, 0.3];
+    pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [0.3, 0.3];
     /// The standard parameters whose columns are not identically zero, in column order.
     pub const PARAMETERS: [::overact::Parameter; 9] = {
         use ::overact::{Parameter, Symbol};
@@ -80,7 +92,7 @@ impl TwoMotorAxis {
     ///
     /// 2 operations (2 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joints(pose: &[f64; 1]) -> [f64; 2] {
+    pub fn joints(pose: &[::core::primitive::f64; 1]) -> [::core::primitive::f64; 2] {
         [pose[0] + 0.3, -(pose[0] - 0.3)]
     }
     /// Positions q of the actuated joints (m, rad), in the working mode of the home configuration.
@@ -92,7 +104,9 @@ impl TwoMotorAxis {
     ///
     /// 2 operations (2 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn actuator_positions(pose: &[f64; 1]) -> [f64; 2] {
+    pub fn actuator_positions(
+        pose: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 2] {
         [pose[0] + 0.3, -(pose[0] - 0.3)]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -104,7 +118,9 @@ impl TwoMotorAxis {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn inverse_jacobian(_pose: &[f64; 1]) -> [[f64; 1]; 2] {
+    pub fn inverse_jacobian(
+        _pose: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [-1.0]]
     }
     /// J_p^inv: actuator velocities = J_p^inv v, eq. (20).
@@ -118,9 +134,9 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn inverse_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 1]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [-1.0]]
     }
     /// The pseudo-inverse of J_p^inv: v = J_p^inv+ times the actuator velocities, eqs. (21) and (22).
@@ -132,7 +148,9 @@ impl TwoMotorAxis {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn jacobian(_pose: &[f64; 1]) -> [[f64; 2]; 1] {
+    pub fn jacobian(
+        _pose: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 2]; 1] {
         [[0.5, -0.5]]
     }
     /// J_k of J_tk v = J_k q̇_t, eq. (9): the independent velocity components of the legs' ends in the base frame, leg by leg, per joint rate.
@@ -146,9 +164,9 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         [[1.0, 0.0], [0.0, -1.0]]
     }
     /// J_tk of J_tk v = J_k q̇_t, eq. (9): the same velocity components per twist coordinate.
@@ -162,9 +180,9 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn legs_platform_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 1]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [1.0]]
     }
     /// A_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); each row is that of the leg's adjugate.
@@ -178,9 +196,9 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn closure_platform_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 1]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[1.0], [1.0]]
     }
     /// B_p of the reduced closure A_p v + B_p q̇ = 0, eq. (11); diagonal.
@@ -194,9 +212,9 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn closure_actuator_jacobian_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-    ) -> [[f64; 2]; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+    ) -> [[::core::primitive::f64; 2]; 2] {
         [[-1.0, 0.0], [0.0, 1.0]]
     }
     /// Velocities of all joints (m/s, rad/s), eq. (9).
@@ -209,7 +227,10 @@ impl TwoMotorAxis {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn joint_velocities(_pose: &[f64; 1], twist: &[f64; 1]) -> [f64; 2] {
+    pub fn joint_velocities(
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 2] {
         [twist[0], -twist[0]]
     }
     /// Accelerations of all joints (m/s², rad/s²), eq. (10).
@@ -224,10 +245,10 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
     pub fn joint_accelerations(
-        _pose: &[f64; 1],
-        _twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [f64; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 2] {
         [acceleration[0], -acceleration[0]]
     }
     /// The twist v that fits the actuator velocities in the sense of least squares, eq. (21).
@@ -241,9 +262,9 @@ impl TwoMotorAxis {
     /// 2 operations (1 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 1 intermediates.
     #[must_use]
     pub fn twist_from_actuators(
-        _pose: &[f64; 1],
-        actuator_velocities: &[f64; 2],
-    ) -> [f64; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        actuator_velocities: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 1] {
         [0.5 * (actuator_velocities[0] - actuator_velocities[1])]
     }
     /// The acceleration v̇ that fits the actuator accelerations in the sense of least squares; eq. (24) on J_p^inv.
@@ -258,10 +279,10 @@ impl TwoMotorAxis {
     /// 2 operations (1 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 1 intermediates.
     #[must_use]
     pub fn acceleration_from_actuators(
-        _pose: &[f64; 1],
-        _twist: &[f64; 1],
-        actuator_accelerations: &[f64; 2],
-    ) -> [f64; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        _twist: &[::core::primitive::f64; 1],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 1] {
         [0.5 * (actuator_accelerations[0] - actuator_accelerations[1])]
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -277,10 +298,10 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 9]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 9]; 1] {
         let t0 = ::overact::math::sign(twist[0]);
         [
             [
@@ -303,11 +324,11 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 9]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 9]; 1] {
         let t0 = ::overact::math::sign(twist[0]);
         [
             [
@@ -332,17 +353,17 @@ impl TwoMotorAxis {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_from_actuators(
-        _actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        _start: &[f64; 1],
-    ) -> Result<[[f64; 9]; 1], ::overact::Error> {
+        _actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        _start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 9]; 1], ::overact::Error> {
         let rate_dot_1_left = 0.5
             * (actuator_accelerations[0] - actuator_accelerations[1]);
         let t2 = actuator_velocities[0] - actuator_velocities[1];
         let rate_1_left = 0.5 * t2;
         let t4 = ::overact::math::sign(t2);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_left, rate_1_left, t4, 1.0, rate_dot_1_left, rate_1_left, t4, -1.0,
                 rate_dot_1_left,
@@ -362,10 +383,10 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_actuators(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 9]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 9]; 1] {
         let t0 = ::overact::math::sign(twist[0]);
         [
             [
@@ -388,11 +409,11 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_actuators_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 9]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 9]; 1] {
         let t0 = ::overact::math::sign(twist[0]);
         [
             [
@@ -417,17 +438,17 @@ impl TwoMotorAxis {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_from_actuators(
-        _actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        _start: &[f64; 1],
-    ) -> Result<[[f64; 9]; 1], ::overact::Error> {
+        _actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        _start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 9]; 1], ::overact::Error> {
         let rate_dot_1_left = 0.5
             * (actuator_accelerations[0] - actuator_accelerations[1]);
         let t2 = actuator_velocities[0] - actuator_velocities[1];
         let rate_1_left = 0.5 * t2;
         let t4 = ::overact::math::sign(t2);
-        Ok([
+        ::core::result::Result::Ok([
             [
                 rate_dot_1_left, rate_1_left, t4, 1.0, rate_dot_1_left, rate_1_left, t4, -1.0,
                 rate_dot_1_left,
@@ -447,10 +468,10 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform_base(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 4]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 4]; 1] {
         [[acceleration[0], twist[0], ::overact::math::sign(twist[0]), 1.0]]
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -467,11 +488,11 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_platform_base_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 4]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 4]; 1] {
         [[acceleration[0], twist[0], ::overact::math::sign(twist[0]), 1.0]]
     }
     /// IDM_red of case 1: Γ¹ = IDM_red χ, inputs projected on the platform, eq. (30).
@@ -490,16 +511,18 @@ impl TwoMotorAxis {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_platform_base_from_actuators(
-        _actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        _start: &[f64; 1],
-    ) -> Result<[[f64; 4]; 1], ::overact::Error> {
+        _actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        _start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
         let rate_dot_1_left = 0.5
             * (actuator_accelerations[0] - actuator_accelerations[1]);
         let t2 = actuator_velocities[0] - actuator_velocities[1];
         let rate_1_left = 0.5 * t2;
-        Ok([[rate_dot_1_left, rate_1_left, ::overact::math::sign(t2), 1.0]])
+        ::core::result::Result::Ok([
+            [rate_dot_1_left, rate_1_left, ::overact::math::sign(t2), 1.0],
+        ])
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
     ///
@@ -514,10 +537,10 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_actuators_base(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 4]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 4]; 1] {
         [[acceleration[0], twist[0], ::overact::math::sign(twist[0]), 1.0]]
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -534,11 +557,11 @@ impl TwoMotorAxis {
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 1 signs, 0 intermediates.
     #[must_use]
     pub fn idm_red_actuators_base_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-    ) -> [[f64; 4]; 1] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 4]; 1] {
         [[acceleration[0], twist[0], ::overact::math::sign(twist[0]), 1.0]]
     }
     /// IDM_red of case 2: Γ² = IDM_red χ, inputs projected on the kept actuators, eq. (36).
@@ -557,16 +580,18 @@ impl TwoMotorAxis {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn idm_red_actuators_base_from_actuators(
-        _actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        _start: &[f64; 1],
-    ) -> Result<[[f64; 4]; 1], ::overact::Error> {
+        _actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        _start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[[::core::primitive::f64; 4]; 1], ::overact::Error> {
         let rate_dot_1_left = 0.5
             * (actuator_accelerations[0] - actuator_accelerations[1]);
         let t2 = actuator_velocities[0] - actuator_velocities[1];
         let rate_1_left = 0.5 * t2;
-        Ok([[rate_dot_1_left, rate_1_left, ::overact::math::sign(t2), 1.0]])
+        ::core::result::Result::Ok([
+            [rate_dot_1_left, rate_1_left, ::overact::math::sign(t2), 1.0],
+        ])
     }
     /// Γ¹ = (J_p^inv)ᵀ τ, the torques projected on the platform, eq. (30).
     ///
@@ -578,7 +603,10 @@ impl TwoMotorAxis {
     ///
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_platform(_pose: &[f64; 1], torques: &[f64; 2]) -> [f64; 1] {
+    pub fn project_platform(
+        _pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 1] {
         [torques[0] - torques[1]]
     }
     /// Γ² = τ_a + J_a^-T J_bᵀ τ_b, the torques projected on the kept actuators, eq. (36).
@@ -591,7 +619,10 @@ impl TwoMotorAxis {
     ///
     /// 1 operations (1 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn project_actuators(_pose: &[f64; 1], torques: &[f64; 2]) -> [f64; 1] {
+    pub fn project_actuators(
+        _pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 1] {
         [torques[0] - torques[1]]
     }
     /// Actuator torques τ of least norm for given parameters: τ = J_p^inv (J_p^invᵀ J_p^inv)⁻¹ Γ¹; the only ones where there is no redundancy, eq. (19).
@@ -607,11 +638,11 @@ impl TwoMotorAxis {
     /// 14 operations (8 additions, 6 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 2 signs, 15 intermediates.
     #[must_use]
     pub fn inverse_dynamics(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 9],
-    ) -> [f64; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 9],
+    ) -> [::core::primitive::f64; 2] {
         let t12 = acceleration[0] * parameters[0] + twist[0] * parameters[1]
             + ::overact::math::signed(parameters[2], twist[0]) + parameters[3]
             - (parameters[7]
@@ -634,12 +665,12 @@ impl TwoMotorAxis {
     /// 14 operations (8 additions, 6 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 2 signs, 15 intermediates.
     #[must_use]
     pub fn inverse_dynamics_from_joints(
-        _pose: &[f64; 1],
-        _joints: &[f64; 2],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 9],
-    ) -> [f64; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        _joints: &[::core::primitive::f64; 2],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 9],
+    ) -> [::core::primitive::f64; 2] {
         let t12 = acceleration[0] * parameters[0] + twist[0] * parameters[1]
             + ::overact::math::signed(parameters[2], twist[0]) + parameters[3]
             - (parameters[7]
@@ -664,12 +695,12 @@ impl TwoMotorAxis {
     /// # Errors
     /// A pose out of reach, or a singular configuration.
     pub fn inverse_dynamics_from_actuators(
-        _actuators: &[f64; 2],
-        actuator_velocities: &[f64; 2],
-        actuator_accelerations: &[f64; 2],
-        parameters: &[f64; 9],
-        _start: &[f64; 1],
-    ) -> Result<[f64; 2], ::overact::Error> {
+        _actuators: &[::core::primitive::f64; 2],
+        actuator_velocities: &[::core::primitive::f64; 2],
+        actuator_accelerations: &[::core::primitive::f64; 2],
+        parameters: &[::core::primitive::f64; 9],
+        _start: &[::core::primitive::f64; 1],
+    ) -> ::core::result::Result<[::core::primitive::f64; 2], ::overact::Error> {
         let rate_dot_1_left = 0.5
             * (actuator_accelerations[0] - actuator_accelerations[1]);
         let t3 = actuator_velocities[0] - actuator_velocities[1];
@@ -680,7 +711,7 @@ impl TwoMotorAxis {
                 - (rate_dot_1_left * parameters[4] + rate_1_left * parameters[5]
                     + ::overact::math::signed(parameters[6], t3)));
         let t19 = 0.5 * (t16 + rate_dot_1_left * parameters[8]);
-        Ok([t19, -t19])
+        ::core::result::Result::Ok([t19, -t19])
     }
     /// Mass matrix on the twist coordinates: Γ¹ = M v̇ + bias.
     ///
@@ -692,7 +723,10 @@ impl TwoMotorAxis {
     ///
     /// 2 operations (2 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 1 intermediates.
     #[must_use]
-    pub fn mass_matrix(_pose: &[f64; 1], parameters: &[f64; 9]) -> [[f64; 1]; 1] {
+    pub fn mass_matrix(
+        _pose: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 9],
+    ) -> [[::core::primitive::f64; 1]; 1] {
         [[parameters[0] + parameters[4] + parameters[8]]]
     }
     /// Γ¹ at v̇ = 0: Coriolis, centrifugal, gravity and friction forces.
@@ -706,7 +740,11 @@ impl TwoMotorAxis {
     ///
     /// 7 operations (5 additions, 2 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 2 signs, 8 intermediates.
     #[must_use]
-    pub fn bias(_pose: &[f64; 1], twist: &[f64; 1], parameters: &[f64; 9]) -> [f64; 1] {
+    pub fn bias(
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 9],
+    ) -> [::core::primitive::f64; 1] {
         [
             twist[0] * parameters[1] + ::overact::math::signed(parameters[2], twist[0])
                 + parameters[3]
@@ -729,12 +767,12 @@ impl TwoMotorAxis {
     /// 17 operations (10 additions, 7 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 2 signs, 17 intermediates.
     #[must_use]
     pub fn inverse_dynamics_preloaded(
-        _pose: &[f64; 1],
-        twist: &[f64; 1],
-        acceleration: &[f64; 1],
-        parameters: &[f64; 9],
-        preload: &[f64; 1],
-    ) -> [f64; 2] {
+        _pose: &[::core::primitive::f64; 1],
+        twist: &[::core::primitive::f64; 1],
+        acceleration: &[::core::primitive::f64; 1],
+        parameters: &[::core::primitive::f64; 9],
+        preload: &[::core::primitive::f64; 1],
+    ) -> [::core::primitive::f64; 2] {
         let t12 = acceleration[0] * parameters[0] + twist[0] * parameters[1]
             + ::overact::math::signed(parameters[2], twist[0]) + parameters[3]
             - (parameters[7]
@@ -754,7 +792,10 @@ impl TwoMotorAxis {
     ///
     /// 2 operations (1 additions, 1 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 1 intermediates.
     #[must_use]
-    pub fn project_torques(_pose: &[f64; 1], torques: &[f64; 2]) -> [f64; 2] {
+    pub fn project_torques(
+        _pose: &[::core::primitive::f64; 1],
+        torques: &[::core::primitive::f64; 2],
+    ) -> [::core::primitive::f64; 2] {
         let t1 = 0.5 * (torques[0] - torques[1]);
         [t1, -t1]
     }
@@ -767,7 +808,9 @@ impl TwoMotorAxis {
     ///
     /// 0 operations (0 additions, 0 multiplications, 0 divisions), 0 square roots, 0 trigonometric pairs, 0 signs, 0 intermediates.
     #[must_use]
-    pub fn null_space(_pose: &[f64; 1]) -> [[f64; 1]; 2] {
+    pub fn null_space(
+        _pose: &[::core::primitive::f64; 1],
+    ) -> [[::core::primitive::f64; 1]; 2] {
         [[0.7071067811865476], [0.7071067811865476]]
     }
     /// Forward kinematics: the pose that fits all actuators best in the sense of least squares, found from the pose `start`, whose assembly mode it keeps.
@@ -775,9 +818,9 @@ impl TwoMotorAxis {
     /// # Errors
     /// No convergence, or a singular or unreachable configuration on the way.
     pub fn pose_from_actuators(
-        actuators: &[f64; Self::ACTUATORS],
-        start: &[f64; Self::POSE],
-    ) -> Result<[f64; Self::POSE], ::overact::Error> {
+        actuators: &[::core::primitive::f64; Self::ACTUATORS],
+        start: &[::core::primitive::f64; Self::POSE],
+    ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
         let mut pose = *start;
         ::overact::forward::gauss_newton(
                 ::overact::forward::Measured {
@@ -796,7 +839,7 @@ impl TwoMotorAxis {
                     positions.copy_from_slice(&Self::actuator_positions(pose));
                     jacobian
                         .copy_from_slice(Self::inverse_jacobian(pose).as_flattened());
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
                 ::overact::forward::displace,
             )
@@ -830,19 +873,24 @@ impl ::overact::Model for TwoMotorAxis {
     fn evaluate(
         &self,
         function: ::overact::Function,
-        inputs: &[&[f64]],
-        output: &mut [f64],
-    ) -> Result<(), ::overact::SampleError> {
+        inputs: &[&[::core::primitive::f64]],
+        output: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::SampleError> {
         match function {
             ::overact::Function::Joints => {
-                ::overact::block::map1(2, inputs, output, |pose| Ok(Self::joints(pose)))
+                ::overact::block::map1(
+                    2,
+                    inputs,
+                    output,
+                    |pose| ::core::result::Result::Ok(Self::joints(pose)),
+                )
             }
             ::overact::Function::ActuatorPositions => {
                 ::overact::block::map1(
                     2,
                     inputs,
                     output,
-                    |pose| Ok(Self::actuator_positions(pose)),
+                    |pose| ::core::result::Result::Ok(Self::actuator_positions(pose)),
                 )
             }
             ::overact::Function::InverseJacobian => {
@@ -850,7 +898,7 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose| Ok(Self::inverse_jacobian(pose)),
+                    |pose| ::core::result::Result::Ok(Self::inverse_jacobian(pose)),
                 )
             }
             ::overact::Function::JointVelocities => {
@@ -858,7 +906,9 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose, twist| Ok(Self::joint_velocities(pose, twist)),
+                    |pose, twist| ::core::result::Result::Ok(
+                        Self::joint_velocities(pose, twist),
+                    ),
                 )
             }
             ::overact::Function::JointAccelerations => {
@@ -866,7 +916,7 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::joint_accelerations(pose, twist, acceleration),
                     ),
                 )
@@ -876,7 +926,7 @@ impl ::overact::Model for TwoMotorAxis {
                     1,
                     inputs,
                     output,
-                    |pose, actuator_velocities| Ok(
+                    |pose, actuator_velocities| ::core::result::Result::Ok(
                         Self::twist_from_actuators(pose, actuator_velocities),
                     ),
                 )
@@ -886,7 +936,7 @@ impl ::overact::Model for TwoMotorAxis {
                     1,
                     inputs,
                     output,
-                    |pose, twist, actuator_accelerations| Ok(
+                    |pose, twist, actuator_accelerations| ::core::result::Result::Ok(
                         Self::acceleration_from_actuators(
                             pose,
                             twist,
@@ -900,7 +950,7 @@ impl ::overact::Model for TwoMotorAxis {
                     9,
                     inputs,
                     output,
-                    |pose, twist, acceleration| Ok(
+                    |pose, twist, acceleration| ::core::result::Result::Ok(
                         Self::idm_red_platform(pose, twist, acceleration),
                     ),
                 )
@@ -910,7 +960,9 @@ impl ::overact::Model for TwoMotorAxis {
                     1,
                     inputs,
                     output,
-                    |pose, torques| Ok(Self::project_platform(pose, torques)),
+                    |pose, torques| ::core::result::Result::Ok(
+                        Self::project_platform(pose, torques),
+                    ),
                 )
             }
             ::overact::Function::InverseDynamics => {
@@ -918,7 +970,7 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose, twist, acceleration, parameters| Ok(
+                    |pose, twist, acceleration, parameters| ::core::result::Result::Ok(
                         Self::inverse_dynamics(pose, twist, acceleration, parameters),
                     ),
                 )
@@ -928,7 +980,9 @@ impl ::overact::Model for TwoMotorAxis {
                     1,
                     inputs,
                     output,
-                    |pose, parameters| Ok(Self::mass_matrix(pose, parameters)),
+                    |pose, parameters| ::core::result::Result::Ok(
+                        Self::mass_matrix(pose, parameters),
+                    ),
                 )
             }
             ::overact::Function::Bias => {
@@ -936,7 +990,9 @@ impl ::overact::Model for TwoMotorAxis {
                     1,
                     inputs,
                     output,
-                    |pose, twist, parameters| Ok(Self::bias(pose, twist, parameters)),
+                    |pose, twist, parameters| ::core::result::Result::Ok(
+                        Self::bias(pose, twist, parameters),
+                    ),
                 )
             }
             ::overact::Function::ProjectTorques => {
@@ -944,7 +1000,9 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose, torques| Ok(Self::project_torques(pose, torques)),
+                    |pose, torques| ::core::result::Result::Ok(
+                        Self::project_torques(pose, torques),
+                    ),
                 )
             }
             ::overact::Function::NullSpace => {
@@ -952,11 +1010,11 @@ impl ::overact::Model for TwoMotorAxis {
                     2,
                     inputs,
                     output,
-                    |pose| Ok(Self::null_space(pose)),
+                    |pose| ::core::result::Result::Ok(Self::null_space(pose)),
                 )
             }
             other => {
-                Err(::overact::SampleError {
+                ::core::result::Result::Err(::overact::SampleError {
                     sample: 0,
                     error: ::overact::Error::NotOffered {
                         function: other.name(),
@@ -967,14 +1025,14 @@ impl ::overact::Model for TwoMotorAxis {
     }
     fn pose_from_actuators(
         &self,
-        actuators: &[f64],
-        pose: &mut [f64],
-    ) -> Result<(), ::overact::Error> {
+        actuators: &[::core::primitive::f64],
+        pose: &mut [::core::primitive::f64],
+    ) -> ::core::result::Result<(), ::overact::Error> {
         let found = Self::pose_from_actuators(
             ::overact::block::array(actuators)?,
             ::overact::block::array(pose)?,
         )?;
         pose.copy_from_slice(&found);
-        Ok(())
+        ::core::result::Result::Ok(())
     }
 }

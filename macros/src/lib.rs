@@ -112,7 +112,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
     let watched = file.to_string_lossy().into_owned();
     Ok(quote! {
         #robot
-        const _: &[u8] = include_bytes!(#watched);
+        const _: &[::core::primitive::u8] = ::core::include_bytes!(#watched);
         #items
     })
 }

@@ -32,7 +32,7 @@ pub fn items(model: &RobotModel) -> TokenStream {
     ];
     let sizes = sizes.map(|(name, value, doc)| {
         let (name, value) = (format_ident!("{name}"), size(value));
-        quote!(#[doc = #doc] pub const #name: usize = #value;)
+        quote!(#[doc = #doc] pub const #name: ::core::primitive::usize = #value;)
     });
     let name = &mechanism.name;
     let legs: Vec<&str> = mechanism.legs.iter().map(|l| l.name.as_str()).collect();
@@ -66,7 +66,7 @@ pub fn items(model: &RobotModel) -> TokenStream {
     ];
     let strings = strings.map(|(name, values, doc): (_, Vec<String>, _)| {
         let (name, count) = (format_ident!("{name}"), size(values.len()));
-        quote!(#[doc = #doc] pub const #name: [&'static str; #count] = [#(#values),*];)
+        quote!(#[doc = #doc] pub const #name: [&'static ::core::primitive::str; #count] = [#(#values),*];)
     });
     let tables = [
         parameters(
@@ -86,7 +86,7 @@ pub fn items(model: &RobotModel) -> TokenStream {
     let home = home(model);
     quote! {
         #[doc = " The robot's name."]
-        pub const NAME: &'static str = #name;
+        pub const NAME: &'static ::core::primitive::str = #name;
         #(#sizes)*
         #(#strings)*
         #home
@@ -130,15 +130,15 @@ fn home(model: &RobotModel) -> TokenStream {
     let positions = mechanism.home.joints.iter().map(|&v| number(v));
     quote! {
         #[doc = " Indices of the actuated joints among all joints."]
-        pub const ACTUATED_JOINTS: [usize; Self::ACTUATORS] = [#(#indices),*];
+        pub const ACTUATED_JOINTS: [::core::primitive::usize; Self::ACTUATORS] = [#(#indices),*];
         #[doc = " Whether each actuator is a revolute joint (rad, N m) and not a prismatic one (m, N)."]
-        pub const ACTUATOR_IS_REVOLUTE: [bool; Self::ACTUATORS] = [#(#revolute),*];
+        pub const ACTUATOR_IS_REVOLUTE: [::core::primitive::bool; Self::ACTUATORS] = [#(#revolute),*];
         #[doc = " Kept actuators of case 2."]
-        pub const KEPT_ACTUATORS: [usize; #kept_count] = [#(#kept),*];
+        pub const KEPT_ACTUATORS: [::core::primitive::usize; #kept_count] = [#(#kept),*];
         #[doc = " Pose of the home configuration (m, rad)."]
-        pub const HOME_POSE: [f64; Self::POSE] = [#(#pose),*];
+        pub const HOME_POSE: [::core::primitive::f64; Self::POSE] = [#(#pose),*];
         #[doc = " Joint positions of the home configuration, which fixes the working mode (m, rad)."]
-        pub const HOME_JOINTS: [f64; Self::JOINTS] = [#(#positions),*];
+        pub const HOME_JOINTS: [::core::primitive::f64; Self::JOINTS] = [#(#positions),*];
     }
 }
 

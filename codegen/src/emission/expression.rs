@@ -230,7 +230,7 @@ impl<'p> Body<'p> {
             Operand::Step(at) => match (&self.names[at], self.inlined[at].take()) {
                 (Some(name), _) => Text::atom(quote!(#name)),
                 (None, Some(text)) => text,
-                (None, None) => Text::atom(quote!(f64::NAN)),
+                (None, None) => Text::atom(internal_error("an operand is used before its step")),
             },
         }
     }
@@ -327,16 +327,54 @@ impl<'p> Body<'p> {
     }
 }
 
+/// What stands in the generated code where a program breaks a rule that lowering guarantees: nothing that
+/// compiles, for a number that means nothing must not reach a user.
+fn internal_error(what: &str) -> TokenStream {
+    let message = format!(
+        "internal error of overact {}: {what}; please report it with the robot's description",
+        env!("CARGO_PKG_VERSION")
+    );
+    quote!(::core::compile_error!(#message))
+}
+
 /// A float that reads back as the same float.
 #[must_use]
 pub fn number(value: f64) -> TokenStream {
-    if value.is_nan() {
-        return quote!(f64::NAN);
+    if !value.is_finite() {
+        return internal_error("a constant is not finite");
     }
     let literal = Literal::f64_unsuffixed(value.abs());
     if value < 0.0 {
         quote!(-#literal)
     } else {
         quote!(#literal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number;
+
+    #[test]
+    fn floats_read_back() {
+        for value in [0.0, 1.0, -2.5, 0.1 + 0.2, 1e-300, f64::MAX] {
+            let text = number(value).to_string().replace(' ', "");
+            assert_eq!(
+                text.parse::<f64>().map(f64::to_bits),
+                Ok(value.to_bits()),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_number_that_means_nothing_does_not_compile() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let text = number(value).to_string();
+            assert!(
+                text.contains("compile_error") && text.contains("report"),
+                "{text}"
+            );
+        }
     }
 }

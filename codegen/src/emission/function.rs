@@ -19,7 +19,11 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
         Some(twin) => (TokenStream::new(), call(twin, is_fallible(model, twin))),
         None => {
             let (statements, value) = Body::write(program);
-            let value = if fallible { quote!(Ok(#value)) } else { value };
+            let value = if fallible {
+                quote!(::core::result::Result::Ok(#value))
+            } else {
+                value
+            };
             (statements, value)
         }
     };
@@ -36,7 +40,7 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
     });
     let find_joints = finds_joints.then(|| quote!(let joints = &Self::joints(pose)?;));
     let signature = if fallible {
-        quote!(pub fn #name(#arguments) -> Result<#output, ::overact::Error>)
+        quote!(pub fn #name(#arguments) -> ::core::result::Result<#output, ::overact::Error>)
     } else {
         quote!(#[must_use] pub fn #name(#arguments) -> #output)
     };
@@ -69,7 +73,11 @@ fn call(function: &Function, fallible: bool) -> TokenStream {
         .iter()
         .map(|array| format_ident!("{}", array.name));
     let call = quote!(Self::#name(#(#inputs),*));
-    if fallible { call } else { quote!(Ok(#call)) }
+    if fallible {
+        call
+    } else {
+        quote!(::core::result::Result::Ok(#call))
+    }
 }
 
 /// Whether the function returns a `Result`.
@@ -110,11 +118,11 @@ pub fn array_type(array: &Array) -> TokenStream {
     match array.shape[..] {
         [rows, columns] => {
             let (rows, columns) = (length(rows), length(columns));
-            quote!([[f64; #columns]; #rows])
+            quote!([[::core::primitive::f64; #columns]; #rows])
         }
         _ => {
             let len = length(array.len());
-            quote!([f64; #len])
+            quote!([::core::primitive::f64; #len])
         }
     }
 }
@@ -153,7 +161,7 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
     if model.finds_pose(function) {
         let pose = Literal::usize_unsuffixed(model.mechanism.pose_len());
         let start = format_ident!("{unused}start");
-        arguments.push(quote!(#start: &[f64; #pose]));
+        arguments.push(quote!(#start: &[::core::primitive::f64; #pose]));
     }
     quote!(#(#arguments),*)
 }

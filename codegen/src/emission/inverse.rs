@@ -31,7 +31,9 @@ pub fn item(model: &RobotModel) -> TokenStream {
         #[doc = ""]
         #[doc = " # Errors"]
         #[doc = " A pose out of reach, or a singular configuration on the way from home."]
-        pub fn joints(pose: &[f64; Self::POSE]) -> Result<[f64; Self::JOINTS], ::overact::Error> {
+        pub fn joints(
+            pose: &[::core::primitive::f64; Self::POSE],
+        ) -> ::core::result::Result<[::core::primitive::f64; Self::JOINTS], ::overact::Error> {
             let mut joints = Self::HOME_JOINTS;
             ::overact::inverse::solve(
                 ::overact::inverse::Legs {
@@ -52,10 +54,10 @@ pub fn item(model: &RobotModel) -> TokenStream {
                     let (pose, joints) = (::overact::block::array(pose)?, ::overact::block::array(joints)?);
                     ::overact::block::write(&Self::closure_error_from_joints(pose, joints)#error, error);
                     ::overact::block::write(&Self::legs_jacobian_from_joints(pose, joints)#jacobian, jacobian);
-                    Ok(())
+                    ::core::result::Result::Ok(())
                 },
             )?;
-            Ok(joints)
+            ::core::result::Result::Ok(joints)
         }
     }
 }

@@ -11,6 +11,7 @@ pub mod function;
 pub mod inverse;
 pub mod layout;
 pub mod model_impl;
+pub mod text;
 
 use crate::model::RobotModel;
 use proc_macro2::{Ident, Span, TokenStream};
@@ -27,7 +28,10 @@ pub fn items(model: &RobotModel, name: &Ident) -> TokenStream {
         #[allow(
             clippy::all,
             clippy::pedantic,
-            reason = "straight-line code with the names of the derivation"
+            nonstandard_style,
+            unused,
+            unused_qualifications,
+            reason = "straight-line code with the names of the derivation, in whatever scope it stands"
         )]
         impl #name {
             #constants
@@ -55,13 +59,20 @@ pub fn module(model: &RobotModel) -> TokenStream {
         model.base.len()
     );
     let summary = sentence(&mechanism.summary);
-    let source = format!(" Source: {}.", mechanism.source.trim_end_matches('.'));
+    let source = source(&mechanism.source).map(|line| quote!(#[doc = #line]));
     quote! {
         #[doc = #summary]
         #[doc = ""]
         #[doc = #sizes]
-        #[doc = #source]
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+        #source
+        #[derive(
+            ::core::fmt::Debug,
+            ::core::clone::Clone,
+            ::core::marker::Copy,
+            ::core::cmp::PartialEq,
+            ::core::cmp::Eq,
+            ::core::default::Default,
+        )]
         pub struct #name;
 
         #items
@@ -70,7 +81,7 @@ pub fn module(model: &RobotModel) -> TokenStream {
 
 /// A summary as a line of documentation.
 fn sentence(text: &str) -> String {
-    let text = text.trim();
+    let text = text::documentation(text);
     let end = if text.ends_with('.') { "" } else { "." };
     if text.is_empty() {
         " A robot.".to_owned()
@@ -79,9 +90,16 @@ fn sentence(text: &str) -> String {
     }
 }
 
+/// Where the robot's numbers come from, if the description says so.
+fn source(text: &str) -> Option<String> {
+    let text = text::documentation(text.trim().trim_end_matches('.'));
+    (!text.is_empty()).then(|| format!(" Source: {text}."))
+}
+
 /// A formatted source file. `label` is the description's path as the header shall show it.
 #[must_use]
 pub fn file(model: &RobotModel, label: &str) -> String {
+    let label = text::plain(label);
     let tokens = module(model);
     // The tokens are our own: that they parse is proved by every test that compiles them.
     let code = match syn::parse2(tokens.clone()) {

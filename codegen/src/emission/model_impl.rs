@@ -43,7 +43,7 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
         .is_some_and(|p| p.motion.has_quaternion())
         .then(|| {
             quote! {
-                fn displace(&self, pose: &mut [f64], step: &[f64]) {
+                fn displace(&self, pose: &mut [::core::primitive::f64], step: &[::core::primitive::f64]) {
                     ::overact::forward::displace_quaternion(pose, step);
                 }
             }
@@ -77,12 +77,12 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
             fn evaluate(
                 &self,
                 function: ::overact::Function,
-                inputs: &[&[f64]],
-                output: &mut [f64],
-            ) -> Result<(), ::overact::SampleError> {
+                inputs: &[&[::core::primitive::f64]],
+                output: &mut [::core::primitive::f64],
+            ) -> ::core::result::Result<(), ::overact::SampleError> {
                 match function {
                     #(#arms)*
-                    other => Err(::overact::SampleError {
+                    other => ::core::result::Result::Err(::overact::SampleError {
                         sample: 0,
                         error: ::overact::Error::NotOffered { function: other.name() },
                     }),
@@ -91,15 +91,15 @@ pub fn item(model: &RobotModel, name: &Ident) -> TokenStream {
 
             fn pose_from_actuators(
                 &self,
-                actuators: &[f64],
-                pose: &mut [f64],
-            ) -> Result<(), ::overact::Error> {
+                actuators: &[::core::primitive::f64],
+                pose: &mut [::core::primitive::f64],
+            ) -> ::core::result::Result<(), ::overact::Error> {
                 let found = Self::pose_from_actuators(
                     ::overact::block::array(actuators)?,
                     ::overact::block::array(pose)?,
                 )?;
                 pose.copy_from_slice(&found);
-                Ok(())
+                ::core::result::Result::Ok(())
             }
 
             #displace
@@ -118,7 +118,7 @@ fn arm(model: &RobotModel, label: &str, family: Family) -> Option<TokenStream> {
     let call = if is_fallible(model, function) {
         quote!(Self::#name)
     } else {
-        quote!(|#(#arguments),*| Ok(Self::#name(#(#arguments),*)))
+        quote!(|#(#arguments),*| ::core::result::Result::Ok(Self::#name(#(#arguments),*)))
     };
     Some(quote! {
         ::overact::Function::#label => ::overact::block::#map(#size, inputs, output, #call),
@@ -136,10 +136,10 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
             #[doc = " # Errors"]
             #[doc = " None for a robot without a loop, whose pose is its joint positions."]
             pub fn pose_from_actuators(
-                actuators: &[f64; Self::ACTUATORS],
-                _start: &[f64; Self::POSE],
-            ) -> Result<[f64; Self::POSE], ::overact::Error> {
-                Ok(*actuators)
+                actuators: &[::core::primitive::f64; Self::ACTUATORS],
+                _start: &[::core::primitive::f64; Self::POSE],
+            ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
+                ::core::result::Result::Ok(*actuators)
             }
         };
     }
@@ -174,7 +174,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
                 let pose = ::overact::block::array(pose)?;
                 positions.copy_from_slice(&Self::actuator_positions(pose)#position);
                 jacobian.copy_from_slice(Self::inverse_jacobian(pose)#jacobian.as_flattened());
-                Ok(())
+                ::core::result::Result::Ok(())
             },
             ::overact::forward::#displace,
         )
@@ -184,18 +184,18 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         Some(_) if is_redundant => (
             " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
             quote! {
-                let from = |mut pose: [f64; Self::POSE]| { #iterate.map(|()| pose) };
+                let from = |mut pose: [::core::primitive::f64; Self::POSE]| { #iterate.map(|()| pose) };
                 from(*start).or_else(|error| match Self::pose_in_closed_form(actuators) {
-                    Ok(pose) => from(pose),
-                    Err(_) => Err(error),
+                    ::core::result::Result::Ok(pose) => from(pose),
+                    ::core::result::Result::Err(_) => ::core::result::Result::Err(error),
                 })
             },
         ),
         Some(_) => (
             " It is `pose_in_closed_form` where that has a value.",
             quote! {
-                if let Ok(pose) = Self::pose_in_closed_form(actuators) {
-                    return Ok(pose);
+                if let ::core::result::Result::Ok(pose) = Self::pose_in_closed_form(actuators) {
+                    return ::core::result::Result::Ok(pose);
                 }
                 let mut pose = *start;
                 #iterate.map(|()| pose)
@@ -216,9 +216,9 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         #[doc = " # Errors"]
         #[doc = " No convergence, or a singular or unreachable configuration on the way."]
         pub fn pose_from_actuators(
-            actuators: &[f64; Self::ACTUATORS],
-            start: &[f64; Self::POSE],
-        ) -> Result<[f64; Self::POSE], ::overact::Error> {
+            actuators: &[::core::primitive::f64; Self::ACTUATORS],
+            start: &[::core::primitive::f64; Self::POSE],
+        ) -> ::core::result::Result<[::core::primitive::f64; Self::POSE], ::overact::Error> {
             #body
         }
     }

@@ -1,0 +1,104 @@
+//! Text of a description that goes into comments and documentation.
+//!
+//! What a person writes as `summary`, `source` or the name of a file must neither end a comment nor change
+//! how the lines around it are read: no character that breaks a line, that is not seen or that turns the
+//! direction of writing, and in documentation no mark that Markdown would take for its own.
+
+/// The text on one line, of visible characters alone: what separates words is one space, what is not seen
+/// is left out.
+#[must_use]
+pub fn plain(text: &str) -> String {
+    let visible = |c: &char| !is_invisible(*c);
+    let is_break = |c: char| c.is_whitespace() || matches!(c, '\u{2028}' | '\u{2029}');
+    let words = text.split(is_break);
+    let words = words.map(|word| word.chars().filter(visible).collect::<String>());
+    let words: Vec<String> = words.filter(|word| !word.is_empty()).collect();
+    words.join(" ")
+}
+
+/// The text as a part of a documentation comment, where every mark stands for itself.
+#[must_use]
+pub fn documentation(text: &str) -> String {
+    let text = plain(text);
+    let mut out = String::with_capacity(text.len());
+    // A digit or a mark in front would begin a list or a heading.
+    let number = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    for (at, c) in text.char_indices() {
+        let is_mark = matches!(
+            c,
+            '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '~' | '|' | '&'
+        );
+        let begins = at == 0 && matches!(c, '#' | '+' | '-' | '=' | '_');
+        let numbers = at == number && number > 0 && matches!(c, '.' | ')');
+        if is_mark || begins || numbers {
+            out.push('\\');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// Whether a character is a control or a format character: it has no glyph, or turns the direction of
+/// what follows.
+fn is_invisible(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            '\u{00ad}' | '\u{061c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}'
+            | '\u{2060}'..='\u{206f}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
+            | '\u{e0000}'..='\u{e0fff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{documentation, plain};
+
+    #[test]
+    fn lines_become_one() {
+        for text in [
+            "a\nb",
+            "a\r\nb",
+            "a\rb",
+            " a \t b ",
+            "a\u{2028}b",
+            "a\u{85}b",
+            "a\u{b}b",
+        ] {
+            assert_eq!(plain(text), "a b", "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_seen_is_left_out() {
+        for hidden in [
+            '\u{202e}',
+            '\u{2066}',
+            '\u{200b}',
+            '\u{feff}',
+            '\0',
+            '\u{7f}',
+            '\u{e0041}',
+        ] {
+            assert_eq!(plain(&format!("a{hidden}b")), "ab", "{hidden:?}");
+        }
+        assert_eq!(
+            plain("α², Γ¹ — Gautier’s 6-UPS"),
+            "α², Γ¹ — Gautier’s 6-UPS"
+        );
+    }
+
+    #[test]
+    fn marks_of_documentation_stand_for_themselves() {
+        assert_eq!(documentation("```\nno code\n```"), r"\`\`\` no code \`\`\`");
+        assert_eq!(documentation("~~~"), r"\~\~\~");
+        assert_eq!(documentation("see [Vec]"), r"see \[Vec\]");
+        assert_eq!(documentation("<b> */ /*"), r"\<b\> \*/ /\*");
+        assert_eq!(documentation("# no heading"), r"\# no heading");
+        assert_eq!(documentation("12. no list"), r"12\. no list");
+        assert_eq!(documentation("- no list"), r"\- no list");
+        assert_eq!(documentation("    no code"), "no code");
+        assert_eq!(
+            documentation("Briot, Krut 2015, sections 5.1"),
+            "Briot, Krut 2015, sections 5.1"
+        );
+    }
+}
