@@ -17,11 +17,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::var("OUT_DIR")?;
     for kept in [[1, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 4]] {
         let source = Source::new(DESCRIPTION, with_kept(&text, kept));
-        let model = compile_with(&source, &Request::with_effort(Effort::Thorough))
+        let compiled = compile_with(&source, &Request::with_effort(Effort::Thorough))
             .map_err(|errors| errors.render_plain(&source))?;
         let [a, b, c] = kept;
         let file = Path::new(&folder).join(format!("dualv_kept_{a}{b}{c}.rs"));
-        fs::write(file, emission::file(&model, "robots/dualv.toml"))?;
+        fs::write(file, emission::file(&compiled.model, "robots/dualv.toml"))?;
     }
     Ok(())
 }

@@ -1,132 +1,75 @@
 //! The stages of the generator, in order.
 
-use crate::derivation::{Columns, Family, From, Selection, Underivable};
-use crate::description;
+use crate::derivation::{Family, Underivable};
+use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
-use crate::lowering::{Effort, Reach};
-use crate::mechanism::states::{Spread, spread_states};
+use crate::effort::Effort;
 use crate::mechanism::{self, Mechanism};
 use crate::model::{Function, RobotModel};
 use crate::parallel;
-use crate::selection::assemble::{cheapest, joints_by};
-use crate::selection::columns::{base_parameters, present};
-use crate::selection::combine::cheaper_columns;
-use crate::selection::formulation::cheapest_formulation;
+use crate::request::{Request, Wanted};
+use crate::selection::{self, Assembler, Search};
 
-/// States of each kind by which the search compares the digits of forms.
-const STATES: usize = 16;
-
-/// Which functions of a robot a model shall have.
-pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);
-
-/// What a model shall have, and what work it is worth; by default all functions, quickly.
-#[derive(Clone, Copy)]
-pub struct Request<'a> {
-    /// How hard fewer operations are searched, whatever the description says.
-    pub effort: Option<Effort>,
-    /// The same where the description says nothing.
-    pub otherwise: Effort,
-    /// Which functions are derived: most of the time goes into one after the other.
-    pub wanted: Wanted<'a>,
+/// A description and the model that was made from it.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// What the text says.
+    pub description: Description,
+    /// The robot's model.
+    pub model: RobotModel,
 }
 
-impl Default for Request<'_> {
-    fn default() -> Self {
-        Self {
-            effort: None,
-            otherwise: Effort::Quick,
-            wanted: &|_, _, _| true,
-        }
-    }
-}
-
-impl Request<'_> {
-    /// All functions, with an effort that overrules the description's.
-    #[must_use]
-    pub fn with_effort(effort: Effort) -> Self {
-        Self {
-            effort: Some(effort),
-            ..Self::default()
-        }
-    }
-}
-
-/// From a description's text to a robot's model: parse, check, derive, choose columns, lower.
+/// From a description's text to a robot's model with all its functions.
 ///
 /// # Errors
 /// All errors of the description, each at its place.
-pub fn compile(source: &Source) -> Result<RobotModel, Diagnostics> {
+pub fn compile(source: &Source) -> Result<Compiled, Diagnostics> {
     compile_with(source, &Request::default())
 }
 
-/// [`compile`] of what is asked for.
+/// From a description's text to what is asked for of a robot's model.
 ///
 /// # Errors
 /// All errors of the description, each at its place.
-pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<RobotModel, Diagnostics> {
+pub fn compile_with(source: &Source, request: &Request<'_>) -> Result<Compiled, Diagnostics> {
     let description = description::parse(source)?;
     let mechanism = mechanism::check(&description)?;
-    let request = Request {
-        effort: request.effort.or(description.effort),
-        ..*request
-    };
-    model_with(mechanism, &request).map_err(|e| mechanism::locate(&description, &e))
+    let effort = request.effort_for(description.effort);
+    let model = derived(mechanism, effort, request.wanted);
+    let model = model.map_err(|error| error.locate(&description))?;
+    Ok(Compiled { description, model })
 }
 
-/// The model of a checked mechanism.
-///
-/// # Errors
-/// See [`Underivable`].
-pub fn model(mechanism: Mechanism) -> Result<RobotModel, Underivable> {
-    model_with(mechanism, &Request::default())
-}
-
-/// [`model`] of what is asked for.
+/// The model of a mechanism that is checked already.
 ///
 /// # Errors
 /// See [`Underivable`].
 pub fn model_with(mechanism: Mechanism, request: &Request<'_>) -> Result<RobotModel, Underivable> {
-    let mut selection = Selection {
-        kept_actuators: mechanism.kept_actuators.clone(),
-        // The form of the model is chosen by what the derivation itself makes of it.
-        reach: Reach::Nothing,
-        ..Selection::default()
+    derived(mechanism, request.effort_for(None), request.wanted)
+}
+
+/// Selects form and columns, then derives and lowers one function after the other.
+fn derived(
+    mechanism: Mechanism,
+    effort: Effort,
+    is_wanted: Wanted<'_>,
+) -> Result<RobotModel, Underivable> {
+    let (selection, base) = selection::select(&mechanism)?;
+    let assembler = Assembler {
+        mechanism: &mechanism,
+        selection: &selection,
+        search: &Search::with(effort, &mechanism),
     };
-    selection.standard = present(
-        &mechanism,
-        &selection,
-        Family::IdmRedPlatform(Columns::Standard),
-    )?;
-    selection.payload = present(&mechanism, &selection, Family::IdmRedPayload)?;
-    selection.formulation = cheapest_formulation(&mechanism, &selection)?;
-    let (base, exact) = base_parameters(&mechanism, &selection)?;
-    selection.base = base.iter().map(|b| b.parameter).collect();
-    selection.combined = cheaper_columns(&mechanism, &selection, &exact)?;
-    let joints = joints_by(&mechanism, &selection)?;
-    selection.reach = request.effort.unwrap_or(request.otherwise).reach();
-    if selection.reach > Reach::Nothing {
-        let of = |&spread: &Spread| spread_states(&mechanism, STATES, 7, spread);
-        selection.states = parallel::map(&[Spread::NEAR, Spread::FAR], of);
-    }
-    let tree = mechanism.platform.is_none();
-    let mut all = Family::all(&mechanism, joints);
-    all.retain(|&(family, from)| (request.wanted)(&mechanism, family, from));
-    let functions = parallel::map(&all, |&(family, from)| {
-        let program = cheapest(&mechanism, &selection, family, from, joints)?;
-        let name = family.function_name(from, tree);
-        Ok(Function {
-            name,
-            family,
-            from,
-            program,
-        })
+    let mut wanted = Family::all(&mechanism, selection.joints);
+    wanted.retain(|&(family, from)| is_wanted(&mechanism, family, from));
+    let functions = parallel::map(&wanted, |&(family, from)| {
+        let program = assembler.cheapest(family, from)?;
+        Ok(Function::new(&mechanism, family, from, program))
     });
-    let functions = functions.into_iter().collect::<Result<_, Underivable>>()?;
     Ok(RobotModel {
+        functions: functions.into_iter().collect::<Result<_, Underivable>>()?,
         mechanism,
         selection,
         base,
-        joints,
-        functions,
     })
 }

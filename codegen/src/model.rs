@@ -3,7 +3,7 @@
 use crate::derivation::{BodyParameter, Columns, Family, From, JointsBy, Selection};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism};
-use crate::selection::base::BaseParameter;
+use crate::selection::BaseParameter;
 
 /// A function of the robot.
 #[derive(Debug, Clone)]
@@ -19,19 +19,27 @@ pub struct Function {
     pub program: Program,
 }
 
+impl Function {
+    /// A function of a robot with its program.
+    pub(crate) fn new(mechanism: &Mechanism, family: Family, from: From, program: Program) -> Self {
+        Self {
+            name: family.function_name(from, mechanism.platform.is_none()),
+            family,
+            from,
+            program,
+        }
+    }
+}
+
 /// A robot's model.
 #[derive(Debug, Clone)]
 pub struct RobotModel {
     /// The robot.
     pub mechanism: Mechanism,
-    /// Standard, base and payload columns, kept actuators.
+    /// Standard, base and payload columns, kept actuators, and how the joints follow from the pose.
     pub selection: Selection,
     /// Base parameters with their regroupings, in the symmetric order (43).
     pub base: Vec<BaseParameter>,
-    /// How the joints follow from the pose. By Newton's method, programs from a pose or from
-    /// actuators have the joints as an input, which [`Family::ClosureError`] and
-    /// [`Family::LegsJacobian`] serve to find.
-    pub joints: JointsBy,
     /// All functions.
     pub functions: Vec<Function>,
 }
@@ -65,7 +73,7 @@ impl RobotModel {
     /// Whether the function's joints are found by Newton's method before its program runs.
     #[must_use]
     pub fn finds_joints(&self, function: &Function) -> bool {
-        self.joints == JointsBy::Newton && function.from != From::Joints
+        self.selection.joints == JointsBy::Newton && function.from != From::Joints
     }
 
     /// Whether forward kinematics finds the function's pose before its program runs.

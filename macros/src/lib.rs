@@ -98,7 +98,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
         effort: arguments.effort,
         ..Request::default()
     };
-    let model = compile_with(&source, &request).map_err(|errors| {
+    let compiled = compile_with(&source, &request).map_err(|errors| {
         let count = errors.len();
         let noun = if count == 1 { "error" } else { "errors" };
         let list = errors.render_plain(&source);
@@ -107,7 +107,7 @@ fn expand(arguments: &Arguments, robot: &ItemStruct) -> syn::Result<proc_macro2:
             format!("{count} {noun} in the robot's description\n\n{list}"),
         )
     })?;
-    let items = emission::items(&model, &robot.ident);
+    let items = emission::items(&compiled.model, &robot.ident);
     // The compiler watches files that are included.
     let watched = file.to_string_lossy().into_owned();
     Ok(quote! {

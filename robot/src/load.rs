@@ -2,9 +2,7 @@
 
 use crate::{Error, InterpretedRobot, Problem};
 use overact_codegen::{
-    Effort, Request, RobotModel, compile_with,
-    description::{self, Description},
-    diagnostic::{Diagnostics, Source},
+    Effort, Request, RobotModel, compile_with, description::Description, diagnostic::Source,
 };
 use std::{fs, path::Path};
 
@@ -46,25 +44,17 @@ pub fn load_to_serve(path: &Path) -> Result<Robot, Error> {
 /// A file that can't be read, or everything that is wrong with the description.
 pub fn load_with(path: &Path, request: &Request<'_>) -> Result<Robot, Error> {
     let source = read(path)?;
-    match compiled(&source, request) {
-        Ok((description, model)) => Ok(Robot {
+    match compile_with(&source, request) {
+        Ok(compiled) => Ok(Robot {
             file: source.name,
-            description,
-            model,
+            description: compiled.description,
+            model: compiled.model,
         }),
         Err(diagnostics) => Err(Error::Description {
             source,
             diagnostics,
         }),
     }
-}
-
-fn compiled(
-    source: &Source,
-    request: &Request<'_>,
-) -> Result<(Description, RobotModel), Diagnostics> {
-    let model = compile_with(source, request)?;
-    Ok((description::parse(source)?, model))
 }
 
 /// What a description says that may not be meant: a motor marked by mistake looks like redundancy, so

@@ -3,8 +3,8 @@
 //! The reference is exact to rounding times the condition numbers of its states, at most 60; 1e-10
 //! is that with some room.
 
-use overact_codegen::compile;
 use overact_codegen::derivation::Family;
+use overact_codegen::{Request, model_with};
 use overact_tests::reference::Mechanism;
 use overact_tests::reference::robots;
 use overact_tests::support::agreement::unwound;
@@ -44,7 +44,7 @@ fn agree(
 ) -> Result<(), Failure> {
     let mut robot = dualv()?.mechanism.clone();
     robot.kept_actuators = kept.to_vec();
-    let model = compile::model(robot).map_err(|e| format!("{e:?}"))?;
+    let model = model_with(robot, &Request::default()).map_err(|e| format!("{e:?}"))?;
     let evaluated = Evaluated(&model);
     let expected = Expected::new(&model, mechanism.clone())?;
     let all = samples(mechanism, &expected.parameters(), STATES, 41, partitions)?;

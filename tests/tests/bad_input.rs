@@ -126,7 +126,7 @@ fn answer(source: &Source) -> Option<Result<Box<RobotModel>, Diagnostics>> {
     // A thread that never ends is left behind: the test fails then anyway.
     std::thread::spawn(move || {
         // Nobody may be waiting any more.
-        let _ = sender.send(compile(&source).map(Box::new));
+        let _ = sender.send(compile(&source).map(|compiled| Box::new(compiled.model)));
     });
     receiver.recv_timeout(PATIENCE).ok()
 }

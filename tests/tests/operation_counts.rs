@@ -5,10 +5,9 @@
 //! An operation is an addition, a subtraction, a multiplication or a division; square roots and
 //! trigonometric pairs stand apart.
 
-use overact_codegen::compile::model_with;
 use overact_codegen::derivation::{Columns, Family, From};
 use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
-use overact_codegen::{Effort, Request, Source, description, mechanism};
+use overact_codegen::{Effort, Request, Source, description, mechanism, model_with};
 use overact_tests::support::{Failure, repository};
 use std::fmt::Write as _;
 use std::fs;

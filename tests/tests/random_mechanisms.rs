@@ -6,9 +6,9 @@
 //! others a sixth each time, in turn.
 
 use nalgebra::{DMatrix, DVector};
-use overact_codegen::compile::compile_with;
+use overact_codegen::Effort;
+use overact_codegen::compile_with;
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::lowering::Effort;
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::{Diagnostics, Request, RobotModel, Source};
 use overact_tests::reference::energy::total_energy;
@@ -148,7 +148,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
     }
     balance(&expected, &evaluated, &all)?;
     let mut found = sketch.features();
-    found.insert(format!("joints by {:?}", model.joints));
+    found.insert(format!("joints by {:?}", model.selection.joints));
     Ok(found)
 }
 
@@ -183,7 +183,7 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
         wanted: &wanted,
         ..Request::default()
     };
-    compile_with(source, &request)
+    compile_with(source, &request).map(|compiled| compiled.model)
 }
 
 /// Whether a function is another one for other kept actuators.

@@ -9,10 +9,10 @@
 //! least.
 
 use nalgebra::DMatrix;
-use overact_codegen::compile::{Request, model_with};
+use overact_codegen::Effort;
 use overact_codegen::derivation::{Columns, Family, From};
-use overact_codegen::lowering::Effort;
 use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
+use overact_codegen::{Request, model_with};
 use overact_codegen::{description, mechanism};
 use overact_tests::support::conversion::reference;
 use overact_tests::support::description as described;

@@ -79,7 +79,8 @@ impl<'a> Robot<'a> {
             },
             ..Request::with_effort(Effort::None)
         };
-        let model = compile_with(source, &request).map_err(|e| e.render_plain(source))?;
+        let described = compile_with(source, &request).map_err(|e| e.render_plain(source))?;
+        let model = described.model;
         let mechanism = conversion::reference(&model.mechanism, workspace(&model));
         let expected = Expected::by_position(&model, mechanism);
         let mut all = samples(&expected.mechanism, &expected.parameters(), 1, 5, false)?;

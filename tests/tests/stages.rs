@@ -92,15 +92,8 @@ fn derivation_of_the_dualv() -> Result<(), Failure> {
     let derived_text = |family: Family, picked: &dyn Fn(usize, usize) -> bool| {
         let arena = Arena::new();
         let (mechanism, selection) = (&model.mechanism, &model.selection);
-        let derived = derive(
-            &arena,
-            mechanism,
-            selection,
-            family,
-            From::Joints,
-            model.joints,
-        )
-        .map_err(|e| format!("{e:?}"))?;
+        let derived = derive(&arena, mechanism, selection, family, From::Joints)
+            .map_err(|e| format!("{e:?}"))?;
         Ok::<String, Failure>(printed(&derived, picked))
     };
     let jacobian = derived_text(Family::InverseJacobian, &|_, _| true)?;

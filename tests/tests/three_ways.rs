@@ -194,8 +194,8 @@ fn small_generated_modules_are_fresh() -> Result<(), Failure> {
     for stem in ["emps", "five_bar", "scotch_yoke", "two_motor_axis"] {
         let source = overact_tests::support::description(stem)?;
         let searched = Request::with_effort(Effort::Thorough);
-        let model = compile_with(&source, &searched).map_err(|e| e.render_plain(&source))?;
-        let file = emission::file(&model, &source.name);
+        let compiled = compile_with(&source, &searched).map_err(|e| e.render_plain(&source))?;
+        let file = emission::file(&compiled.model, &source.name);
         let module = repository(&format!("generated/src/{stem}.rs"));
         let difference = first_difference(&file, &fs::read_to_string(module)?);
         assert!(

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rows = || values.chunks(@TOTAL@).cycle().take(SAMPLES);
     let states = rows().map(state).collect::<Result<Vec<State>, _>>()?;
     let text = fs::read_to_string("@DESCRIPTION@")?;
-    let model = compile(&Source::new("description", &text)).map_err(|error| format!("{error:?}"))?;
+    let model = compile(&Source::new("description", &text)).map_err(|error| format!("{error:?}"))?.model;
     let family = Family::IdmRedPlatform(Columns::@COLUMNS@);
     let program = &model.function(family, From::Joints).ok_or("no such function")?.program;
     let mut start = 0;

@@ -143,8 +143,8 @@ fn run() -> Result<(), Failure> {
         return Err("DESCRIPTION LOG SETTINGS ROUNDS [RESULT] are needed".into());
     };
     let text = fs::read_to_string(description)?;
-    let model = compile(&Source::new(description, &text)).map_err(|e| format!("{e:?}"))?;
-    let robot = InterpretedRobot::new(model);
+    let compiled = compile(&Source::new(description, &text)).map_err(|e| format!("{e:?}"))?;
+    let robot = InterpretedRobot::new(compiled.model);
     let sizes = robot.info().sizes;
     let settings: Vec<&str> = settings.split(',').collect();
     let [frequency, order, cutoff, decimation, names @ ..] = &settings[..] else {

@@ -11,11 +11,11 @@ use crate::{
 use clap::ValueEnum;
 use overact_codegen::{
     Effort, Request, RobotModel,
-    compile::model_with,
     derivation::{Columns, Family, From},
     evaluation::Rows,
     lowering::Program,
     mechanism::Mechanism,
+    model_with,
 };
 use overact_robot::{
     InterpretedRobot,

@@ -1,7 +1,7 @@
 //! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
 
 use crate::cas::Arena;
-use crate::derivation::{Derived, Family, From, JointsBy, Selection, Underivable, derive};
+use crate::derivation::{Derived, Family, From, Selection, Underivable, derive};
 use crate::diagnostic::Source;
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::{Home, Mechanism, check};
@@ -83,7 +83,7 @@ fn derived<'a>(
     from: From,
 ) -> Result<Derived<'a>, Underivable> {
     let selection = Selection::default();
-    derive(arena, mechanism, &selection, family, from, JointsBy::Rule)
+    derive(arena, mechanism, &selection, family, from)
 }
 
 #[test]

@@ -4,10 +4,13 @@ use super::configuration::{From, angle_near};
 use super::elimination::Rows;
 use super::family::{Columns, Family};
 use super::forward_kinematics::closed_form;
+use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
-use super::regressor::{BodyParameter, Projection};
-use super::robot::{Guard, GuardKind, Robot, Underivable};
+use super::parameter::BodyParameter;
+use super::regressor::Projection;
+use super::robot::Robot;
 use super::selection::{JointsBy, Selection};
+use super::underivable::Underivable;
 use crate::cas::{Arena, Expr};
 use crate::mechanism::{JointKind, Mechanism};
 
@@ -24,6 +27,25 @@ pub struct Derived<'a> {
     pub guards: Vec<Guard<'a>>,
 }
 
+impl Derived<'_> {
+    /// The columns that are not identically zero.
+    #[must_use]
+    pub fn present_columns(&self) -> Vec<usize> {
+        let (rows, columns) = self.shape;
+        let is_present = |&c: &usize| (0..rows).any(|r| !self.entries[r * columns + c].is_zero());
+        (0..columns).filter(is_present).collect()
+    }
+
+    /// Leaves out all columns but some.
+    pub fn keep_columns(&mut self, kept: &[usize]) {
+        let (rows, columns) = self.shape;
+        let row = |r: usize| kept.iter().map(move |c| r * columns + c);
+        let entries = (0..rows).flat_map(row).map(|at| self.entries[at]);
+        self.entries = entries.collect();
+        self.shape = (rows, kept.len());
+    }
+}
+
 /// Derives a function in its own graph.
 ///
 /// # Errors
@@ -34,12 +56,11 @@ pub fn derive<'a>(
     selection: &Selection,
     family: Family,
     from: From,
-    joints: JointsBy,
 ) -> Result<Derived<'a>, Underivable> {
     if family == Family::PoseInClosedForm {
         return pose_in_closed_form(arena, mechanism);
     }
-    let configuration = match (from, joints) {
+    let configuration = match (from, selection.joints) {
         (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
         _ => From::Joints,
     };

@@ -8,28 +8,12 @@
 use super::carried::CarriedBody;
 use super::elimination::{Rows, inverse};
 use super::linear::{dot, product, transposed};
-use super::robot::{Robot, RobotMotion, Underivable};
+use super::parameter::BodyParameter;
+use super::robot::{Robot, RobotMotion};
 use super::selection::Combination;
+use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Number, Vector3};
 use crate::description::StandardParameter;
-
-/// A standard parameter of the robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum BodyParameter {
-    /// Of a leg's body or joint.
-    Leg {
-        /// The leg.
-        leg: usize,
-        /// The joint in its leg.
-        joint: usize,
-        /// Which parameter.
-        symbol: StandardParameter,
-    },
-    /// Of the platform.
-    Platform(StandardParameter),
-    /// Of the payload.
-    Payload(StandardParameter),
-}
 
 /// What generalised forces are projected on.
 #[derive(Debug)]
@@ -89,45 +73,6 @@ impl<'a> Robot<'a> {
             on_platform: false,
             platform: inverted.rows,
             determinants: inverted.determinants,
-        })
-    }
-
-    /// All parameters that the description does not declare absent, in column order: leg by leg, body
-    /// by body, then the platform's.
-    #[must_use]
-    pub fn parameters(&self) -> Vec<BodyParameter> {
-        let mut parameters = Vec::new();
-        for (l, leg) in self.mechanism.legs.iter().enumerate() {
-            for (j, joint) in leg.joints.iter().enumerate() {
-                let symbols = joint.parameters.iter();
-                parameters.extend(symbols.map(|&symbol| BodyParameter::Leg {
-                    leg: l,
-                    joint: j,
-                    symbol,
-                }));
-            }
-        }
-        if let Some(platform) = &self.mechanism.platform {
-            parameters.extend(
-                platform
-                    .parameters
-                    .iter()
-                    .map(|&s| BodyParameter::Platform(s)),
-            );
-        }
-        parameters
-    }
-
-    /// The payload's parameters.
-    #[must_use]
-    pub fn payload_parameters(&self) -> Vec<BodyParameter> {
-        let payload = self
-            .mechanism
-            .platform
-            .as_ref()
-            .and_then(|p| p.payload.as_ref());
-        payload.map_or_else(Vec::new, |symbols| {
-            symbols.iter().map(|&s| BodyParameter::Payload(s)).collect()
         })
     }
 

@@ -7,40 +7,15 @@ use super::carried::{CarriedBody, Mount};
 use super::centres::{Centre, centres};
 use super::configuration::{Configuration, From};
 use super::elimination::Rows;
+use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
 use super::leg::{LegClosure, LegFrames};
 use super::platform::PlatformPose;
 use super::rates::Rates;
+use super::selection::Formulation;
+use super::underivable::Underivable;
 use crate::cas::{Arena, Expr, Vector3};
 use crate::mechanism::{Mechanism, TwistCoordinate};
-
-/// A quantity that must stay away from a bound for the model to have a value.
-#[derive(Debug, Clone)]
-pub struct Guard<'a> {
-    /// The quantity.
-    pub value: Expr<'a>,
-    /// What it means.
-    pub kind: GuardKind,
-    /// Name of the leg.
-    pub leg: String,
-}
-
-/// The kinds of guards.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum GuardKind {
-    /// Negative: the pose is out of reach.
-    Reach,
-    /// Near zero compared with this magnitude at home: the leg is singular.
-    Leg(f64),
-    /// Near zero compared with this magnitude at home: the actuators do not determine the platform's
-    /// motion.
-    Platform {
-        /// The magnitude at home.
-        home: f64,
-        /// `actuators` or `kept actuators`.
-        actuators: &'static str,
-    },
-}
 
 /// A leg in a derivation.
 #[derive(Debug)]
@@ -72,37 +47,6 @@ pub struct RobotMotion<'a> {
     pub carried: Vec<Vec<Option<CarriedBody<'a>>>>,
     /// The platform.
     pub platform: Option<CarriedBody<'a>>,
-}
-
-/// Why a model cannot be derived in the wanted form.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Underivable {
-    /// No rule gives this leg's joints from the pose in closed form.
-    InverseKinematics {
-        /// Name of the leg.
-        leg: String,
-    },
-    /// No rule gives the pose from the actuators in closed form.
-    ForwardKinematics,
-    /// The leg's Jacobian has no structural inverse.
-    SingularLeg {
-        /// Name of the leg.
-        leg: String,
-    },
-    /// The Jacobian of the kept actuators has no structural inverse.
-    SingularPartition,
-}
-
-/// In which of several equal forms a robot is written; which needs the fewest operations depends on the
-/// robot.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Formulation {
-    /// The axes in which the closure of each leg is written, see
-    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
-    /// base's.
-    pub stations: Vec<usize>,
-    /// Whether axes that meet in a point share the moment about it, see [`centres`](super::centres).
-    pub meeting: bool,
 }
 
 /// The derivation of a robot.

@@ -1,10 +1,7 @@
-//! What was chosen for a robot before its functions are derived: columns, actuators, forms, search.
+//! What was chosen for a robot before its functions are derived: columns, actuators, forms.
 
-use super::regressor::BodyParameter;
-use super::robot::Formulation;
+use super::parameter::BodyParameter;
 use crate::cas::Number;
-use crate::lowering::Reach;
-use crate::mechanism::states::State;
 
 /// What the derivation of a function needs beside the mechanism.
 #[derive(Debug, Clone, Default)]
@@ -21,10 +18,22 @@ pub struct Selection {
     pub formulation: Formulation,
     /// Dependent columns that are had more cheaply from others than from their definition.
     pub combined: Vec<Combination>,
-    /// How far cheaper ways to write a function are searched.
-    pub reach: Reach,
-    /// Groups of states at which the search compares the digits of forms.
-    pub states: Vec<Vec<State>>,
+    /// How the joints follow from the pose. By Newton's method, programs from a pose or from
+    /// actuators have the joints as an input, which [`Family::ClosureError`](super::Family::ClosureError) and
+    /// [`Family::LegsJacobian`](super::Family::LegsJacobian) serve to find.
+    pub joints: JointsBy,
+}
+
+/// In which of several equal forms a robot is written; which needs the fewest operations depends on the
+/// robot.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Formulation {
+    /// The axes in which the closure of each leg is written, see
+    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
+    /// base's.
+    pub stations: Vec<usize>,
+    /// Whether axes that meet in a point share the moment about it, see [`centres`](super::centres).
+    pub meeting: bool,
 }
 
 /// A column as a linear combination of other columns.
@@ -37,9 +46,10 @@ pub struct Combination {
 }
 
 /// How the joints follow from the pose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub enum JointsBy {
     /// In closed form, as part of the function.
+    #[default]
     Rule,
     /// By Newton's method, before the function is evaluated: joints are an input of the program.
     Newton,

@@ -3,7 +3,7 @@
 use super::parameter::StandardParameter;
 use crate::cas::{Angle, Number, Ratio};
 use crate::diagnostic::Span;
-use crate::lowering::Effort;
+use crate::effort::Effort;
 
 /// A value and where the description gives it.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ use super::shape::Shape;
 use super::{experiment, leg, platform, settings, shape};
 use crate::cas::{Number, Ratio};
 use crate::diagnostic::{Diagnostic, Diagnostics, Source};
-use crate::lowering::Effort;
+use crate::effort::Effort;
 use toml::de::DeTable;
 
 /// Words that cannot name a type.

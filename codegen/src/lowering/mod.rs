@@ -15,4 +15,4 @@ pub use lower::{GuardedExpr, lower};
 pub use program::{
     Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, SINGULAR, Step,
 };
-pub use search::{Effort, Reach, States};
+pub use search::{Reach, States};

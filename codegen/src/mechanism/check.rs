@@ -5,7 +5,6 @@ use super::explain;
 use super::home::Home;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
-use crate::derivation::Underivable;
 use crate::description::Description;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 
@@ -242,35 +241,4 @@ fn check_mobility(
     if missed.amax() > 1e-6 {
         errors.push(explain::blocked(description, mechanism, index, &missed));
     }
-}
-
-/// Puts an error of the derivation at its place in the description.
-#[must_use]
-pub fn locate(description: &Description, error: &Underivable) -> Diagnostics {
-    let place = |leg: &str| description.legs.iter().find(|l| l.name.value == leg);
-    let diagnostic = match error {
-        Underivable::InverseKinematics { leg } => {
-            let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
-            Diagnostic::new(
-                format!("no rule solves the inverse kinematics of leg `{leg}`"),
-                span,
-            )
-            .help("the robot's functions then start from Newton's method")
-        }
-        Underivable::ForwardKinematics => Diagnostic::new(
-            "no rule gives the robot's pose from its actuators",
-            description.name.span.clone(),
-        ),
-        Underivable::SingularLeg { leg } => {
-            let span = place(leg).map_or(description.name.span.clone(), |l| l.span.clone());
-            Diagnostic::new(format!("leg `{leg}` is singular in every configuration"), span)
-                .help("its joint rates are never determined by the platform's motion: check attachment and axes")
-        }
-        Underivable::SingularPartition => Diagnostic::new(
-            "the kept actuators of case 2 never determine the platform's motion",
-            description.name.span.clone(),
-        )
-        .help("choose other `kept_actuators`"),
-    };
-    Diagnostics::from(diagnostic)
 }

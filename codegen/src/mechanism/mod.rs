@@ -19,7 +19,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 
-pub use check::{check, locate};
+pub use check::check;
 pub use home::Home;
 pub use motion::TwistCoordinate;
 

@@ -4,7 +4,7 @@
 //! twists and accelerations. Columns are taken in the symmetric order (43), platform first, then each
 //! parameter of all legs together, and orthogonalised one after the other; a column that leaves
 //! nothing behind is a constant combination of those before it. The coefficients are constants of the
-//! robot's geometry; [`combine`](super::combine) makes them exact.
+//! robot's geometry; the proof of a combination makes them exact.
 
 use crate::cas::Ratio;
 use crate::derivation::BodyParameter;

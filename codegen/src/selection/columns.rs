@@ -1,78 +1,36 @@
-//! The columns of a robot's identification model: which are not identically zero, which of them are
-//! independent, and what the others are made of.
+//! Which columns of a robot's identification model are independent, and what the others are made of.
 
-use super::assemble::program;
+use super::assemble::Assembler;
 use super::base::{BaseParameter, select, symmetric_order};
 use super::combine::exact_combinations;
-use crate::cas::Arena;
-use crate::derivation::{
-    BodyParameter, Columns, Combination, Family, Formulation, From, JointsBy, Robot, Selection,
-    Underivable, derive,
-};
+use super::regressor::Regressor;
+use super::search::Search;
+use crate::derivation::{Columns, Combination, Family, From, Selection, Underivable};
 use crate::evaluation::{BLOCK, Evaluator, Rows};
-use crate::lowering::{Operand, Program, Reach};
+use crate::lowering::{Operand, Program};
 use crate::mechanism::states::{State, random_states};
 use crate::mechanism::{BaseColumns, Mechanism};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
-
-/// The parameters whose columns are not identically zero.
-///
-/// # Errors
-/// See [`Underivable`].
-pub fn present(
-    mechanism: &Mechanism,
-    selection: &Selection,
-    family: Family,
-) -> Result<Vec<BodyParameter>, Underivable> {
-    let arena = Arena::new();
-    let robot = Robot::new(&arena, mechanism, From::Joints, &Formulation::default())?;
-    let payload = family == Family::IdmRedPayload;
-    let all = if payload {
-        robot.payload_parameters()
-    } else {
-        robot.parameters()
-    };
-    let mut everything = selection.clone();
-    everything.standard.clone_from(&all);
-    everything.payload.clone_from(&all);
-    let derived = derive(
-        &arena,
-        mechanism,
-        &everything,
-        family,
-        From::Joints,
-        JointsBy::Rule,
-    )?;
-    let (rows, columns) = derived.shape;
-    let is_present = |c: usize| (0..rows).any(|r| !derived.entries[r * columns + c].is_zero());
-    Ok(all
-        .into_iter()
-        .enumerate()
-        .filter(|(c, _)| is_present(*c))
-        .map(|(_, p)| p)
-        .collect())
-}
 
 /// Independent columns over random states, and what the others are made of, with the combinations that
 /// are proved to be exact.
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn base_parameters(
+pub(super) fn base_parameters(
     mechanism: &Mechanism,
     selection: &Selection,
+    regressor: &Regressor,
 ) -> Result<(Vec<BaseParameter>, Vec<Combination>), Underivable> {
-    let family = Family::IdmRedPlatform(Columns::Standard);
-    let program = program(mechanism, selection, family, From::Joints, JointsBy::Rule)?;
     let columns = selection.standard.len();
     let count = 3 * columns / mechanism.dof().max(1) + 10;
     let states = random_states(mechanism, count, 1);
-    let matrix = sample(&program, &states, mechanism.dof(), columns);
+    let matrix = sample(&regressor.program, &states, mechanism.dof(), columns);
     let symmetric = symmetric_order(mechanism, &selection.standard);
     let mut base = select(&matrix, &symmetric, &selection.standard);
     if mechanism.base_columns == BaseColumns::Cheapest {
-        let shares = shares(&program, columns);
+        let shares = shares(&regressor.program, columns);
         let mut order = symmetric;
         order.sort_by(|a, b| shares[*a].total_cmp(&shares[*b]));
         let other = select(&matrix, &order, &selection.standard);
@@ -80,7 +38,7 @@ pub fn base_parameters(
             base = other;
         }
     }
-    let exact = exact_combinations(mechanism, selection, &mut base)?;
+    let exact = exact_combinations(regressor, &mut base);
     Ok((base, exact))
 }
 
@@ -90,14 +48,17 @@ fn operations(
     selection: &Selection,
     base: &[BaseParameter],
 ) -> Result<usize, Underivable> {
-    let trial = Selection {
-        base: base.iter().map(|b| b.parameter).collect(),
-        reach: Reach::Singles,
-        ..selection.clone()
+    let trial = Assembler {
+        mechanism,
+        selection: &Selection {
+            base: base.iter().map(|b| b.parameter).collect(),
+            ..selection.clone()
+        },
+        search: &Search::short(),
     };
     let family = Family::IdmRedPlatform(Columns::Base);
-    program(mechanism, &trial, family, From::Joints, JointsBy::Rule)
-        .map(|program| program.cost().operations())
+    let program = trial.program(family, From::Joints)?;
+    Ok(program.cost().operations())
 }
 
 /// What each column costs: the operations of a program, divided among the columns that need them. If

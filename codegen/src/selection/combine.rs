@@ -5,34 +5,39 @@
 //! point mass on the platform less two moments of inertia, all of which are there already. Columns that
 //! differ by the leg only are tried together, and what lowers the operation count is kept.
 
-use super::assemble::program;
+use super::assemble::Assembler;
 use super::base::{BaseParameter, nearby_ratio};
-use crate::cas::{Arena, Number};
-use crate::derivation::{
-    BodyParameter, Columns, Combination, Family, From, JointsBy, Selection, Underivable, derive,
-};
+use super::regressor::{FAMILY, Regressor};
+use super::search::Search;
+use crate::cas::Number;
+use crate::derivation::{BodyParameter, Combination, From, Selection, Underivable};
 use crate::mechanism::Mechanism;
 
-/// The combinations that make the standard regressor from joint angles cheaper.
+/// The combinations that make the standard regressor from joint angles cheaper than the one that is had
+/// without them.
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn cheaper_columns(
+pub(super) fn cheaper_columns(
     mechanism: &Mechanism,
     selection: &Selection,
+    regressor: &Regressor,
     exact: &[Combination],
 ) -> Result<Vec<Combination>, Underivable> {
     let operations = |combined: &[Combination]| {
-        let trial = Selection {
-            combined: combined.to_vec(),
-            ..selection.clone()
+        let trial = Assembler {
+            mechanism,
+            selection: &Selection {
+                combined: combined.to_vec(),
+                ..selection.clone()
+            },
+            search: &Search::none(),
         };
-        let family = Family::IdmRedPlatform(Columns::Standard);
-        program(mechanism, &trial, family, From::Joints, JointsBy::Rule)
-            .map(|p| p.cost().operations())
+        let program = trial.program(FAMILY, From::Joints)?;
+        Ok(program.cost().operations())
     };
     let mut chosen: Vec<Combination> = Vec::new();
-    let mut best = operations(&chosen)?;
+    let mut best = regressor.operations();
     // Multiples of a single column are shared anyway.
     let candidates: Vec<Combination> = exact.iter().filter(|c| c.of.len() > 1).cloned().collect();
     for group in groups(mechanism, &candidates) {
@@ -48,50 +53,13 @@ pub fn cheaper_columns(
 /// Guesses the fractions behind the coefficients of the regroupings and proves them: the combination
 /// must be the dependent column itself, as an expression. Coefficients that are proved become exact in
 /// `base`; the others stay as they were computed.
-///
-/// # Errors
-/// See [`Underivable`].
-pub fn exact_combinations(
-    mechanism: &Mechanism,
-    selection: &Selection,
+pub(super) fn exact_combinations(
+    regressor: &Regressor,
     base: &mut [BaseParameter],
-) -> Result<Vec<Combination>, Underivable> {
-    let arena = Arena::new();
-    let family = Family::IdmRedPlatform(Columns::Standard);
-    let derived = derive(
-        &arena,
-        mechanism,
-        selection,
-        family,
-        From::Joints,
-        JointsBy::Rule,
-    )?;
-    let (rows, width) = derived.shape;
-    let column = |parameter: BodyParameter| {
-        let at = selection.standard.iter().position(|p| *p == parameter)?;
-        Some(
-            (0..rows)
-                .map(|row| derived.entries[row * width + at])
-                .collect::<Vec<_>>(),
-        )
-    };
-    let is_exact = |combination: &Combination| {
-        let Some(wanted) = column(combination.parameter) else {
-            return false;
-        };
-        let terms: Option<Vec<_>> = combination
-            .of
-            .iter()
-            .map(|(p, c)| Some((column(*p)?, *c)))
-            .collect();
-        let Some(terms) = terms else { return false };
-        (0..rows).all(|row| {
-            let zero = arena.zero();
-            terms
-                .iter()
-                .fold(zero, |sum, (column, c)| sum + column[row] * *c)
-                == wanted[row]
-        })
+) -> Vec<Combination> {
+    let is_exact = |guess: &Combination| {
+        let column = regressor.column(guess.parameter);
+        column.is_some() && column == regressor.combination(&guess.of)
     };
     let mut guesses = guesses(base);
     guesses.retain(is_exact);
@@ -104,7 +72,7 @@ pub fn exact_combinations(
             }
         }
     }
-    Ok(guesses)
+    guesses
 }
 
 /// Dependent columns all of whose coefficients are near fractions.

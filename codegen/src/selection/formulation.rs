@@ -1,33 +1,37 @@
 //! Which of several equal forms of a robot's model takes the fewest operations: derived, lowered without
 //! a search, and counted.
 
-use super::assemble::program;
-use crate::derivation::{
-    Columns, Family, Formulation, From, JointsBy, Selection, Underivable, station_count,
-};
+use super::regressor::Regressor;
+use crate::derivation::{Formulation, Selection, Underivable, station_count};
 use crate::mechanism::Mechanism;
 use crate::parallel;
 use std::collections::BTreeSet;
 
-/// The cheapest formulation of the standard regressor from joint angles: for each shape of legs the axes
-/// of its closure, then whether axes that meet share a moment; the plain form where nothing is better.
+/// The cheapest formulation of the standard regressor from joint angles, with the regressor: for each shape
+/// of legs the axes of its closure, then whether axes that meet share a moment; the plain form where nothing
+/// is better.
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn cheapest_formulation(
+pub(super) fn cheapest_formulation(
     mechanism: &Mechanism,
     selection: &Selection,
-) -> Result<Formulation, Underivable> {
+) -> Result<(Formulation, Regressor), Underivable> {
+    let plain = Formulation {
+        stations: vec![0; mechanism.legs.len()],
+        meeting: false,
+    };
+    let regressor = regressor(mechanism, selection, &plain)?;
     let mut best = Best {
         mechanism,
-        selection,
-        chosen: Formulation {
-            stations: vec![0; mechanism.legs.len()],
-            meeting: false,
+        // Columns that are zero in one form are zero in all.
+        selection: &Selection {
+            standard: regressor.parameters().to_vec(),
+            ..selection.clone()
         },
-        operations: usize::MAX,
+        regressor,
+        formulation: plain,
     };
-    best.operations = best.count(&best.chosen)?;
     let mut shapes = BTreeSet::new();
     if mechanism.platform.is_some() {
         shapes.extend(mechanism.legs.iter().map(|leg| leg.shape));
@@ -37,7 +41,7 @@ pub fn cheapest_formulation(
         let legs: Vec<usize> = (0..mechanism.legs.len()).filter(of_shape).collect();
         let count = legs.iter().map(|&l| station_count(mechanism, l)).min();
         let trials = (1..count.unwrap_or(0)).map(|station| {
-            let mut trial = best.chosen.clone();
+            let mut trial = best.formulation.clone();
             legs.iter().for_each(|&l| trial.stations[l] = station);
             trial
         });
@@ -45,38 +49,43 @@ pub fn cheapest_formulation(
     }
     best.choose(vec![Formulation {
         meeting: true,
-        ..best.chosen.clone()
+        ..best.formulation.clone()
     }]);
-    Ok(best.chosen)
+    Ok((best.formulation, best.regressor))
 }
 
 /// The best formulation so far.
 struct Best<'m> {
     mechanism: &'m Mechanism,
     selection: &'m Selection,
-    chosen: Formulation,
-    operations: usize,
+    formulation: Formulation,
+    regressor: Regressor,
 }
 
 impl Best<'_> {
-    fn count(&self, formulation: &Formulation) -> Result<usize, Underivable> {
-        let trial = Selection {
-            formulation: formulation.clone(),
-            ..self.selection.clone()
-        };
-        let family = Family::IdmRedPlatform(Columns::Standard);
-        program(self.mechanism, &trial, family, From::Joints, JointsBy::Rule)
-            .map(|p| p.cost().operations())
-    }
-
     /// Takes the best of the trials if it is better.
     fn choose(&mut self, trials: Vec<Formulation>) {
-        let counts = parallel::map(&trials, |trial| self.count(trial));
-        for (trial, count) in trials.into_iter().zip(counts) {
+        let of = |trial: &Formulation| regressor(self.mechanism, self.selection, trial);
+        let regressors = parallel::map(&trials, of);
+        for (formulation, regressor) in trials.into_iter().zip(regressors) {
             // A form in which a leg cannot be written is none to choose.
-            if let Some(count) = count.ok().filter(|count| *count < self.operations) {
-                (self.chosen, self.operations) = (trial, count);
+            let Ok(regressor) = regressor else { continue };
+            if regressor.operations() < self.regressor.operations() {
+                (self.formulation, self.regressor) = (formulation, regressor);
             }
         }
     }
+}
+
+/// The regressor in a formulation.
+fn regressor(
+    mechanism: &Mechanism,
+    selection: &Selection,
+    formulation: &Formulation,
+) -> Result<Regressor, Underivable> {
+    let trial = Selection {
+        formulation: formulation.clone(),
+        ..selection.clone()
+    };
+    Regressor::new(mechanism, &trial)
 }

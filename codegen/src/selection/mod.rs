@@ -1,14 +1,64 @@
 //! What is chosen for a robot before its functions are written: the form of its model and its columns.
 //!
-//! The standard regressor of case 1, eq. (30), has a column per standard parameter. [`columns`] drops those
-//! that are identically zero and finds the independent ones in the symmetric order (43); [`base`] says what
-//! the others are made of, and [`combine`] writes such a column as a combination of others where that takes
-//! fewer operations. [`formulation`] chooses among equal forms of the closures, eq. (9), and of the moments
-//! about axes that meet. All of them judge by one measure, the operations of the program that [`assemble`]
-//! makes of a function.
+//! The standard regressor of case 1, eq. (30), has a column per standard parameter; those that are
+//! identically zero are left out. It is derived once for each form of the closures, eq. (9), and of the
+//! moments about axes that meet ([`formulation`]). Of the form that takes the fewest operations, the
+//! independent columns are found over random states in the symmetric order (43) ([`columns`], [`base`]).
+//! Every other column is a constant combination of them, and is written as one where that takes fewer
+//! operations ([`combine`]). All choices go by one measure: the operations of the program that
+//! [`assemble`] makes of a function, searched as far as [`search`] says.
 
 pub mod assemble;
 pub mod base;
 pub mod columns;
-pub mod combine;
-pub mod formulation;
+mod combine;
+mod formulation;
+mod regressor;
+pub mod search;
+
+pub use assemble::Assembler;
+pub use base::BaseParameter;
+pub use search::Search;
+
+use crate::cas::Arena;
+use crate::derivation::{BodyParameter, Family, From, Selection, Underivable, derive};
+use crate::mechanism::Mechanism;
+
+/// Chooses form and columns of a robot's model.
+///
+/// # Errors
+/// See [`Underivable`].
+pub fn select(mechanism: &Mechanism) -> Result<(Selection, Vec<BaseParameter>), Underivable> {
+    let mut selection = Selection {
+        standard: BodyParameter::all(mechanism),
+        payload: payload_columns(mechanism)?,
+        kept_actuators: mechanism.kept_actuators.clone(),
+        ..Selection::default()
+    };
+    let (formulation, regressor) = formulation::cheapest_formulation(mechanism, &selection)?;
+    selection.formulation = formulation;
+    selection.standard = regressor.parameters().to_vec();
+    let (base, exact) = columns::base_parameters(mechanism, &selection, &regressor)?;
+    selection.base = base.iter().map(|b| b.parameter).collect();
+    selection.combined = combine::cheaper_columns(mechanism, &selection, &regressor, &exact)?;
+    selection.joints = assemble::joints(mechanism, &selection)?;
+    Ok((selection, base))
+}
+
+/// The payload's parameters whose columns are not identically zero.
+fn payload_columns(mechanism: &Mechanism) -> Result<Vec<BodyParameter>, Underivable> {
+    let selection = Selection {
+        payload: BodyParameter::of_payload(mechanism),
+        ..Selection::default()
+    };
+    let arena = Arena::new();
+    let derived = derive(
+        &arena,
+        mechanism,
+        &selection,
+        Family::IdmRedPayload,
+        From::Joints,
+    )?;
+    let present = derived.present_columns();
+    Ok(present.iter().map(|&c| selection.payload[c]).collect())
+}

@@ -110,7 +110,10 @@ fn model(stem: &str, effort: Effort) -> Result<RobotModel, Failure> {
         wanted: &wanted,
         ..Request::with_effort(effort)
     };
-    compile_with(&source, &request).map_err(|errors| errors.render_plain(&source).into())
+    match compile_with(&source, &request) {
+        Ok(compiled) => Ok(compiled.model),
+        Err(errors) => Err(errors.render_plain(&source).into()),
+    }
 }
 
 fn regular(mechanism: &Mechanism) -> Vec<State> {

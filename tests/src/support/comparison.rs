@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use overact::Error;
 use overact_codegen::derivation::{Columns, Family, From, Selection, Underivable};
 use overact_codegen::lowering::Program;
-use overact_codegen::selection::assemble;
+use overact_codegen::selection::{Assembler, Search};
 use overact_codegen::{Function, RobotModel};
 
 /// Condition number of a partition up to which the plain tolerance holds; beyond, case 2 is compared
@@ -151,8 +151,12 @@ fn program_of(model: &RobotModel, kept: &[usize]) -> Result<Option<Program>, Fai
         ..model.selection.clone()
     };
     let family = Family::IdmRedActuators(Columns::Standard);
-    let joints = model.joints;
-    match assemble::program(&model.mechanism, &selection, family, From::Joints, joints) {
+    let assembler = Assembler {
+        mechanism: &model.mechanism,
+        selection: &selection,
+        search: &Search::none(),
+    };
+    match assembler.program(family, From::Joints) {
         Ok(program) => Ok(Some(program)),
         Err(Underivable::SingularPartition) => Ok(None),
         Err(error) => Err(format!("{error:?}").into()),

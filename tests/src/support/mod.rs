@@ -52,7 +52,10 @@ pub fn description(stem: &str) -> Result<Source, Failure> {
 ///
 /// The description's errors as text.
 pub fn model_of(source: &Source) -> Result<RobotModel, Failure> {
-    compile(source).map_err(|errors| errors.render_plain(source).into())
+    match compile(source) {
+        Ok(compiled) => Ok(compiled.model),
+        Err(errors) => Err(errors.render_plain(source).into()),
+    }
 }
 
 /// The DualV's model as it is checked in, with all operations searched; compiled once.
@@ -66,6 +69,7 @@ pub fn dualv() -> Result<&'static RobotModel, Failure> {
         description("dualv")
             .and_then(|source| {
                 compile_with(&source, &Request::with_effort(Effort::Thorough))
+                    .map(|compiled| compiled.model)
                     .map_err(|errors| errors.render_plain(&source).into())
             })
             .map_err(|error| error.to_string())

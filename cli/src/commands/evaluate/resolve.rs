@@ -72,7 +72,7 @@ fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m Function, F
         return Ok(function);
     }
     // The model has the wanted functions only; all that there are may be meant.
-    let all = Family::all(&model.mechanism, model.joints);
+    let all = Family::all(&model.mechanism, model.selection.joints);
     let mut names: Vec<&str> = all.iter().map(|(family, _)| family.name()).collect();
     names.dedup();
     let full = all

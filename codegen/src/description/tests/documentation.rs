@@ -238,7 +238,7 @@ fn pictures_and_example_are_right() {
         .nth(1)
         .and_then(|t| t.split("```").next());
     let source = Source::new("example.toml", example.expect("an example"));
-    let model =
+    let compiled =
         compile(&source).unwrap_or_else(|errors| panic!("{}", errors.render_plain(&source)));
-    assert_eq!(model.mechanism.actuated().len(), 2);
+    assert_eq!(compiled.model.mechanism.actuated().len(), 2);
 }

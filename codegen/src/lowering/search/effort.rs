@@ -1,37 +1,8 @@
-//! How hard a function's operations are searched.
+//! How far the search of a function goes by the effort that is asked for.
 
-/// What is asked for, of a whole model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, PartialOrd, Ord)]
-pub enum Effort {
-    /// Not at all: the derivation's own form.
-    None,
-    /// Within a few in a hundred of the thorough search, in a small part of its time.
-    #[default]
-    Quick,
-    /// As long as something is found.
-    Thorough,
-}
+use crate::effort::Effort;
 
 impl Effort {
-    /// All, the least first.
-    pub const ALL: [Self; 3] = [Self::None, Self::Quick, Self::Thorough];
-
-    /// The name in descriptions, attributes and on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Quick => "quick",
-            Self::Thorough => "thorough",
-        }
-    }
-
-    /// The effort of that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|effort| effort.name() == name)
-    }
-
     /// How far the search of the functions that matter most goes.
     #[must_use]
     pub const fn reach(self) -> Reach {

@@ -28,7 +28,7 @@ mod sieve;
 mod singles;
 mod walk;
 
-pub use effort::{Effort, Reach};
+pub use effort::Reach;
 pub use graph::{Overlay, Place, Rewritten};
 pub use rays::States;
 

@@ -1,0 +1,31 @@
+//! Conditions for a function to have a value.
+
+use crate::cas::Expr;
+
+/// A quantity that must stay away from a bound for the model to have a value.
+#[derive(Debug, Clone)]
+pub struct Guard<'a> {
+    /// The quantity.
+    pub value: Expr<'a>,
+    /// What it means.
+    pub kind: GuardKind,
+    /// Name of the leg.
+    pub leg: String,
+}
+
+/// The kinds of guards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GuardKind {
+    /// Negative: the pose is out of reach.
+    Reach,
+    /// Near zero compared with this magnitude at home: the leg is singular.
+    Leg(f64),
+    /// Near zero compared with this magnitude at home: the actuators do not determine the platform's
+    /// motion.
+    Platform {
+        /// The magnitude at home.
+        home: f64,
+        /// `actuators` or `kept actuators`.
+        actuators: &'static str,
+    },
+}

@@ -1,0 +1,46 @@
+//! The standard parameters of a robot: which there are, and in which order their columns stand.
+
+use crate::mechanism::{Mechanism, StandardParameter};
+
+/// A standard parameter of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BodyParameter {
+    /// Of a leg's body or joint.
+    Leg {
+        /// The leg.
+        leg: usize,
+        /// The joint in its leg.
+        joint: usize,
+        /// Which parameter.
+        symbol: StandardParameter,
+    },
+    /// Of the platform.
+    Platform(StandardParameter),
+    /// Of the payload.
+    Payload(StandardParameter),
+}
+
+impl BodyParameter {
+    /// All parameters that the description does not declare absent, in column order: leg by leg, body
+    /// by body, then the platform's.
+    #[must_use]
+    pub fn all(mechanism: &Mechanism) -> Vec<Self> {
+        let mut parameters = Vec::new();
+        for (leg, of_leg) in mechanism.legs.iter().enumerate() {
+            for (joint, of_joint) in of_leg.joints.iter().enumerate() {
+                let symbols = of_joint.parameters.iter();
+                parameters.extend(symbols.map(|&symbol| Self::Leg { leg, joint, symbol }));
+            }
+        }
+        let platform = mechanism.platform.iter().flat_map(|p| &p.parameters);
+        parameters.extend(platform.map(|&symbol| Self::Platform(symbol)));
+        parameters
+    }
+
+    /// The payload's parameters.
+    #[must_use]
+    pub fn of_payload(mechanism: &Mechanism) -> Vec<Self> {
+        let payload = mechanism.platform.iter().flat_map(|p| &p.payload);
+        payload.flatten().map(|&s| Self::Payload(s)).collect()
+    }
+}
