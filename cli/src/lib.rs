@@ -8,6 +8,7 @@
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
 //! - [`drawing`]: a robot as SVG;
 //! - `effort`: how hard the generator searches;
+//! - `names`: names of results in names of files;
 //! - `note`: what a description says that may not be meant;
 //! - `report`: an identification as a page, a document or a flat table;
 //! - `states`: states of a robot from JSON or CSV.
@@ -16,6 +17,7 @@ mod commands;
 pub mod drawing;
 mod effort;
 pub mod failure;
+mod names;
 mod note;
 mod output;
 mod progress;

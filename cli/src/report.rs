@@ -4,10 +4,11 @@
 use crate::{
     drawing,
     failure::{Failure, Problem},
+    names::file_stem,
     output,
 };
 use overact::Info;
-use overact_identification::{Identification, identify::figures::Figures};
+use overact_identification::{Figures, Identification};
 use overact_report::{Attachment, Contents, Published, Units, numbers, page};
 use overact_robot::load::Robot;
 use serde::Serialize;
@@ -133,7 +134,7 @@ fn html(
     result: &Identification,
     published: Option<&Published>,
 ) -> Result<String, Failure> {
-    let name = super::commands::file_stem(&result.robot);
+    let name = file_stem(&result.robot);
     let (csv_name, json_name) = (format!("{name}.csv"), format!("{name}.json"));
     let (csv, json) = (numbers(result)?, output::json(result)?);
     let attachment = |name, media_type, what, text| Attachment {

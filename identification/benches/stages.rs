@@ -12,10 +12,11 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use dualv::{DualV, experiment, logs, records, truth};
 use overact::Model;
 use overact_identification::{
-    Experiment, Log, Mapping, Motions, Projection, Settings,
+    Dataset, Log, Mapping, Motions, Projection, Settings,
     data::read_csv,
+    estimate_projection,
     filters::{Decimator, ZeroPhase, butterworth},
-    identify::{estimate_projection, identify, prepare},
+    identify, prepare,
 };
 
 const SAMPLES: usize = 50_000;
@@ -100,13 +101,13 @@ fn stages(criterion: &mut Criterion) {
         bench.iter(|| estimate_projection(&prepared, 0, &settings, None).expect("an estimate"));
     });
     let truth = truth();
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs,
         validation: &runs[3..],
         true_values: Some(&truth),
     };
     group.bench_function("everything, with a held-out run", |bench| {
-        bench.iter(|| identify(&robot, &experiment, &settings, &|_| {}).expect("a result"));
+        bench.iter(|| identify(&robot, &dataset, &settings, &|_| {}).expect("a result"));
     });
     group.finish();
 }

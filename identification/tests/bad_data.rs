@@ -7,7 +7,7 @@ mod dualv;
 use std::sync::LazyLock;
 
 use dualv::{DualV, experiment, log, records, settings};
-use overact_identification::{Error, Experiment, FindingKind, Identification, Log, identify};
+use overact_identification::{Dataset, Error, FindingKind, Identification, Log, identify};
 use overact_simulation::Record;
 
 /// Two unloaded and two loaded runs of five seconds.
@@ -30,17 +30,12 @@ fn with(change: impl Fn(usize, &mut Vec<f64>, &mut Vec<f64>)) -> Result<Identifi
 
 fn identified(runs: &[Log]) -> Result<Identification, Error> {
     let robot = DualV::new();
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs,
         validation: &[],
         true_values: None,
     };
-    identify(
-        &robot,
-        &experiment,
-        &settings(&robot).trimmed(1000.0),
-        &|_| {},
-    )
+    identify(&robot, &dataset, &settings(&robot).trimmed(1000.0), &|_| {})
 }
 
 /// Kinds, runs and actuators of the findings, which all stand among the warnings, too.

@@ -7,7 +7,7 @@ use std::{fs, path::Path};
 use common::{EMPS, PAIR};
 use overact::Model;
 use overact_identification::{
-    Error, Experiment, Gain, Log, Mapping, Settings,
+    Dataset, Error, Gain, Log, Mapping, Settings,
     data::{read, read_csv},
     identify, motion,
 };
@@ -233,12 +233,12 @@ fn settings_are_checked_together() {
 #[test]
 fn experiments_are_checked() {
     let run = |experiment: &[Log], model: &dyn Model| {
-        let experiment = Experiment {
+        let dataset = Dataset {
             runs: experiment,
             validation: &[],
             true_values: None,
         };
-        identify(model, &experiment, &settings(), &|_| {})
+        identify(model, &dataset, &settings(), &|_| {})
             .expect_err("an error")
             .to_string()
     };
@@ -252,13 +252,13 @@ fn experiments_are_checked() {
         "run 3: the run carries a payload, but the description of `emps` has none\n  help: add a payload to the description, or declare the run unloaded"
     );
     let still = Log::new("run 4", 100.0, 2, vec![0.0; 400], vec![0.0; 400], false).expect("a log");
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &[still],
         validation: &[],
         true_values: None,
     };
     // At rest only the offset has a column, and it explains torques of zero.
-    let result = identify(&PAIR, &experiment, &settings(), &|_| {}).expect("an estimate");
+    let result = identify(&PAIR, &dataset, &settings(), &|_| {}).expect("an estimate");
     assert!(result.warnings.iter().any(|warning| warning
         == "model platform: `m_platformR` is not identifiable: its column is zero on these data"));
 }

@@ -5,18 +5,17 @@ mod common;
 mod dualv;
 
 use dualv::{DualV, experiment, logs, records, settings, truth};
-use overact_identification::{Estimate, Experiment, Identification, Stage, identify};
+use overact_identification::{Dataset, Estimate, Identification, Stage, identify};
 
 fn identified(robot: &DualV, rotation: f64) -> Identification {
     let truth = truth();
     let runs = logs(records(robot, &experiment(robot, rotation, 1)));
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs,
         validation: &[],
         true_values: Some(&truth),
     };
-    identify(robot, &experiment, &settings(robot), &|_| {})
-        .unwrap_or_else(|error| panic!("{error}"))
+    identify(robot, &dataset, &settings(robot), &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The essential estimates of both cases.

@@ -4,7 +4,7 @@ mod common;
 
 use common::EMPS;
 use overact_identification::{
-    Experiment, Gain, Identification, Log, Mapping, Normalisation, Settings, Stage, data::read_mat,
+    Dataset, Gain, Identification, Log, Mapping, Normalisation, Settings, Stage, data::read_mat,
     identify,
 };
 
@@ -40,12 +40,12 @@ fn settings() -> Settings {
 fn identified(settings: &Settings) -> Option<Identification> {
     let runs = [log("DATA_EMPS.mat")?];
     let validation = [log("DATA_EMPS_PULSES.mat")?];
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs,
         validation: &validation,
         true_values: None,
     };
-    Some(identify(&EMPS, &experiment, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}")))
+    Some(identify(&EMPS, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// Fails unless `value`, printed with four decimals, is `expected`.

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use common::EMPS;
 use overact::Model;
-use overact_identification::{Error, Experiment, Identification, Log, Settings, identify};
+use overact_identification::{Dataset, Error, Identification, Log, Settings, identify};
 
 /// m + ia, fv, fs, off of the drive.
 const TRUTH: [f64; 4] = [90.0, 200.0, 20.0, -3.0];
@@ -20,12 +20,12 @@ fn run(seconds: f64, of: impl Fn(f64) -> (f64, f64)) -> Log {
 }
 
 fn identified(log: &Log, settings: &Settings) -> Result<Identification, Error> {
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: std::slice::from_ref(log),
         validation: &[],
         true_values: None,
     };
-    identify(&EMPS, &experiment, settings, &|_| {})
+    identify(&EMPS, &dataset, settings, &|_| {})
 }
 
 /// Largest relative error of the base estimates.

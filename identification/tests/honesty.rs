@@ -5,18 +5,16 @@ mod common;
 mod dualv;
 
 use dualv::{DualV, experiment, log, records, settings, truth};
-use overact_identification::{
-    Estimate, Experiment, Identification, Log, Settings, Stage, identify,
-};
+use overact_identification::{Dataset, Estimate, Identification, Log, Settings, Stage, identify};
 
 fn identified(robot: &DualV, runs: &[Log], settings: &Settings) -> Identification {
     let truth = truth();
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs,
         validation: &[],
         true_values: Some(&truth),
     };
-    identify(robot, &experiment, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
+    identify(robot, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Root mean square, and part within 3.

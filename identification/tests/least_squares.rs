@@ -5,7 +5,7 @@ mod common;
 use nalgebra::{DMatrix, DVector};
 use overact::Model;
 use overact_identification::{
-    Normalisation, Projection, Settings, System, essential, estimate, factor::Factor,
+    Factor, Normalisation, Projection, Settings, System, essential, estimate,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -16,7 +16,7 @@ use std::{
 
 use dualv::{DualV, experiment, records, settings};
 use overact::Model;
-use overact_identification::{Experiment, Mapping, Progress, Settings, data::read_csv, identify};
+use overact_identification::{Dataset, Mapping, Progress, Settings, data::read_csv, identify};
 use overact_simulation::Record;
 use peak_alloc::PeakAlloc;
 
@@ -61,7 +61,7 @@ fn identified(robot: &DualV, folder: &Path, record: &Record, times: usize) -> f6
     let told = Cell::new(0);
     let result = identify(
         robot,
-        &Experiment {
+        &Dataset {
             runs: std::slice::from_ref(&log),
             validation: &[],
             true_values: None,

@@ -10,9 +10,8 @@ use std::{collections::BTreeMap, f64::consts::PI};
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use overact_identification::{
-    Experiment, Log, Motion, Projection, Settings, Stage,
-    identify::{estimate_projection, identify, prepare},
-    motion,
+    Dataset, Log, Motion, Projection, Settings, Stage, estimate_projection, identify, motion,
+    prepare,
 };
 use point::{Point, column, leg};
 use rand::{RngExt, SeedableRng};
@@ -182,12 +181,12 @@ fn noise_is_covered_by_the_standard_deviations() {
     let runs = [run("one", 1.0, 0.5), run("two", 2.0, 0.5)];
     let validation = [run("three", 3.0, 0.5)];
     let truth = truth();
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs,
         validation: &validation,
         true_values: Some(&truth),
     };
-    let result = identify(&Point, &experiment, &settings(), &|_| {}).expect("a result");
+    let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     println!("{:#?}", result.estimates);
     assert_eq!(result.estimates[2].kept_actuators, ["leg1", "leg3"]);
     for estimate in result

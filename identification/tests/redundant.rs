@@ -8,11 +8,8 @@ use std::{cell::RefCell, collections::BTreeMap, f64::consts::PI};
 use common::{Drives, PAIR};
 use overact::Model;
 use overact_identification::{
-    Estimate, Experiment, Identification, Log, PayloadUse, Projection, Settings, Stage,
-    base_parameters,
-    columns::ColumnSet,
-    identify::{estimate_projection, identify, prepare},
-    motion,
+    ColumnSet, Dataset, Estimate, Identification, Log, PayloadUse, Projection, Settings, Stage,
+    base_parameters, estimate_projection, identify, motion, prepare,
 };
 
 /// Values of the robot's parameters and the payload's, in column order.
@@ -95,12 +92,12 @@ fn truth() -> BTreeMap<String, f64> {
 fn identified(runs: &[Log], settings: &Settings) -> Identification {
     let truth = truth();
     let validation = [run("other", 2.5, true, 0.0)];
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs,
         validation: &validation,
         true_values: Some(&truth),
     };
-    identify(&PAIR, &experiment, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
+    identify(&PAIR, &dataset, settings, &|_| {}).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Fails unless an estimate is the truth: m + ia1 + 4 ia2, fv1 + 4 fv2, fs1 + 2 fs2, off1 - 2 off2

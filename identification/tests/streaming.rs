@@ -7,7 +7,7 @@ use std::{fmt::Write as _, fs, path::Path};
 use common::EMPS;
 use overact::Model;
 use overact_identification::{
-    Experiment, Identification, Log, Mapping, Settings, data::read_csv, identify,
+    Dataset, Identification, Log, Mapping, Settings, data::read_csv, identify,
 };
 
 const SAMPLES: usize = 530_000;
@@ -33,12 +33,12 @@ fn text() -> String {
 
 fn identified(log: Log) -> Identification {
     let settings = Settings::for_bandwidth(5.0, FREQUENCY, &EMPS.info());
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: std::slice::from_ref(&log),
         validation: std::slice::from_ref(&log),
         true_values: None,
     };
-    identify(&EMPS, &experiment, &settings, &|_| {}).expect("an identification")
+    identify(&EMPS, &dataset, &settings, &|_| {}).expect("an identification")
 }
 
 fn read(path: &Path) -> Log {

@@ -2,10 +2,7 @@
 //! tracking errors (Table 4). Without published results, the tables that only they complete are left
 //! out.
 
-use overact_identification::{
-    identify::{CrossValidation, Estimate, Identification, Stage},
-    significant,
-};
+use overact_identification::{CrossValidation, Estimate, Identification, Stage, significant};
 
 use super::{published::Published, terminal::table};
 

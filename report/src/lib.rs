@@ -6,6 +6,7 @@
 //! own in [`page()`]; the plots' axes and lines are in the module `plot`.
 
 pub mod beside;
+mod escape;
 pub mod numbers;
 pub mod page;
 mod plot;

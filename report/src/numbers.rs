@@ -1,12 +1,8 @@
 //! All numbers of an identification as one flat table: one number a row, so that any program reads it
 //! without knowing what there is. Series over time are not among them; they are in the document of
-//! [`Figures`](overact_identification::identify::figures::Figures).
+//! [`Figures`](overact_identification::Figures).
 
-use overact_identification::{
-    Error, Problem,
-    estimate::LineError,
-    identify::{Estimate, Identification},
-};
+use overact_identification::{Error, Estimate, Identification, LineError, Problem};
 
 /// The names of the columns.
 const HEADER: [&str; 7] = [

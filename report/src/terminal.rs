@@ -3,9 +3,7 @@
 use std::fmt::Write;
 
 use overact_identification::{
-    estimate::LineError,
-    identify::{BaseParameter, CrossValidation, Estimate, Identification, Regrouping},
-    significant,
+    BaseParameter, CrossValidation, Estimate, Identification, LineError, Regrouping, significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.

@@ -1,6 +1,9 @@
 //! A description's table `[experiment]` as a virtual experiment of the simulation.
 
-use crate::{Error, Problem, load::Robot};
+use crate::{
+    error::{Error, Problem},
+    load::Robot,
+};
 use overact::Info;
 use overact_codegen::description;
 use overact_simulation::{Drives, Experiment, Run, Term, Trajectory};

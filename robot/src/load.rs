@@ -1,6 +1,9 @@
 //! A description from a file, read and compiled.
 
-use crate::{Error, InterpretedRobot, Problem};
+use crate::{
+    error::{Error, Problem},
+    interpreted::InterpretedRobot,
+};
 use overact_codegen::{
     Effort, Request, RobotModel, compile_with, description::Description, diagnostic::Source,
 };

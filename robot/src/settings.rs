@@ -1,6 +1,9 @@
 //! A description's tables `[data]` and `[identification]` as settings of the identification.
 
-use crate::{Error, Problem, load::Robot};
+use crate::{
+    error::{Error, Problem},
+    load::Robot,
+};
 use overact::Info;
 use overact_codegen::description::{Factor, Friction, Normalisation, Reversals};
 use overact_identification::{Gain, Mapping, Settings};

@@ -3,10 +3,10 @@
 //! The defaults are those of the DualV in section 5.1 of the paper: a PD controller of 70 Hz and
 //! damping 0.7 whose derivative is filtered at 70 Hz, with feed-forward and projection (50), at 5 kHz.
 
-use overact::{Info, Sizes};
+use overact::Sizes;
 use serde::{Deserialize, Serialize};
 
-use crate::{drives::Drives, error::Problem, trajectory::Trajectory, validation};
+use crate::{drives::Drives, trajectory::Trajectory};
 
 /// A virtual experiment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,12 +89,6 @@ impl Default for Experiment {
 }
 
 impl Experiment {
-    /// Every value that makes no sense for the robot that `info` describes; none if it can be run.
-    #[must_use]
-    pub fn problems(&self, info: &Info<'_>) -> Vec<Problem> {
-        validation::problems(self, info)
-    }
-
     /// Number of samples of a run: those at t = k / sampling_hz with 0 <= t < duration.
     #[must_use]
     pub fn samples(&self, run: &Run) -> usize {

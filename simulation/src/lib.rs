@@ -57,6 +57,7 @@ mod plant;
 mod reference;
 pub mod run;
 mod sensors;
+mod train;
 pub mod trajectory;
 mod validation;
 

@@ -21,12 +21,12 @@ use overact::{Function, Model};
 
 use crate::{
     controller::{Controller, Desired, effective_inertia},
-    drives::Train,
     error::{Cause, Error, RunError, Stage},
     experiment::{Experiment, Run},
     plant::Plant,
     reference::{AtSample, BLOCK, Reference, follow, pose_at},
     sensors::Sensors,
+    train::Train,
 };
 
 /// An actuator that is off by more than this (rad or m) has left its trajectory.

@@ -91,45 +91,48 @@ impl Problems {
     }
 }
 
-/// All problems of an experiment.
-pub(crate) fn problems(experiment: &Experiment, info: &Info<'_>) -> Vec<Problem> {
-    let mut found = Problems::default();
-    control(&mut found, experiment);
-    found.per_actuator(
-        "encoder_resolution",
-        &experiment.encoder_resolution,
-        info,
-        true,
-        false,
-    );
-    found.per_actuator("torque_noise", &experiment.torque_noise, info, true, false);
-    drives(&mut found, experiment, info);
-    if let Some(limit) = &experiment.torque_limit {
-        found.per_actuator("torque_limit", limit, info, false, true);
-    }
-    found.parameters("parameters", &experiment.parameters, info);
-    if let Some(nominal) = &experiment.nominal_parameters {
-        found.parameters("nominal_parameters", nominal, info);
-    }
-    if experiment.runs.is_empty() {
-        found.add("runs", "is empty; give at least one run");
-    }
-    let mut names = BTreeSet::new();
-    for (i, run) in experiment.runs.iter().enumerate() {
-        if run.name.is_empty() {
-            found.add(format!("runs[{i}].name"), "is empty; give a name");
-        } else if !names.insert(run.name.as_str()) {
-            found.add(
-                format!("runs[{i}].name"),
-                format!(
-                    "`{}` is the name of an earlier run; give each run its own",
-                    run.name
-                ),
-            );
+impl Experiment {
+    /// Every value that makes no sense for the robot that `info` describes; none if it can be run.
+    #[must_use]
+    pub fn problems(&self, info: &Info<'_>) -> Vec<Problem> {
+        let mut found = Problems::default();
+        control(&mut found, self);
+        found.per_actuator(
+            "encoder_resolution",
+            &self.encoder_resolution,
+            info,
+            true,
+            false,
+        );
+        found.per_actuator("torque_noise", &self.torque_noise, info, true, false);
+        drives(&mut found, self, info);
+        if let Some(limit) = &self.torque_limit {
+            found.per_actuator("torque_limit", limit, info, false, true);
         }
-        check_run(&mut found, experiment, run, i, info);
+        found.parameters("parameters", &self.parameters, info);
+        if let Some(nominal) = &self.nominal_parameters {
+            found.parameters("nominal_parameters", nominal, info);
+        }
+        if self.runs.is_empty() {
+            found.add("runs", "is empty; give at least one run");
+        }
+        let mut names = BTreeSet::new();
+        for (i, run) in self.runs.iter().enumerate() {
+            if run.name.is_empty() {
+                found.add(format!("runs[{i}].name"), "is empty; give a name");
+            } else if !names.insert(run.name.as_str()) {
+                found.add(
+                    format!("runs[{i}].name"),
+                    format!(
+                        "`{}` is the name of an earlier run; give each run its own",
+                        run.name
+                    ),
+                );
+            }
+            check_run(&mut found, self, run, i, info);
+        }
+        found.0
     }
-    found.0
 }
 
 /// The drives' numbers, and how late they and the encoders may be.

@@ -8,7 +8,7 @@
 use nalgebra::DMatrix;
 use overact::{Function, Model};
 use overact_codegen::{Source, compile};
-use overact_identification::factor::Factor;
+use overact_identification::Factor;
 use overact_identification::filters::{Decimator, ZeroPhase, butterworth};
 use overact_identification::{ColumnSet, Error};
 use overact_robot::InterpretedRobot;

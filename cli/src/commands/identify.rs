@@ -8,7 +8,7 @@ mod tracking;
 use super::runs;
 use crate::{failure::Failure, output, progress::Progress, report as files};
 use overact::Model;
-use overact_identification::{Experiment, Identification, identify};
+use overact_identification::{Dataset, Identification, identify};
 use overact_robot::{InterpretedRobot, load::load_to_serve};
 use std::path::PathBuf;
 
@@ -52,13 +52,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let runs = arguments.runs.runs(&robot, &served, as_json)?;
     let mut settings = arguments.runs.settings(&robot, &served.info(), &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs.runs,
         validation: &runs.validation,
         true_values: runs.truth.as_ref(),
     };
     let bar = Progress::new("identifying", as_json);
-    let mut result = identify(&served, &experiment, &settings, &|stage| {
+    let mut result = identify(&served, &dataset, &settings, &|stage| {
         runs::tell(&bar, stage)
     })?;
     drop(bar);

@@ -105,18 +105,6 @@ fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Fa
     }
 }
 
-/// A name as part of a file's name: letters, digits, `-` and `_`; all else becomes `_`.
-pub(crate) fn file_stem(name: &str) -> String {
-    let keep = |c: char| {
-        if c.is_alphanumeric() || c == '-' {
-            c
-        } else {
-            '_'
-        }
-    };
-    name.chars().map(keep).collect()
-}
-
 /// More choices of kept actuators than this are not looked at.
 const PARTITIONS: usize = 1000;
 

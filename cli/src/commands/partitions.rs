@@ -7,11 +7,7 @@ use crate::{
     progress::Progress,
 };
 use overact::Model;
-use overact_identification::{
-    Experiment,
-    identify::{Choice, Study, study},
-    significant,
-};
+use overact_identification::{Choice, Dataset, Study, significant, study};
 use overact_robot::{InterpretedRobot, load::load_to_serve};
 use std::path::PathBuf;
 
@@ -44,13 +40,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let runs = arguments.runs.runs(&robot, &served, as_json)?;
     let settings = arguments.runs.settings(&robot, &info, &runs);
     let choices = choices(info.sizes.actuators, info.sizes.dof);
-    let experiment = Experiment {
+    let dataset = Dataset {
         runs: &runs.runs,
         validation: &runs.validation,
         true_values: runs.truth.as_ref(),
     };
     let bar = Progress::new("comparing", as_json);
-    let result = study(&served, &experiment, &choices, &settings, &|stage| {
+    let result = study(&served, &dataset, &choices, &settings, &|stage| {
         runs::tell(&bar, stage)
     })?;
     drop(bar);

@@ -2,6 +2,7 @@
 
 use crate::{
     failure::{Failure, Problem},
+    names::file_stem,
     output::{self, json, print, table},
     progress::Progress,
 };
@@ -153,7 +154,7 @@ fn files(
     let written = output.as_os_str().to_string_lossy();
     let is_folder = output.is_dir() || written.ends_with(std::path::is_separator);
     let file = |run: &str| {
-        let run = super::file_stem(run);
+        let run = file_stem(run);
         if is_folder {
             return output.join(format!("{run}.csv"));
         }

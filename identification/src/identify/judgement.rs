@@ -6,11 +6,19 @@ use std::fmt::Write as _;
 use overact::{Model, Symbol};
 
 use super::{
-    Experiment, Prepared,
+    dataset::Dataset,
+    prepare::Prepared,
     result::{CrossValidation, Estimate, Stage},
-    verdict::{Finding, FindingKind, Thresholds, Verdict},
+    verdict::Verdict,
 };
-use crate::{checks::torques, data::Log, error::Error, settings::Settings, significant};
+use crate::{
+    assessment::torques,
+    data::Log,
+    error::Error,
+    finding::{Finding, FindingKind, Thresholds},
+    settings::Settings,
+    significant,
+};
 
 /// Relative error of the base parameters (percent) above which faults of the data are looked for.
 const SUSPICIOUS_PERCENT: f64 = 5.0;
@@ -27,7 +35,7 @@ const CLEARLY_NEGATIVE: f64 = 5.0;
 /// A log that can't be read any more.
 pub(super) fn findings(
     model: &dyn Model,
-    experiment: &Experiment<'_>,
+    dataset: &Dataset<'_>,
     prepared: &Prepared,
     estimates: &[(usize, Estimate)],
     settings: &Settings,
@@ -47,7 +55,7 @@ pub(super) fn findings(
             let samples = (BEGINNING_SECONDS * log.sampling_frequency()) as usize;
             log.beginning(samples.max(settings.samples_needed()))
         };
-        let runs: Vec<Log> = experiment
+        let runs: Vec<Log> = dataset
             .runs
             .iter()
             .map(beginning)

@@ -3,19 +3,18 @@
 use overact::{Function, Model};
 
 use super::{
-    Prepared,
-    figures::{
-        Figures, LineResidual, PredictionFigures, ResidualFigures, ResidualSeries, RunFigures,
-    },
+    figures::{Figures, PredictionFigures, ResidualFigures},
+    prepare::Prepared,
     result::{CrossValidation, Estimate},
 };
 use crate::{
-    conditioning::{least_norm, product},
-    correlation::line_residual,
     error::Error,
-    regression::{Projection, System},
+    estimation::correlation::line_residual,
+    kinematics::distribution::{least_norm, product},
+    regression::system::{Projection, System},
+    series::{LineResidual, ResidualSeries, RunFigures, Series},
     settings::Settings,
-    validation::{Series, platform_input},
+    validation::platform_input,
 };
 
 /// The plots of an identification. Each estimate comes with the number of its projection; `others` are

@@ -13,20 +13,18 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::{
-    base::BaseParameters,
-    columns::ColumnSet,
     data::Log,
-    essential::Removal,
-    estimate::LineError,
-    observation::Seen,
-    regression::PartitionCondition,
+    estimation::{base::BaseParameters, essential::Removal, estimate::LineError},
+    finding::{Finding, Thresholds},
+    regression::{columns::ColumnSet, observation::Seen, system::PartitionCondition},
+    series::Series,
     settings::Settings,
-    validation::{Series, TorqueComparison, Validation},
+    validation::{TorqueComparison, Validation},
 };
 
 use super::{
     figures::Figures,
-    verdict::{Finding, Thresholds, TrackingError, Verdict},
+    verdict::{TrackingError, Verdict},
 };
 
 /// Everything that an identification found.

@@ -2,18 +2,25 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::{
-    Prepared,
+    prepare::Prepared,
+    progress::Progress,
     result::{Estimate, ParameterEstimate, Stage},
 };
 use crate::{
-    correlation::Noise,
-    elimination::eliminate,
     error::{Error, Problem},
-    essential::{Removal, essential},
-    estimate::{DATA_RANK_TOLERANCE, Estimation, estimate},
-    factor::Factor,
-    regression::{Projection, System},
+    estimation::{
+        correlation::Noise,
+        essential::{Removal, essential},
+        estimate::{Estimation, estimate},
+    },
+    regression::{
+        elimination::eliminate,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        system::{Projection, System},
+    },
     settings::Settings,
 };
 
@@ -80,6 +87,23 @@ pub fn estimate_projection(
         ),
         warnings,
     })
+}
+
+/// Estimates all prepared projections, in parallel.
+pub(super) fn estimate_all(
+    prepared: &Prepared,
+    settings: &Settings,
+    true_values: Option<&BTreeMap<String, f64>>,
+    progress: &dyn Fn(Progress<'_>),
+) -> Vec<Result<Outcome, Error>> {
+    for projection in &prepared.projections {
+        let model = projection.name();
+        progress(Progress::Estimation { model });
+    }
+    (0..prepared.projections.len())
+        .into_par_iter()
+        .map(|number| estimate_projection(prepared, number, settings, true_values))
+        .collect()
 }
 
 /// True values of the base parameters by place, where they are known.

@@ -10,16 +10,20 @@ use overact::Model;
 use serde::Serialize;
 
 use super::{
-    Experiment, Prepared, Progress, cross_validate, estimate_all, prepare,
-    result::{CrossValidation, Estimate, Stage},
-    stages::Outcome,
-    verdict::Thresholds,
+    cross_validation::cross_validate,
+    dataset::Dataset,
+    prepare::{Prepared, prepare},
+    progress::Progress,
+    result::{CrossValidation, Estimate, ParameterEstimate, Stage},
+    stages::{Outcome, estimate_all},
 };
 use crate::{
     error::Error,
-    essential::HeldOut,
-    regression::{PartitionCondition, Projection},
+    estimation::essential::HeldOut,
+    finding::Thresholds,
+    regression::system::{PartitionCondition, Projection},
     settings::Settings,
+    significant,
 };
 
 /// How well case 1 and every choice of case 2 do.
@@ -75,15 +79,15 @@ pub struct Choice {
 /// As [`prepare`], or data from which case 1 determines nothing.
 pub fn study(
     model: &dyn Model,
-    experiment: &Experiment<'_>,
+    dataset: &Dataset<'_>,
     choices: &[Vec<usize>],
     settings: &Settings,
     progress: &dyn Fn(Progress<'_>),
 ) -> Result<Study, Error> {
     let mut projections = vec![Projection::Platform];
     projections.extend(choices.iter().cloned().map(Projection::Actuators));
-    let prepared = prepare(model, experiment.runs, &projections, settings, progress)?;
-    let outcomes = estimate_all(&prepared, settings, experiment.true_values, progress);
+    let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
+    let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
     let reference = outcomes[0].as_ref().map_err(Clone::clone)?.clone();
     let estimated: Vec<(usize, Estimate)> = outcomes
         .iter()
@@ -93,7 +97,7 @@ pub fn study(
     let held_out = cross_validate(
         model,
         &prepared,
-        experiment.validation,
+        dataset.validation,
         &estimated,
         settings,
         progress,
@@ -151,7 +155,7 @@ fn choice(
     let (base, essential) = (&outcome.base, &outcome.essential);
     let partition = base.partition.clone();
     let limit = Thresholds::default().partition_condition;
-    let sum = |of: &dyn Fn(&super::ParameterEstimate) -> Option<f64>| -> Option<f64> {
+    let sum = |of: &dyn Fn(&ParameterEstimate) -> Option<f64>| -> Option<f64> {
         essential.parameters.iter().map(of).sum()
     };
     let errors: Vec<f64> = torques
@@ -254,7 +258,7 @@ fn warning(row: &Choice, platform: &Choice) -> Option<String> {
     } else {
         format!(
             "{names}: the condition number reaches {} ({}, t = {:.3} s), above {}",
-            crate::significant(partition.largest, 3),
+            significant(partition.largest, 3),
             partition.run,
             partition.time,
             Thresholds::default().partition_condition

@@ -13,8 +13,9 @@ use overact::{
 };
 use rayon::prelude::*;
 
+use super::conditioning::couples;
 use super::outside;
-use crate::{checks::couples, data::Log, error::Error};
+use crate::{data::Log, error::Error};
 
 /// Steps in which the first sample is approached from the home pose, should it be far from it.
 const APPROACH_STEPS: usize = 50;

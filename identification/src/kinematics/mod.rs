@@ -6,6 +6,9 @@
 //! and its derivative follow from eqs. (21) and (24). A robot without a loop is the same: its pose
 //! are its joint positions.
 
+pub(crate) mod conditioning;
+mod dense;
+pub(crate) mod distribution;
 mod forward;
 mod stream;
 
@@ -13,10 +16,9 @@ use overact::{Function, Model, math::wrap_angle};
 
 use crate::{
     blocks::evaluate,
-    checks,
     data::Log,
     error::{Error, Problem},
-    identify::verdict::Finding,
+    monitor::Monitor,
     settings::Settings,
 };
 
@@ -149,9 +151,9 @@ impl<'a> Motions<'a> {
         self.stream.done()
     }
 
-    /// What is suspicious in the raw numbers that have been gone through.
-    pub(crate) fn findings(self) -> Vec<Finding> {
-        checks::of_numbers(self.model, self.log, self.stream.into_monitor())
+    /// What has been watched of the raw numbers that have been gone through.
+    pub(crate) fn into_monitor(self) -> Monitor {
+        self.stream.into_monitor()
     }
 
     /// A motion without samples, to which blocks can be appended.

@@ -2,10 +2,10 @@
 //! block.
 
 use crate::{
-    checks::monitor::Monitor,
     data::{Log, Reader},
     error::Error,
     filters::{ZeroPhase, butterworth, central_differences},
+    monitor::Monitor,
     settings::Settings,
 };
 

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use overact::Sizes;
 
-use super::Series;
-use crate::estimate::LineError;
+use crate::{estimation::estimate::LineError, series::Series};
 
 /// Where measured and predicted values of one quantity stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,33 +16,20 @@ use serde::Serialize;
 
 use crate::{
     blocks::{BLOCK, slice},
-    checks,
-    conditioning::{least_multipliers, least_norm, product, transposed_product},
     data::Log,
     error::Error,
-    estimate::{LineError, overall, percent},
+    estimation::estimate::{LineError, overall, percent},
     filters::Decimator,
-    identify::{figures::RunFigures, verdict::Finding},
-    kinematics::{Motion, Motions},
-    observation::{Chunk, Observer, Points},
-    regression::Projection,
-    sink::Plan,
+    kinematics::{
+        Motion, Motions,
+        distribution::{least_multipliers, least_norm, product, transposed_product},
+    },
+    monitor::Monitor,
+    regression::{Chunk, observation::Observer, points::Points, sink::Plan, system::Projection},
+    series::{RunFigures, Series},
 };
 
 use layout::{Layout, Pair, Sums};
-
-/// Measured and predicted values of one line or torque, decimated.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Series {
-    /// Name of the coordinate or actuator.
-    pub name: String,
-    /// Times, s from the start of the log.
-    pub time: Vec<f64>,
-    /// Measured values (N, N m).
-    pub measured: Vec<f64>,
-    /// Predicted values (N, N m).
-    pub predicted: Vec<f64>,
-}
 
 /// One actuator's entry in Table 3.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -98,8 +85,10 @@ pub(crate) struct Validated {
     pub(crate) validations: Vec<Result<Validation, Error>>,
     /// The motion of the run, for plots.
     pub(crate) motion: RunFigures,
-    /// What is suspicious in it.
-    pub(crate) findings: Vec<Finding>,
+    /// Largest miss of the loops' closure by the measured actuators (m, rad).
+    pub(crate) closure_residual: f64,
+    /// What has been watched of its raw numbers.
+    pub(crate) monitor: Monitor,
 }
 
 /// Compares a run with the predictions of several sets of parameters. A projection that is singular on
@@ -122,7 +111,13 @@ pub(crate) fn validate(
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
     let plan = Plan::new(decimator.kept(samples), 0);
     let stride = plan.stride();
-    let mut points = Points::new(observer, log, &decimator, samples, &plan);
+    let mut points = Points::new(
+        (observer.model, observer.projections, observer.settings),
+        log,
+        &decimator,
+        samples,
+        &plan,
+    );
     let mut sums = Sums::new(&layout, stride);
     let mut closure_residual = 0.0_f64;
     while let Some(motion) = motions.next()? {
@@ -175,7 +170,8 @@ pub(crate) fn validate(
     Ok(Validated {
         validations,
         motion: points.figures,
-        findings: checks::of_run(observer.model, log, motions, closure_residual)?,
+        closure_residual,
+        monitor: motions.into_monitor(),
     })
 }
 

@@ -2,14 +2,14 @@
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, escape, figure, key, paragraph},
+    markup::{Cell, Section, Table, figure, key, paragraph},
     select::case_heading,
 };
-use crate::plot::{Axis, Chart, Line, Look, Rule};
-use overact_identification::identify::{
-    Identification,
-    figures::{ConditionSeries, RunFigures},
+use crate::{
+    escape::escape,
+    plot::{Axis, Chart, Line, Look, Rule},
 };
+use overact_identification::{ConditionSeries, Identification, RunFigures};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

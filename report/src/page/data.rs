@@ -5,14 +5,11 @@ use std::fmt::Write;
 use super::{
     Contents,
     header::base64,
-    markup::{Cell, Section, Table, escape, paragraph},
+    markup::{Cell, Section, Table, paragraph},
 };
 
-use overact_identification::{
-    identify::Identification,
-    settings::{Normalisation, Settings},
-    significant,
-};
+use crate::escape::escape;
+use overact_identification::{Identification, Normalisation, Settings, significant};
 
 /// The runs and the settings.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -4,11 +4,14 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, details, escape, figure, key, paragraph},
+    markup::{Cell, Section, Table, details, figure, key, paragraph},
     select::{case_heading, finals},
 };
-use crate::plot::{Axis, Chart, Line, Look, Rule};
-use overact_identification::{essential::Removal, identify::Estimate, significant};
+use crate::{
+    escape::escape,
+    plot::{Axis, Chart, Line, Look, Rule},
+};
+use overact_identification::{Estimate, Removal, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{escape, paragraph},
+    markup::paragraph,
     select::{case_heading, finals},
 };
+use crate::escape::escape;
 use overact_identification::significant;
 
 /// The head of the page.

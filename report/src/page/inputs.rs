@@ -3,17 +3,16 @@
 
 use super::{
     Contents,
-    markup::{Section, details, escape, figure, key},
+    markup::{Section, details, figure, key},
     select::{case, case_heading, durations, finals, is_final, relative_error, worst_part},
 };
 use crate::{
-    Units,
+    escape::escape,
     plot::{Axis, Chart, Line, Look},
+    units::Units,
     units::with_unit,
 };
-use overact_identification::{
-    identify::figures::PredictionFigures, significant, validation::Series,
-};
+use overact_identification::{PredictionFigures, Series, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -5,7 +5,7 @@ use super::{
     markup::{Cell, Section, Table, paragraph},
     select::{case_heading, finals},
 };
-use overact_identification::identify::{Identification, Stage};
+use overact_identification::{Identification, Stage};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

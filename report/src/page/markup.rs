@@ -3,28 +3,8 @@
 
 use std::fmt::Write;
 
-use crate::plot::power_of_ten;
+use crate::{escape::escape, plot::power_of_ten};
 use overact_identification::significant;
-
-/// A text as it may stand in an element or an attribute. Control characters, which a page may not
-/// hold, become the replacement character.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            '\n' | '\t' => escaped.push(character),
-            '\u{FFFE}' | '\u{FFFF}' => escaped.push('\u{FFFD}'),
-            other if other.is_control() => escaped.push('\u{FFFD}'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
-}
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -228,7 +208,8 @@ pub(super) fn with_deviation(value: f64, deviation: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cell, Table, escape, with_deviation};
+    use super::{Cell, Table, with_deviation};
+    use crate::escape::escape;
 
     #[test]
     fn no_text_becomes_markup() {

@@ -23,10 +23,11 @@ mod trajectories;
 mod validation;
 mod verdict;
 
-use markup::{Section, escape};
+use markup::Section;
 
-use super::{Published, Units};
-use overact_identification::identify::Identification;
+use crate::escape::escape;
+use crate::{published::Published, units::Units};
+use overact_identification::Identification;
 
 /// The style: colours for light and dark, a width that suits reading, plots side by side where there
 /// is room.

@@ -5,18 +5,16 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, details, escape, figure, key, paragraph, with_deviation},
+    markup::{Cell, Section, Table, details, figure, key, paragraph, with_deviation},
     select::{case, case_heading, finals, look, projection},
 };
 use crate::{
+    escape::escape,
     plot::{Axis, Bar, Forest},
     published::PublishedEstimate,
     terminal::signed_term,
 };
-use overact_identification::{
-    identify::{Estimate, Identification, ParameterEstimate, Stage},
-    significant,
-};
+use overact_identification::{Estimate, Identification, ParameterEstimate, Stage, significant};
 
 /// Error bars longer than this (percent) are told of and not drawn: they would hide all others.
 const LONGEST_BAR: f64 = 100.0;

@@ -2,17 +2,15 @@
 
 use super::{
     Contents,
-    markup::{Section, details, escape, figure, paragraph},
+    markup::{Section, details, figure, paragraph},
     select::{case, case_heading, is_final, look},
 };
 use crate::{
-    Units,
+    escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
+    units::Units,
 };
-use overact_identification::{
-    identify::figures::{LineResidual, ResidualFigures, ResidualSeries},
-    significant,
-};
+use overact_identification::{LineResidual, ResidualFigures, ResidualSeries, significant};
 
 /// A white residual has this part of its autocorrelations within the bound; chance leaves it a little
 /// less.

@@ -3,10 +3,7 @@
 use std::ops::Range;
 
 use crate::plot::Look;
-use overact_identification::{
-    identify::{Estimate, Identification, Stage},
-    validation::Series,
-};
+use overact_identification::{Estimate, Identification, Series, Stage};
 
 /// Points of a series that a plot can show without becoming a blot.
 const READABLE: usize = 300;

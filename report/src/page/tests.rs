@@ -5,7 +5,7 @@ mod example;
 use super::{Attachment, Contents, page};
 use crate::{Units, numbers};
 use example::{HOSTILE, identification, published, series, settings, units};
-use overact_identification::identify::{Identification, figures::Figures, verdict::Thresholds};
+use overact_identification::{Figures, Identification, Thresholds};
 use roxmltree::{Document, ParsingOptions};
 
 /// The page of an identification; everything that can be shown is.

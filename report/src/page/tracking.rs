@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, escape, paragraph},
+    markup::{Cell, Section, Table, paragraph},
 };
+use crate::escape::escape;
 
 /// Tracking errors of one controller on one run.
 struct Entry<'a> {

@@ -2,14 +2,15 @@
 
 use super::{
     Contents,
-    markup::{Section, escape, figure, key},
+    markup::{Section, figure, key},
 };
 use crate::{
-    Units,
+    escape::escape,
     plot::{Axis, Chart, Line, Look},
+    units::Units,
     units::with_unit,
 };
-use overact_identification::identify::figures::RunFigures;
+use overact_identification::RunFigures;
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

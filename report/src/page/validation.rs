@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use super::{
     Contents, inputs,
-    markup::{Cell, Section, Table, escape, paragraph},
+    markup::{Cell, Section, Table, paragraph},
     select::{case, is_final},
 };
-use overact_identification::identify::{CrossValidation, Identification};
+use crate::escape::escape;
+use overact_identification::{CrossValidation, Identification};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

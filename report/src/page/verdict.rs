@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use super::{
     Contents,
-    markup::{Cell, Section, Table, details, escape, paragraph},
+    markup::{Cell, Section, Table, details, paragraph},
 };
 
-use overact_identification::{identify::Identification, significant};
+use crate::escape::escape;
+use overact_identification::{Identification, significant};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {

@@ -7,7 +7,7 @@ use super::{
     axis::{Axis, Scale},
     short,
 };
-use crate::page::markup::escape;
+use crate::escape::escape;
 
 /// Height of a chart in SVG units.
 const HEIGHT: f64 = 230.0;

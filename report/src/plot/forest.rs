@@ -8,7 +8,7 @@ use super::{
     chart::{Look, opening},
     short,
 };
-use crate::page::markup::escape;
+use crate::escape::escape;
 
 /// Where the rows begin at the left, and where they end.
 const LEFT: f64 = 112.0;

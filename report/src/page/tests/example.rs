@@ -6,20 +6,10 @@ use crate::{
 };
 use overact::{Info, Sizes};
 use overact_identification::{
-    essential::{Drift, Removal},
-    estimate::LineError,
-    identify::{
-        BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping,
-        Run, Stage,
-        figures::{
-            ConditionSeries, Figures, LineResidual, PredictionFigures, ResidualFigures,
-            ResidualSeries, RunFigures,
-        },
-        verdict::{Finding, FindingKind, Thresholds, TrackingError, Verdict},
-    },
-    regression::PartitionCondition,
-    settings::{Normalisation, Settings},
-    validation::{Series, TorqueComparison},
+    BaseParameter, ConditionSeries, CrossValidation, Drift, Estimate, Figures, Finding,
+    FindingKind, Identification, LineError, LineResidual, Normalisation, ParameterEstimate,
+    PartitionCondition, PredictionFigures, Regrouping, Removal, ResidualFigures, ResidualSeries,
+    Run, RunFigures, Series, Settings, Stage, Thresholds, TorqueComparison, TrackingError, Verdict,
 };
 
 /// A name that breaks whatever does not escape it.

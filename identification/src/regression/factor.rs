@@ -6,7 +6,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::{elimination::residual, estimate::DATA_RANK_TOLERANCE};
+use super::elimination::residual;
+
+/// Columns whose part outside the others is below this part of their norm are dependent on the
+/// data.
+pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
 
 /// Rows are taken in blocks of this many times the number of columns.
 const BLOCK_RATIO: usize = 4;

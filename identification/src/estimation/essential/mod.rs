@@ -21,13 +21,14 @@ mod held_out;
 
 use serde::Serialize;
 
-use crate::{
+use super::{
     correlation::Noise,
-    error::Error,
     estimate::{Estimation, condition, fit},
-    factor::Factor,
-    identify::verdict::Thresholds,
-    regression::System,
+};
+use crate::{
+    error::Error,
+    finding::Thresholds,
+    regression::{factor::Factor, system::System},
     settings::Settings,
 };
 

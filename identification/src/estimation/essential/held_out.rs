@@ -3,11 +3,11 @@
 //! A fold is a run, where the other runs determine the parameters without it; else it is the same part
 //! of every run. From R factors, a fold costs one small factorisation, however long the runs are.
 
-use crate::{
+use super::super::estimate::percent;
+use crate::regression::{
     elimination::eliminate,
-    estimate::{DATA_RANK_TOLERANCE, percent},
-    factor::Factor,
-    regression::{Part, System},
+    factor::{DATA_RANK_TOLERANCE, Factor},
+    system::{Part, System},
 };
 
 /// The folds of a system.

@@ -1,10 +1,12 @@
 //! Deviations against repetitions of synthetic experiments.
 
+use super::super::estimate::{Estimation, estimate};
 use super::{Noise, line_residual};
 use crate::{
-    estimate::{Estimation, estimate},
-    factor::Factor,
-    regression::{Projection, Stretch, System},
+    regression::{
+        factor::Factor,
+        system::{Projection, Stretch, System},
+    },
     settings::{Normalisation, Settings},
 };
 use nalgebra::DMatrix;

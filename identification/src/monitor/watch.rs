@@ -2,12 +2,14 @@
 //! encoders that are stuck, samples that are lost, a robot that stands still.
 
 use super::{
+    clipping::clipping,
     peaks,
     statistics::{Extreme, Histogram, Means},
 };
 use crate::{
     data::Samples,
-    identify::verdict::{Finding, FindingKind},
+    finding::{Finding, FindingKind},
+    significant,
 };
 
 /// Equal values in a row that count as a rest of a signal (s).
@@ -271,7 +273,7 @@ impl Monitor {
             let samples: usize = found.iter().map(|(count, _)| count).sum();
             let levels: Vec<String> = found
                 .iter()
-                .map(|(_, value)| crate::significant(*value, 5))
+                .map(|(_, value)| significant(*value, 5))
                 .collect();
             findings.push(clipping(
                 run,
@@ -281,20 +283,6 @@ impl Monitor {
             ));
         }
         findings
-    }
-}
-
-/// The finding of a torque that is clipped for a part of the samples.
-pub(super) fn clipping(run: &str, actuator: &str, part: f64, levels: &[String]) -> Finding {
-    Finding {
-        kind: FindingKind::ClippedTorque,
-        run: Some(run.to_owned()),
-        actuator: Some(actuator.to_owned()),
-        message: format!(
-            "the torque is clipped at {} for {:.1} % of the time: the drive or its measurement saturates, and parameters come out too small; move less fast, or leave the run out",
-            levels.join(" and "),
-            100.0 * part
-        ),
     }
 }
 

@@ -5,8 +5,8 @@
 //! bands within another T/2 on either side, being a parabola. One that is cut off falls with the slope
 //! with which it came.
 
-use super::monitor::clipping;
-use crate::identify::verdict::Finding;
+use super::clipping::clipping;
+use crate::{finding::Finding, significant};
 
 /// Width of the band by the range.
 const BAND: f64 = 0.01;
@@ -37,7 +37,7 @@ pub(crate) fn findings(run: &str, names: &[&str], torques: &[f64]) -> Vec<Findin
         let ends = [(low, -extreme(&mirrored)), (high, extreme(&own))];
         let levels = ends.iter().filter(|(part, _)| *part > 0.0);
         let levels: Vec<String> = levels
-            .map(|(_, level)| format!("about {}", crate::significant(*level, 3)))
+            .map(|(_, level)| format!("about {}", significant(*level, 3)))
             .collect();
         Some(clipping(run, name, high + low, &levels))
     };

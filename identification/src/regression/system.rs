@@ -6,7 +6,7 @@
 //! eq. (1) for a robot without a loop.
 //!
 //! Y and every column are decimated in parallel (40) and their rows sorted by line of Γ (41). What is
-//! kept of them does not grow with the data: one R [`factor`](crate::factor) for each line and part of
+//! kept of them does not grow with the data: one R [`factor`](crate::regression::factor) for each line and part of
 //! a run, and some stretches of successive equations, from which the correlation of the residual is
 //! told.
 
@@ -14,7 +14,8 @@ use nalgebra::DMatrix;
 use overact::Info;
 use serde::{Serialize, Serializer};
 
-use crate::{error::Problem, factor::Factor, kinematics::Motion};
+use super::factor::Factor;
+use crate::{error::Problem, kinematics::Motion};
 
 /// On what the inputs are projected.
 #[derive(Debug, Clone, PartialEq, Eq)]

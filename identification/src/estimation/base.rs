@@ -15,10 +15,12 @@ use nalgebra::DMatrix;
 use overact::{Body, Model, Symbol};
 
 use crate::{
-    columns::{Column, ColumnSet, Direction},
-    elimination::{Elimination, eliminate},
     error::{Error, Problem},
-    states::{States, random_states},
+    regression::{
+        columns::{Column, ColumnSet, Direction},
+        elimination::{Elimination, eliminate},
+        states::{States, random_states},
+    },
 };
 
 /// A column is dependent when the part of it outside the kept ones is below this part of its norm.

@@ -11,15 +11,14 @@ use overact::{Function, Model};
 
 use super::positions;
 use crate::{
-    base::{BaseParameters, PayloadUse, base_parameters},
     blocks::{BLOCK, slice},
-    columns::ColumnSet,
     data::Log,
     error::Error,
-    factor::Factor,
+    estimation::base::{BaseParameters, PayloadUse, base_parameters},
     filters::Decimator,
-    identify::verdict::{Finding, FindingKind},
+    finding::{Finding, FindingKind},
     kinematics::Motions,
+    regression::{columns::ColumnSet, factor::Factor},
     settings::Settings,
 };
 

@@ -1,43 +1,27 @@
 //! Data that can't be right, found where the data allow it and named.
 //!
-//! - [`monitor`]: what the raw numbers of a run tell by themselves;
-//! - [`peaks`]: torques that are flat at their extremes;
-//! - [`positions`]: positions that contradict the loops, and what would make them close;
-//! - [`torques`]: torques that contradict the model, and which fault would explain them.
+//! - `positions`: positions that contradict the loops, and what would make them close;
+//! - `torques`: torques that contradict the model, and which fault would explain them.
 
-pub(crate) mod monitor;
-pub(crate) mod peaks;
-pub(crate) mod positions;
-mod statistics;
+mod positions;
 pub(crate) mod torques;
 
 use std::f64::consts::TAU;
 
-use overact::{Function, Model};
+use overact::Model;
 
 use crate::{
-    conditioning::{Choice, home_scales},
     data::Log,
     error::Error,
-    identify::verdict::{Finding, FindingKind, Thresholds},
-    kinematics::Motions,
+    finding::{Finding, FindingKind, Thresholds},
+    kinematics::conditioning::couples,
+    monitor::Monitor,
 };
 
-use monitor::Monitor;
 use positions::Fault;
 
 /// Joints of serial robots do not turn farther than this (rad) from zero.
 const LARGEST_ANGLE: f64 = 2.0 * TAU;
-
-/// Whether the loops couple all actuators: J_p^inv at home is not the identity.
-pub(crate) fn couples(model: &dyn Model) -> bool {
-    let info = model.info();
-    let (n, r) = (info.sizes.actuators, info.sizes.dof);
-    let mut jacobian = vec![0.0; n * r];
-    let evaluated = model.evaluate(Function::InverseJacobian, &[info.home_pose], &mut jacobian);
-    let choice = Choice::new((0..n).collect(), &home_scales(model));
-    evaluated.is_ok() && !choice.is_identity(&jacobian)
-}
 
 /// What is suspicious in a run that has been gone through: its raw numbers and the closure of its
 /// loops.
@@ -47,10 +31,10 @@ pub(crate) fn couples(model: &dyn Model) -> bool {
 pub(crate) fn of_run(
     model: &dyn Model,
     log: &Log,
-    motions: Motions<'_>,
+    monitor: Monitor,
     closure_residual: f64,
 ) -> Result<Vec<Finding>, Error> {
-    let mut findings = motions.findings();
+    let mut findings = of_numbers(model, log, monitor);
     if closure_residual > Thresholds::default().closure_residual {
         findings.push(Finding {
             kind: FindingKind::Closure,
@@ -95,7 +79,7 @@ fn monitored(model: &dyn Model, log: &Log) -> Vec<Finding> {
 }
 
 /// What is suspicious in raw numbers that a monitor has watched.
-pub(crate) fn of_numbers(model: &dyn Model, log: &Log, monitor: Monitor) -> Vec<Finding> {
+fn of_numbers(model: &dyn Model, log: &Log, monitor: Monitor) -> Vec<Finding> {
     let info = model.info();
     let coupled = couples(model);
     let revolute = monitor

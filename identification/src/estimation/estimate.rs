@@ -11,16 +11,14 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::{
-    elimination::residual,
     error::{Error, Problem},
-    factor::Factor,
-    regression::{System, condition_number},
+    regression::{
+        elimination::residual,
+        factor::{DATA_RANK_TOLERANCE, Factor},
+        system::{System, condition_number},
+    },
     settings::{Normalisation, Settings},
 };
-
-/// Columns whose part outside the others is below this part of their norm are dependent on the
-/// data.
-pub(crate) const DATA_RANK_TOLERANCE: f64 = 1e-10;
 
 /// A line whose residual is below this part of its norm is exact but for rounding.
 const EXACT: f64 = 1e-9;
@@ -107,7 +105,7 @@ pub(crate) fn percent(part: f64, whole: f64) -> f64 {
 
 /// The errors of given parameters on every line of a system.
 #[must_use]
-pub fn line_errors(system: &System, selected: &[usize], values: &[f64]) -> Vec<LineError> {
+pub(crate) fn line_errors(system: &System, selected: &[usize], values: &[f64]) -> Vec<LineError> {
     system
         .lines
         .iter()

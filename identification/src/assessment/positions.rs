@@ -8,7 +8,7 @@ use overact::{Function, Model, math::wrap_angle};
 use crate::{
     data::Log,
     error::Error,
-    identify::verdict::{Finding, FindingKind, Thresholds},
+    finding::{Finding, FindingKind, Thresholds},
     kinematics::approach,
 };
 

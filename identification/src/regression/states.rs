@@ -20,22 +20,22 @@ const LARGEST_ACCELERATION: f64 = 10.0;
 
 /// States of a robot, sample after sample.
 #[derive(Debug, Clone, PartialEq)]
-pub struct States {
+pub(crate) struct States {
     /// Number of states.
-    pub samples: usize,
+    pub(crate) samples: usize,
     /// Poses, samples x pose coordinates (m, rad).
-    pub pose: Vec<f64>,
+    pub(crate) pose: Vec<f64>,
     /// Twist coordinates, samples x r (m/s, rad/s).
-    pub twist: Vec<f64>,
+    pub(crate) twist: Vec<f64>,
     /// Accelerations, samples x r (m/s², rad/s²).
-    pub acceleration: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
 }
 
 /// Draws `count` random states at which the model has a value; one `seed`, one result.
 ///
 /// # Errors
 /// A model that has no value even next to its home pose.
-pub fn random_states(model: &dyn Model, count: usize, seed: u64) -> Result<States, Error> {
+pub(crate) fn random_states(model: &dyn Model, count: usize, seed: u64) -> Result<States, Error> {
     let info = model.info();
     let dof = info.sizes.dof;
     let mut generator = Pcg64::seed_from_u64(seed);

@@ -28,11 +28,13 @@
 use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 
-use crate::{
+use super::{
     estimate::Estimation,
     fourier::{Fourier, Spectrum},
-    identify::figures::LineResidual,
-    regression::{Stretch, System},
+};
+use crate::{
+    regression::system::{Stretch, System},
+    series::LineResidual,
 };
 
 /// Equations of a line that are transformed at once.

@@ -5,12 +5,11 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::{
+use super::{
     factor::Factor,
-    filters::Decimation,
-    identify::figures::LARGEST_SERIES,
-    regression::{Observed, Part, PartitionCondition, Stretch},
+    system::{Observed, Part, PartitionCondition, Stretch},
 };
+use crate::{filters::Decimation, series::LARGEST_SERIES};
 
 /// Parts of a run, of which each can be held out.
 const PARTS: usize = 5;

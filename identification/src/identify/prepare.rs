@@ -1,0 +1,236 @@
+//! The data as the projections see them: one pass over the runs for all projections.
+
+use nalgebra::DMatrix;
+use overact::Model;
+
+use super::{progress::Progress, result::Run};
+use crate::{
+    assessment,
+    data::Log,
+    error::{Error, Problem},
+    estimation::base::{BaseParameters, PayloadUse, base_parameters},
+    finding::Finding,
+    kinematics,
+    regression::{
+        columns::ColumnSet,
+        observation::{Observer, Seen},
+        system::{Observed, Projection, System},
+    },
+    settings::{Settings, check_partition},
+};
+
+/// Values of all runs and projections that are kept as successive equations (64 MB).
+const LARGEST_STRETCHES: usize = 1 << 23;
+
+/// The data as the projections see them: their systems, the columns and the base parameters.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// The columns of the model.
+    pub columns: ColumnSet,
+    /// The base parameters.
+    pub base: BaseParameters,
+    /// How the payload takes part.
+    pub payload: PayloadUse,
+    /// The projections.
+    pub projections: Vec<Projection>,
+    /// For each projection, its system in the base parameters, or why it has none.
+    pub systems: Vec<Result<System, Error>>,
+    /// The runs.
+    pub runs: Vec<Run>,
+    /// What is told of the runs beside their equations.
+    pub(super) seen: Vec<Seen>,
+    /// What is suspicious in them.
+    pub(super) findings: Vec<Finding>,
+    /// For each run and projection, the equations of each line at the points of the plots.
+    pub(super) points: Vec<Vec<Vec<DMatrix<f64>>>>,
+}
+
+impl Prepared {
+    /// Names of the standard parameters that have no effect on the model.
+    #[must_use]
+    pub fn without_effect(&self) -> Vec<String> {
+        let columns = self.columns.as_slice();
+        let named = self
+            .base
+            .without_effect
+            .iter()
+            .filter_map(|&index| columns.get(index));
+        named.map(|column| column.name.clone()).collect()
+    }
+}
+
+/// Finds the base parameters and goes through the runs, once for all projections.
+///
+/// # Errors
+/// Settings that are not possible, no run, runs that do not fit the robot or leave its workspace (the
+/// problems of all runs together), projections that are not possible. Kept actuators that are singular
+/// at a sample are an error of their system.
+pub fn prepare(
+    model: &dyn Model,
+    runs: &[Log],
+    projections: &[Projection],
+    settings: &Settings,
+    progress: &dyn Fn(Progress<'_>),
+) -> Result<Prepared, Error> {
+    let info = model.info();
+    settings.check(&info)?;
+    check_projections(projections, model)?;
+    let payload = payload_use(model, runs)?;
+    check_runs(model, runs, settings)?;
+    progress(Progress::Base);
+    let columns = ColumnSet::new(
+        model,
+        payload != PayloadUse::Absent,
+        settings.asymmetric_friction,
+        settings.seed,
+    )?;
+    let base = base_parameters(model, &columns, payload, settings.seed)?;
+    // Relations between columns are those of the model; reversals are those of the data.
+    let columns = columns.with_reversals(model, settings)?;
+    let observer = Observer {
+        model,
+        columns: &columns,
+        base: &base.columns,
+        projections,
+        settings,
+    };
+    let new =
+        |projection: &Projection| Ok(System::new(projection.clone(), &info, base.columns.len()));
+    let mut systems: Vec<Result<System, Error>> = projections.iter().map(new).collect();
+    let (mut seen, mut points, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    let mut findings = Vec::new();
+    for (number, log) in runs.iter().enumerate() {
+        let run = log.name();
+        let report = |done, samples| progress(Progress::Run { run, done, samples });
+        let budget = LARGEST_STRETCHES / runs.len();
+        let observed = observer.run(number, log, budget, &report);
+        let judged = observed.and_then(|(observed, told)| {
+            let (monitor, closure) = (told.monitor.clone(), told.closure_residual);
+            let found = assessment::of_run(model, log, monitor, closure)?;
+            Ok((observed, told, found))
+        });
+        match judged {
+            Ok((observed, told, found)) => {
+                findings.extend(found);
+                seen.push(told);
+                points.push(add(&mut systems, observed));
+            }
+            Err(error) => problems.extend(assessment::explained(model, log, error).problems),
+        }
+    }
+    Error::check(problems)?;
+    let runs = runs.iter().zip(&seen);
+    Ok(Prepared {
+        runs: runs.map(|(log, seen)| Run::new(log, seen)).collect(),
+        projections: projections.to_vec(),
+        columns,
+        base,
+        payload,
+        systems,
+        seen,
+        findings,
+        points,
+    })
+}
+
+/// Adds what a run holds to the systems, and gives back the equations at the points of the plots.
+fn add(
+    systems: &mut [Result<System, Error>],
+    observed: Vec<Result<Observed, Error>>,
+) -> Vec<Vec<DMatrix<f64>>> {
+    let mut points = Vec::new();
+    for (system, observed) in systems.iter_mut().zip(observed) {
+        match (system.as_mut(), observed) {
+            (Ok(own), Ok(mut observed)) => {
+                points.push(std::mem::take(&mut observed.points));
+                own.extend(observed);
+            }
+            (Ok(_), Err(error)) => {
+                points.push(Vec::new());
+                *system = Err(error);
+            }
+            (Err(_), _) => points.push(Vec::new()),
+        }
+    }
+    points
+}
+
+/// Checks the kept actuators of all projections.
+fn check_projections(projections: &[Projection], model: &dyn Model) -> Result<(), Error> {
+    let problem = |projection: &Projection| match projection {
+        Projection::Actuators(kept) => check_partition(kept, &model.info()),
+        _ => None,
+    };
+    Error::check(projections.iter().filter_map(problem).collect())
+}
+
+/// Checks whether runs fit the robot and the settings, before the long work.
+pub(super) fn check_runs(
+    model: &dyn Model,
+    runs: &[Log],
+    settings: &Settings,
+) -> Result<(), Error> {
+    let check = |log: &Log| kinematics::check(model, log, settings).err();
+    let errors = runs.iter().filter_map(check);
+    Error::check(errors.flat_map(|error| error.problems).collect())
+}
+
+/// How the payload takes part in the runs.
+fn payload_use(model: &dyn Model, runs: &[Log]) -> Result<PayloadUse, Error> {
+    let info = model.info();
+    if runs.is_empty() {
+        return Err(Problem::new("there is no run to identify from")
+            .help("give at least one log")
+            .into());
+    }
+    let loaded: Vec<&Log> = runs.iter().filter(|log| log.payload()).collect();
+    if info.payload_parameters.is_empty() {
+        Error::check(
+            loaded
+                .iter()
+                .map(|log| {
+                    Problem::new(format!(
+                        "the run carries a payload, but the description of `{}` has none",
+                        info.name
+                    ))
+                    .file(log.name())
+                    .help("add a payload to the description, or declare the run unloaded")
+                })
+                .collect(),
+        )?;
+    }
+    Ok(match loaded.len() {
+        0 => PayloadUse::Absent,
+        count if count == runs.len() => PayloadUse::Regrouped,
+        _ => PayloadUse::Separate,
+    })
+}
+
+/// What the user should know before any estimate.
+pub(super) fn prepared_warnings(prepared: &Prepared, others: &[Log]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if prepared.payload == PayloadUse::Regrouped {
+        warnings.push(String::from(
+            "the payload's parameters are not identifiable without unloaded runs: they are regrouped into the platform's",
+        ));
+    }
+    for other in others {
+        let known = match prepared.payload {
+            PayloadUse::Absent => !other.payload(),
+            PayloadUse::Regrouped => other.payload(),
+            PayloadUse::Separate => true,
+        };
+        if !known {
+            warnings.push(format!(
+                "{}: the cross-validation run {} the payload, unlike the runs identified from",
+                other.name(),
+                if other.payload() {
+                    "carries"
+                } else {
+                    "does not carry"
+                }
+            ));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,120 @@
+//! The torques of redundant actuators that give wanted inputs of the platform.
+
+use super::dense::invert;
+
+/// J (Jᵀ J)^-1 of J_p^inv (n x r, row-major), which turns Γ¹ into the torques of least norm; `None` where
+/// the actuators do not determine the platform.
+pub(crate) fn least_norm(jacobian: &[f64], r: usize) -> Option<Vec<f64>> {
+    distribution(jacobian, jacobian, r)
+}
+
+/// Bᵀ B J (Jᵀ Bᵀ B J)^-1 with B_p of the closure (n x n): with A_p = -B_p J_p^inv, this is what turns Γ¹
+/// into the torques -B_pᵀ λ of eq. (26) without overconstraint, λ being of least norm in A_pᵀ λ = Γ¹. (The
+/// multipliers of the legs in (26) are determined without a choice.)
+pub(crate) fn least_multipliers(jacobian: &[f64], closure: &[f64], r: usize) -> Option<Vec<f64>> {
+    let n = jacobian.len() / r.max(1);
+    let platform: Vec<f64> = closure
+        .chunks_exact(n)
+        .flat_map(|row| transposed_product(jacobian, row, r))
+        .collect();
+    // Row i of Bᵀ (B J) is the product of column i of B with B J.
+    let weighted: Vec<f64> = (0..n)
+        .flat_map(|i| {
+            let column: Vec<f64> = closure.iter().skip(i).step_by(n).copied().collect();
+            transposed_product(&platform, &column, r)
+        })
+        .collect();
+    distribution(jacobian, &weighted, r)
+}
+
+/// M (Jᵀ M)^-1 of two n x r matrices.
+fn distribution(jacobian: &[f64], weighted: &[f64], r: usize) -> Option<Vec<f64>> {
+    let mut normal = vec![0.0; r * r];
+    for (row, weighted) in jacobian.chunks_exact(r).zip(weighted.chunks_exact(r)) {
+        for (i, a) in row.iter().enumerate() {
+            for (j, b) in weighted.iter().enumerate() {
+                normal[i * r + j] += a * b;
+            }
+        }
+    }
+    let mut inverse = vec![0.0; r * r];
+    inverse.iter_mut().step_by(r + 1).for_each(|one| *one = 1.0);
+    if !invert(&mut normal, &mut inverse, r) {
+        return None;
+    }
+    let mut product = vec![0.0; jacobian.len()];
+    for (row, target) in weighted.chunks_exact(r).zip(product.chunks_exact_mut(r)) {
+        for (a, inverse) in row.iter().zip(inverse.chunks_exact(r)) {
+            target
+                .iter_mut()
+                .zip(inverse)
+                .for_each(|(t, i)| *t += a * i);
+        }
+    }
+    Some(product)
+}
+
+/// Product of a matrix (rows of the vector's length) with a vector.
+pub(crate) fn product(matrix: &[f64], vector: &[f64], result: &mut [f64]) {
+    for (row, result) in matrix.chunks_exact(vector.len()).zip(result) {
+        *result = row.iter().zip(vector).map(|(a, b)| a * b).sum();
+    }
+}
+
+/// Product of the transpose of a matrix of `r` columns with a vector: Γ¹ = J_p^invᵀ τ.
+pub(crate) fn transposed_product(matrix: &[f64], vector: &[f64], r: usize) -> Vec<f64> {
+    let mut result = vec![0.0; r];
+    for (row, factor) in matrix.chunks_exact(r).zip(vector) {
+        result
+            .iter_mut()
+            .zip(row)
+            .for_each(|(result, a)| *result += a * factor);
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{least_multipliers, least_norm, product, transposed_product};
+    use nalgebra::DMatrix;
+
+    /// With B = 1 both distributions agree; with any B they satisfy the model, and the multipliers are
+    /// those of the pseudo-inverse.
+    #[test]
+    fn torques_satisfy_the_model() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let (n, r) = (4, 3);
+        let jacobian: Vec<f64> = (0..n * r).map(|_| random()).collect();
+        let closure: Vec<f64> = (0..n * n).map(|_| random()).collect();
+        let gamma = [0.3, -1.0, 2.0];
+        let torques = |distribution: &[f64]| {
+            let mut torques = vec![0.0; n];
+            product(distribution, &gamma, &mut torques);
+            torques
+        };
+        let identity = DMatrix::<f64>::identity(n, n);
+        let plain = torques(&least_norm(&jacobian, r).expect("regular"));
+        let same = least_multipliers(&jacobian, identity.as_slice(), r).expect("regular");
+        let found = torques(&least_multipliers(&jacobian, &closure, r).expect("regular"));
+        for (a, b) in plain.iter().zip(torques(&same)) {
+            assert!((a - b).abs() < 1e-12);
+        }
+        for (a, b) in transposed_product(&jacobian, &found, r).iter().zip(gamma) {
+            assert!((a - b).abs() < 1e-11);
+        }
+        let (b, j) = (
+            DMatrix::from_row_slice(n, n, &closure),
+            DMatrix::from_row_slice(n, r, &jacobian),
+        );
+        let a = -&b * j;
+        let inverse = a.transpose().pseudo_inverse(1e-14).expect("an inverse");
+        let expected = -b.transpose() * inverse * DMatrix::from_column_slice(r, 1, &gamma);
+        for (a, b) in found.iter().zip(expected.iter()) {
+            assert!((a - b).abs() < 1e-11, "{a} {b}");
+        }
+    }
+}

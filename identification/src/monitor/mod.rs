@@ -1,0 +1,14 @@
+//! What the raw numbers of a run tell by themselves while they are gone through: data that can't be
+//! right.
+//!
+//! - `watch`: stuck encoders, lost samples, a robot that stands still;
+//! - `peaks`: torques that are flat at their extremes;
+//! - `clipping`: what is told of them;
+//! - `statistics`: what is kept of numbers that pass.
+
+mod clipping;
+mod peaks;
+mod statistics;
+mod watch;
+
+pub(crate) use watch::Monitor;

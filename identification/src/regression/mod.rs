@@ -1,0 +1,22 @@
+//! The observation system of a model: columns, one pass over each run, and what is kept of it.
+//!
+//! - `columns`: the columns of the model: standard parameters, payload, split friction;
+//! - `friction`, `states`: which joint a friction parameter belongs to, and states to find it out by;
+//! - `chunk`, `observation`: successive samples as equations; the pass over a run;
+//! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
+//! - `points`: what is plotted of the motion;
+//! - `system`: the system (39)-(41) of one projection;
+//! - `elimination`: columns that depend on others.
+
+mod chunk;
+pub(crate) mod columns;
+pub(crate) mod elimination;
+pub(crate) mod factor;
+mod friction;
+pub(crate) mod observation;
+pub(crate) mod points;
+pub(crate) mod sink;
+pub(crate) mod states;
+pub(crate) mod system;
+
+pub(crate) use chunk::Chunk;

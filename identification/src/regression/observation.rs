@@ -1,0 +1,231 @@
+//! One pass over a run: motion, columns, projections and decimation block by block, down to what the
+//! systems of all projections keep of it.
+//!
+//! Evaluation goes in parallel over the samples of a block, decimation and factorisation over the
+//! lines of all projections.
+
+use overact::{Function, Model};
+use rayon::prelude::*;
+
+use super::{
+    chunk::{Chunk, conditions, projected},
+    columns::ColumnSet,
+    points::Points,
+    sink::{LineSink, Plan, observed},
+    system::{Observed, Projection, singular},
+};
+use crate::{
+    blocks::{BLOCK, slice},
+    data::Log,
+    error::Error,
+    filters::Decimator,
+    kinematics::{
+        Motion, Motions,
+        conditioning::{Choice, home_scales},
+    },
+    monitor::Monitor,
+    series::RunFigures,
+    settings::Settings,
+};
+
+/// What is observed, the same for all runs.
+pub(crate) struct Observer<'a> {
+    pub(crate) model: &'a dyn Model,
+    pub(crate) columns: &'a ColumnSet,
+    /// Columns of the base parameters.
+    pub(crate) base: &'a [usize],
+    pub(crate) projections: &'a [Projection],
+    pub(crate) settings: &'a Settings,
+}
+
+/// What is told of a run beside its equations.
+#[derive(Debug, Clone)]
+pub(crate) struct Seen {
+    /// Samples used.
+    pub(crate) samples: usize,
+    pub(crate) closure_residual: f64,
+    /// Motion and conditioning at the points of the plots.
+    pub(crate) figures: RunFigures,
+    /// Decimated torques at these points, points x n.
+    pub(crate) torques: Vec<f64>,
+    /// What has been watched of its raw numbers.
+    pub(crate) monitor: Monitor,
+}
+
+impl Observer<'_> {
+    /// Goes through a run. Gives, for each projection, what its system keeps, or why it has none; and
+    /// what is told of the run. `budget` is the number of values that may be kept as stretches.
+    ///
+    /// # Errors
+    /// A run that does not fit, a sample outside the workspace, a file that can't be read.
+    pub(crate) fn run(
+        &self,
+        number: usize,
+        log: &Log,
+        budget: usize,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<(Vec<Result<Observed, Error>>, Seen), Error> {
+        let info = self.model.info();
+        let mut motions = Motions::new(self.model, log, self.settings)?;
+        let samples = motions.samples();
+        let decimator = Decimator::new(self.settings.decimation)?;
+        let (lines, width) = (info.sizes.dof, self.base.len() + 1);
+        let equations = decimator.kept(samples);
+        let plan = Plan::new(
+            equations,
+            budget / (lines * width * self.projections.len()).max(1),
+        );
+        let mut sinks = Vec::new();
+        for _ in 0..lines * self.projections.len() {
+            sinks.push(LineSink::new(
+                &plan,
+                decimator.stream(width, samples)?,
+                self.base.len(),
+            ));
+        }
+        let mut torques = decimator.stream(info.sizes.actuators, samples)?;
+        let mut decimated_torques = Vec::new();
+        let mut points = Points::new(
+            (self.model, self.projections, self.settings),
+            log,
+            &decimator,
+            samples,
+            &plan,
+        );
+        let mut failed: Vec<Option<Error>> = self.projections.iter().map(|_| None).collect();
+        let mut closure_residual = 0.0_f64;
+        while let Some(motion) = motions.next()? {
+            closure_residual = closure_residual.max(motion.closure_residual);
+            let chunks = self.chunks(&motion, &mut failed)?;
+            sinks.par_iter_mut().enumerate().for_each(|(index, sink)| {
+                let (projection, line) = (index / lines, index % lines);
+                if failed[projection].is_none() {
+                    chunks
+                        .iter()
+                        .for_each(|chunk| sink.push(&plan, &chunk.lines[projection][line]));
+                }
+            });
+            torques.push(&motion.torques, &mut decimated_torques);
+            points.take(&motion, &chunks);
+            progress(motions.done(), log.samples());
+        }
+        progress(log.samples(), log.samples());
+        let mut sinks = sinks.into_iter();
+        let partitions = points.partitions(self.projections);
+        let systems = failed
+            .into_iter()
+            .zip(partitions)
+            .map(|(failure, partition)| {
+                let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
+                match failure {
+                    Some(error) => Err(error),
+                    None => Ok(observed(number, &plan, own, partition)),
+                }
+            })
+            .collect();
+        let seen = Seen {
+            samples,
+            closure_residual,
+            figures: points.figures,
+            torques: plan.at_points(&decimated_torques, info.sizes.actuators),
+            monitor: motions.into_monitor(),
+        };
+        Ok((systems, seen))
+    }
+
+    /// Evaluates a block in parallel. Projections whose kept actuators are singular at a sample are
+    /// noted in `failed`.
+    ///
+    /// # Errors
+    /// A sample at which the model has no value.
+    pub(crate) fn chunks(
+        &self,
+        motion: &Motion,
+        failed: &mut [Option<Error>],
+    ) -> Result<Vec<Chunk>, Error> {
+        let scales = home_scales(self.model);
+        let wanted: Vec<bool> = failed.iter().map(Option::is_none).collect();
+        let chunks: Vec<(Chunk, Vec<Option<usize>>)> = (0..motion.samples.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|index| self.chunk(motion, index * BLOCK, &scales, &wanted))
+            .collect::<Result<_, _>>()?;
+        for (projection, failed) in failed.iter_mut().enumerate() {
+            let first = chunks.iter().find_map(|(_, singular)| singular[projection]);
+            if let (Some(sample), None) = (first, &failed) {
+                *failed = Some(singular(motion, sample).into());
+            }
+        }
+        Ok(chunks.into_iter().map(|(chunk, _)| chunk).collect())
+    }
+
+    /// Evaluates up to [`BLOCK`] samples from number `first` of the motion on, and tells for each
+    /// projection at which sample it is singular.
+    fn chunk(
+        &self,
+        motion: &Motion,
+        first: usize,
+        scales: &[f64],
+        wanted: &[bool],
+    ) -> Result<(Chunk, Vec<Option<usize>>), Error> {
+        let info = self.model.info();
+        let (r, n) = (info.sizes.dof, info.sizes.actuators);
+        let count = BLOCK.min(motion.samples - first);
+        let at = |error: overact::SampleError| {
+            Error::from(motion.outside(first + error.sample, error.error))
+        };
+        let pose = slice(&motion.pose, info.sizes.pose, first, count);
+        let twist = slice(&motion.twist, r, first, count);
+        let acceleration = slice(&motion.acceleration, r, first, count);
+        let torques = slice(&motion.torques, n, first, count);
+        let states = [pose, twist, acceleration];
+        let mut platform = self
+            .columns
+            .evaluate(
+                self.model,
+                &states,
+                (count, 1.0 / motion.sampling_frequency),
+                motion.payload,
+                (self.base, 1),
+            )
+            .map_err(at)?;
+        let width = self.base.len() + 1;
+        let mut y = vec![0.0; count * r];
+        self.model
+            .evaluate(Function::ProjectPlatform, &[pose, torques], &mut y)
+            .map_err(at)?;
+        for (line, rows) in platform.iter_mut().enumerate() {
+            let measured = y[line..].iter().step_by(r);
+            let last = rows[width - 1..].iter_mut().step_by(width);
+            last.zip(measured).for_each(|(to, from)| *to = *from);
+        }
+        let mut jacobians = vec![0.0; count * n * r];
+        self.model
+            .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
+            .map_err(at)?;
+        let mut chunk = Chunk {
+            lines: Vec::new(),
+            conditions: Vec::new(),
+        };
+        let mut singular = Vec::new();
+        for (projection, wanted) in self.projections.iter().zip(wanted) {
+            let all = || (0..n).collect();
+            let kept = projection.kept(&info).unwrap_or_else(all);
+            let mut choice = Choice::new(kept, scales);
+            chunk
+                .conditions
+                .push(conditions(&mut choice, &jacobians, n * r));
+            if *projection == Projection::Platform {
+                chunk.lines.push(platform.clone());
+                singular.push(None);
+            } else if *wanted {
+                let (lines, failed) = projected(&platform, &mut choice, &jacobians, n * r);
+                chunk.lines.push(lines);
+                singular.push(failed.map(|sample| first + sample));
+            } else {
+                chunk.lines.push(Vec::new());
+                singular.push(None);
+            }
+        }
+        Ok((chunk, singular))
+    }
+}

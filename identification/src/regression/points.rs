@@ -1,0 +1,175 @@
+//! What is plotted of a run's motion, and how badly the kept actuators determine the platform along it.
+
+use overact::Model;
+
+use super::{
+    chunk::Chunk,
+    sink::Plan,
+    system::{PartitionCondition, Projection},
+};
+use crate::{
+    blocks::BLOCK,
+    data::Log,
+    filters::Decimator,
+    kinematics::{Motion, conditioning::Condition},
+    series::{ConditionSeries, RunFigures},
+    settings::Settings,
+};
+
+/// Collects what is plotted of a run's motion, and the worst conditions.
+pub(crate) struct Points<'a> {
+    pub(crate) figures: RunFigures,
+    tracks: Vec<Track>,
+    /// Sample of the motion at the first point, and distance of the points.
+    first: usize,
+    stride: usize,
+    /// The last point.
+    last: usize,
+    settings: &'a Settings,
+    frequency: f64,
+}
+
+/// The conditioning of one projection along a run.
+struct Track {
+    series: ConditionSeries,
+    /// The worst condition and its sample.
+    worst: Option<(f64, usize)>,
+    /// The last determinant that was not zero.
+    determinant: f64,
+    crossings: usize,
+}
+
+impl<'a> Points<'a> {
+    /// Points of a run of `samples` that are used, by the plan for its equations.
+    pub(crate) fn new(
+        (model, projections, settings): (&dyn Model, &[Projection], &'a Settings),
+        log: &Log,
+        decimator: &Decimator,
+        samples: usize,
+        plan: &Plan,
+    ) -> Self {
+        let info = model.info();
+        let tracks = projections.iter().map(|projection| {
+            let all = || (0..info.sizes.actuators).collect();
+            let kept: Vec<usize> = projection.kept(&info).unwrap_or_else(all);
+            let names = kept
+                .iter()
+                .filter_map(|&actuator| info.actuators.get(actuator));
+            Track {
+                series: ConditionSeries {
+                    kept_actuators: names.map(|name| (*name).to_owned()).collect(),
+                    ..ConditionSeries::default()
+                },
+                worst: None,
+                determinant: 0.0,
+                crossings: 0,
+            }
+        });
+        Self {
+            figures: RunFigures {
+                run: log.name().to_owned(),
+                payload: log.payload(),
+                coordinates: pose_names(info.coordinates, info.sizes.pose),
+                pose: vec![Vec::new(); info.sizes.pose],
+                ..RunFigures::default()
+            },
+            tracks: tracks.collect(),
+            first: decimator.first(samples),
+            stride: plan.stride() * decimator.factor(),
+            last: plan.points().saturating_sub(1),
+            settings,
+            frequency: log.sampling_frequency(),
+        }
+    }
+
+    /// Takes the next samples.
+    pub(crate) fn take(&mut self, motion: &Motion, chunks: &[Chunk]) {
+        let poses = motion.pose.chunks_exact(self.figures.pose.len().max(1));
+        let start = motion.first_sample - self.settings.skip_start;
+        for (index, pose) in poses.enumerate() {
+            let sample = start + index;
+            if sample >= self.first && (sample - self.first).is_multiple_of(self.stride) {
+                let time = (self.settings.skip_start + sample) as f64 / self.frequency;
+                self.figures.time.push(time);
+                let coordinates = self.figures.pose.iter_mut().zip(pose);
+                coordinates.for_each(|(series, value)| series.push(*value));
+            }
+        }
+        for (projection, track) in self.tracks.iter_mut().enumerate() {
+            let conditions = chunks.iter().enumerate().flat_map(|(index, chunk)| {
+                let first = start + index * BLOCK;
+                (first..).zip(&chunk.conditions[projection])
+            });
+            for (sample, condition) in conditions {
+                let point = sample.saturating_sub(self.first) / self.stride;
+                track.take(sample, point.min(self.last), *condition);
+            }
+        }
+    }
+
+    /// The worst conditions of the projections on actuators; the plots keep the conditions that vary.
+    pub(crate) fn partitions(
+        &mut self,
+        projections: &[Projection],
+    ) -> Vec<Option<PartitionCondition>> {
+        let mut partitions = Vec::new();
+        for (track, projection) in std::mem::take(&mut self.tracks)
+            .into_iter()
+            .zip(projections)
+        {
+            let platform = *projection == Projection::Platform;
+            partitions.push(track.worst.filter(|_| !platform).map(|(largest, sample)| {
+                PartitionCondition {
+                    largest,
+                    run: self.figures.run.clone(),
+                    sample: self.settings.skip_start + sample,
+                    time: (self.settings.skip_start + sample) as f64 / self.frequency,
+                    crossings: track.crossings,
+                }
+            }));
+            let mut series = track.series;
+            if platform {
+                series.determinant.clear();
+            }
+            // Without a loop there is nothing to see.
+            if series.condition.iter().any(|condition| *condition != 1.0) {
+                self.figures.conditions.push(series);
+            }
+        }
+        partitions
+    }
+}
+
+impl Track {
+    /// Takes the condition at a sample, which belongs to a point of the plots.
+    fn take(&mut self, sample: usize, point: usize, condition: Condition) {
+        if self.worst.is_none_or(|(worst, _)| condition.number > worst) {
+            self.worst = Some((condition.number, sample));
+        }
+        if condition.determinant != 0.0 {
+            self.crossings += usize::from(self.determinant * condition.determinant < 0.0);
+            self.determinant = condition.determinant;
+        }
+        match self.series.condition.get_mut(point) {
+            Some(worst) => *worst = worst.max(condition.number),
+            None => {
+                self.series.condition.resize(point + 1, condition.number);
+                self.series
+                    .determinant
+                    .resize(point + 1, condition.determinant);
+            }
+        }
+    }
+}
+
+/// Names of the pose coordinates: those of the platform, with a quaternion for free rotation.
+fn pose_names(coordinates: &[&str], size: usize) -> Vec<String> {
+    let quaternion = ["w", "x", "y", "z"].map(|part| format!("quaternion {part}"));
+    let names = coordinates.iter().map(|name| (*name).to_owned());
+    if size == coordinates.len() {
+        names.collect()
+    } else {
+        let linear = size.saturating_sub(quaternion.len());
+        names.take(linear).chain(quaternion).collect()
+    }
+}
