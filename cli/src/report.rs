@@ -10,7 +10,7 @@ use crate::{
 use overact::Info;
 use overact_identification::{Figures, Identification};
 use overact_report::{Attachment, Contents, Published, Units, numbers, page};
-use overact_robot::load::Robot;
+use overact_robot::Robot;
 use serde::Serialize;
 use std::{
     fs,
@@ -73,7 +73,7 @@ impl Arguments {
         }
         let published = match &self.published {
             Some(path) => Some(published(path)?),
-            None => beside(&robot.file)
+            None => beside(robot.file())
                 .map(|path| published(&path))
                 .transpose()?,
         };
@@ -157,8 +157,8 @@ fn html(
             json.as_str(),
         ),
     ];
-    let description = &robot.description;
-    let drawing = drawing::svg(&robot.model.mechanism);
+    let description = robot.description();
+    let drawing = drawing::svg(&robot.model().model().mechanism);
     Ok(page(&Contents {
         identification: result,
         units: &Units::new(info),

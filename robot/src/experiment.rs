@@ -2,34 +2,133 @@
 
 use crate::{
     error::{Error, Problem},
-    load::Robot,
+    robot::Robot,
 };
-use overact::Info;
-use overact_codegen::description;
-use overact_simulation::{Drives, Experiment, Run, Term, Trajectory};
+use overact::{Info, Model};
+use overact_codegen::{description, diagnostic::did_you_mean};
+use overact_simulation::{Drives, Experiment, Record, Run, Term, Trajectory, simulate};
 use std::collections::BTreeMap;
 
-/// The virtual experiment of a robot, and true parameters that have no effect on its model.
-///
-/// # Errors
-/// A description without an experiment, or without a run.
-pub fn experiment(robot: &Robot, info: &Info<'_>) -> Result<(Experiment, Vec<String>), Error> {
-    let missing = |message: &str| {
-        let help = "describe it in the tables [experiment] and [[experiment.run]], or give measured logs with --data";
-        Problem::new(message).file(robot.file.as_str()).help(help)
-    };
-    let Some(table) = &robot.description.experiment else {
-        return Err(missing("the description has no virtual experiment").into());
-    };
-    if table.runs.is_empty() {
-        return Err(missing("the virtual experiment has no run").into());
+/// The virtual experiment of a robot: what would be recorded in a laboratory.
+#[derive(Debug, Clone)]
+pub struct VirtualExperiment<'a> {
+    robot: &'a Robot,
+    plan: Experiment,
+    without_effect: Vec<String>,
+}
+
+impl Robot {
+    /// The virtual experiment of the description.
+    ///
+    /// # Errors
+    /// A description without an experiment, or without a run.
+    pub fn experiment(&self) -> Result<VirtualExperiment<'_>, Error> {
+        let missing = |message: &str| {
+            let help = "describe it in the tables [experiment] and [[experiment.run]], or give measured logs with --data";
+            Problem::new(message).file(self.file()).help(help)
+        };
+        let Some(table) = &self.description().experiment else {
+            return Err(missing("the description has no virtual experiment").into());
+        };
+        if table.runs.is_empty() {
+            return Err(missing("the virtual experiment has no run").into());
+        }
+        let info = self.model().info();
+        let truth = true_values(table);
+        let mut without_effect: Vec<String> = truth.keys().cloned().collect();
+        let all = || info.parameters.iter().chain(info.payload_parameters);
+        without_effect.retain(|name| all().all(|parameter| parameter.name != *name));
+        Ok(VirtualExperiment {
+            robot: self,
+            plan: plan(table, &info),
+            without_effect,
+        })
     }
+
+    /// Names of the runs that the description holds out, to validate with.
+    #[must_use]
+    pub fn held_out(&self) -> Vec<String> {
+        let table = self.description().experiment.as_ref();
+        let runs = table.iter().flat_map(|table| &table.runs);
+        let held = runs.filter(|run| run.validation);
+        held.map(|run| run.name.value.clone()).collect()
+    }
+
+    /// True values of all parameters of the virtual robot: one that the description leaves out is zero.
+    /// None without a virtual experiment.
+    #[must_use]
+    pub fn true_values(&self) -> Option<BTreeMap<String, f64>> {
+        let table = self.description().experiment.as_ref()?;
+        let info = self.model().info();
+        let all = info.parameters.iter().chain(info.payload_parameters);
+        let mut truth: BTreeMap<String, f64> = all.map(|p| (p.name.to_owned(), 0.0)).collect();
+        truth.extend(true_values(table));
+        Some(truth)
+    }
+}
+
+impl VirtualExperiment<'_> {
+    /// What will be done.
+    #[must_use]
+    pub const fn plan(&self) -> &Experiment {
+        &self.plan
+    }
+
+    /// The plan, to be changed.
+    pub const fn plan_mut(&mut self) -> &mut Experiment {
+        &mut self.plan
+    }
+
+    /// The robot.
+    #[must_use]
+    pub const fn robot(&self) -> &Robot {
+        self.robot
+    }
+
+    /// Names of true parameters that have no effect on the model.
+    #[must_use]
+    pub fn without_effect(&self) -> &[String] {
+        &self.without_effect
+    }
+
+    /// Checks names of runs.
+    ///
+    /// # Errors
+    /// All names that no run has.
+    pub fn check_runs(&self, names: &[String]) -> Result<(), Error> {
+        let runs = &self.plan.runs;
+        let known: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+        let unknown = names.iter().filter(|name| !known.contains(&name.as_str()));
+        let problem = |name: &String| {
+            let help = did_you_mean(name, known.iter().copied());
+            let help = help.unwrap_or_else(|| format!("the runs are {}", known.join(", ")));
+            Problem::new(format!("the experiment has no run `{name}`"))
+                .file(self.robot.file())
+                .help(help)
+        };
+        let problems: Vec<Problem> = unknown.map(problem).collect();
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(Error::Problems(problems)),
+        }
+    }
+
+    /// Makes all runs. `progress` hears the part that is done, from 0 to 1, and the name of a run.
+    ///
+    /// # Errors
+    /// An experiment that can't be made, all that is wrong at once, or runs that could not be finished.
+    pub fn records(&self, progress: &dyn Fn(f64, &str)) -> Result<Vec<Record>, Error> {
+        simulate(self.robot.model(), &self.plan, progress)
+            .map_err(|error| located(self.robot, &error))
+    }
+}
+
+/// The plan of an experiment.
+fn plan(table: &description::Experiment, info: &Info<'_>) -> Experiment {
     let truth = true_values(table);
-    let all = || info.parameters.iter().chain(info.payload_parameters);
+    let all = info.parameters.iter().chain(info.payload_parameters);
     let value = |name: &str| truth.get(name).copied().unwrap_or(0.0);
-    let without_effect = truth.keys().filter(|name| all().all(|p| p.name != **name));
-    let without_effect = without_effect.cloned().collect();
-    let experiment = Experiment {
+    Experiment {
         sampling_hz: table.sampling,
         duration_s: table.duration,
         bandwidth_hz: table.bandwidth,
@@ -43,11 +142,10 @@ pub fn experiment(robot: &Robot, info: &Info<'_>) -> Result<(Experiment, Vec<Str
         torque_limit: table.torque_limit.clone(),
         drives: drives(&table.drives),
         seed: table.seed,
-        parameters: all().map(|parameter| value(parameter.name)).collect(),
+        parameters: all.map(|parameter| value(parameter.name)).collect(),
         runs: table.runs.iter().map(|run| converted(run, info)).collect(),
         ..Experiment::default()
-    };
-    Ok((experiment, without_effect))
+    }
 }
 
 /// The drives; what the description leaves out is ideal.
@@ -66,8 +164,7 @@ fn drives(table: &description::Drives) -> Drives {
 }
 
 /// True values of the parameters by name, as the description gives them; the others are zero.
-#[must_use]
-pub fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
+fn true_values(table: &description::Experiment) -> BTreeMap<String, f64> {
     table
         .parameters
         .iter()
@@ -98,10 +195,9 @@ fn converted(run: &description::Run, info: &Info<'_>) -> Run {
 }
 
 /// The simulation's errors, each at the description.
-#[must_use]
-pub fn located(robot: &Robot, error: &overact_simulation::Error) -> Error {
+fn located(robot: &Robot, error: &overact_simulation::Error) -> Error {
     use overact_simulation::Error as Simulation;
-    let problem = |message: String| Problem::new(message).file(robot.file.as_str());
+    let problem = |message: String| Problem::new(message).file(robot.file());
     Error::Problems(match error {
         Simulation::Experiment(all) => all.iter().map(|p| problem(p.to_string())).collect(),
         Simulation::Runs(all) => all.iter().map(|p| problem(p.to_string())).collect(),

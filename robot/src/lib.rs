@@ -1,15 +1,50 @@
 //! A robot's description as a running robot: what a Rust user and the command line stand on.
 //!
-//! - [`load`]: a description is read and compiled;
-//! - [`InterpretedRobot`]: its model, served as [`overact::Model`] without a compiler at hand;
-//! - [`settings`], [`experiment`]: its tables as the inputs of identification and simulation;
-//! - [`Error`]: what is wrong, all of it at once, each at its place.
+//! [`Robot`] is read from a file; it has a model, settings and a virtual experiment. [`Identifier`] finds
+//! its parameters from logs, measured or virtual. All that is wrong comes back at once, each at its
+//! place, in an [`Error`].
+//!
+//! ```
+//! use overact_robot::{Identifier, Robot};
+//!
+//! # fn main() -> Result<(), overact_robot::Error> {
+//! # let emps = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/emps.toml");
+//! let robot = Robot::from_toml(emps)?; // "robots/emps.toml"
+//! let runs = robot.experiment()?.runs(&robot.held_out(), &|_, _| {})?;
+//! let result = Identifier::new(&robot).data(&runs).run()?;
+//! let mass = &result.estimates[0].parameters[0];
+//! assert_eq!(mass.name, "m_1R");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Modules, from the bottom up:
+//!
+//! - `error`: what is wrong;
+//! - `interpreted`: a model served as [`overact::Model`] without a compiler at hand;
+//! - `compiled_file`: a description read and compiled with what is asked for;
+//! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
+//!   simulation; `runs`: logs and virtual runs;
+//! - `tracking`: identified parameters tried in the virtual robot's controller;
+//! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
+mod compiled_file;
 mod error;
-pub mod experiment;
+mod experiment;
+mod identifier;
 mod interpreted;
-pub mod load;
-pub mod settings;
+mod partitions;
+mod robot;
+mod runs;
+mod settings;
+mod tracking;
 
+pub use compiled_file::CompiledFile;
 pub use error::{Column, Error, Problem};
+pub use experiment::VirtualExperiment;
+pub use identifier::Identifier;
 pub use interpreted::InterpretedRobot;
+pub use partitions::partitions;
+pub use robot::Robot;
+pub use runs::Runs;
+pub use tracking::tracking;

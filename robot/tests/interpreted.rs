@@ -1,10 +1,8 @@
 //! The interpreted robot against finite differences, and its forward kinematics.
 
 use overact::{Body, Error, Function, Model, Symbol};
-use overact_robot::{
-    InterpretedRobot,
-    load::{load, load_to_serve},
-};
+use overact_codegen::Request;
+use overact_robot::{CompiledFile, InterpretedRobot, Robot};
 use std::path::{Path, PathBuf};
 
 /// The path of a description of `robots/`.
@@ -15,7 +13,7 @@ fn description(name: &str) -> PathBuf {
 }
 
 fn robot(name: &str) -> InterpretedRobot {
-    match load(&description(name)) {
+    match CompiledFile::read(&description(name), &Request::default()) {
         Ok(robot) => InterpretedRobot::new(robot.model),
         Err(failure) => panic!("{}", failure.render(false)),
     }
@@ -41,11 +39,12 @@ fn evaluate(
 /// B_p of the DualV is diagonal, -d2 d3 sin(q2) of each leg; also where only what is served is compiled.
 #[test]
 fn the_closure_is_served_from_joints() {
-    let loaded = load_to_serve(&description("dualv.toml")).map_err(|failure| failure.render(false));
-    let lean = InterpretedRobot::new(loaded.expect("a robot").model);
-    for robot in [robot("dualv.toml"), lean] {
-        let joints = evaluate(&robot, Function::Joints, &[&POSE], 12);
-        let closure = evaluate(&robot, Function::ClosureActuatorJacobian, &[&joints], 16);
+    let loaded =
+        Robot::from_toml(description("dualv.toml")).map_err(|failure| failure.render(false));
+    let lean = loaded.expect("a robot");
+    for robot in [&robot("dualv.toml"), lean.model()] {
+        let joints = evaluate(robot, Function::Joints, &[&POSE], 12);
+        let closure = evaluate(robot, Function::ClosureActuatorJacobian, &[&joints], 16);
         for (at, value) in closure.iter().enumerate() {
             let (row, column) = (at / 4, at % 4);
             let expected = if row == column {

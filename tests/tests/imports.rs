@@ -69,7 +69,18 @@ const HOUSES: [House; 5] = [
     },
     House {
         folder: "robot",
-        order: &["error", "interpreted", "load", "settings", "experiment"],
+        order: &[
+            "error",
+            "interpreted",
+            "compiled_file",
+            "robot",
+            "settings",
+            "experiment",
+            "runs",
+            "tracking",
+            "partitions",
+            "identifier",
+        ],
     },
     House {
         folder: "cli",

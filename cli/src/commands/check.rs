@@ -6,7 +6,7 @@ use crate::{
     output::{counted, json, print},
 };
 use overact_codegen::{Effort, Request};
-use overact_robot::load::{Robot, load_with, note};
+use overact_robot::CompiledFile;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     for file in &arguments.files {
         // Whether there is a model does not depend on how few operations it takes.
-        match load_with(file, &Request::with_effort(Effort::None)) {
+        match CompiledFile::read(file, &Request::with_effort(Effort::None)) {
             Ok(robot) => {
                 tell_note(&robot, as_json);
                 good.push(Checked::new(robot));
@@ -63,8 +63,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 }
 
 impl Checked {
-    fn new(robot: Robot) -> Self {
-        let note = note(&robot);
+    fn new(robot: CompiledFile) -> Self {
+        let note = robot.note();
         let mechanism = &robot.model.mechanism;
         Self {
             note,

@@ -17,10 +17,7 @@ use overact_codegen::{
     mechanism::Mechanism,
     model_with,
 };
-use overact_robot::{
-    InterpretedRobot,
-    load::{Robot, load_with},
-};
+use overact_robot::{CompiledFile, InterpretedRobot};
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -113,7 +110,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         wanted: &wanted,
         ..Request::with_effort(Effort::None)
     };
-    let Robot { mut model, .. } = load_with(&arguments.file, &request)?;
+    let CompiledFile { mut model, .. } = CompiledFile::read(&arguments.file, &request)?;
     let states = States::read(&arguments.states)?;
     if let Some(names) = &arguments.kept {
         model = with_kept(model, names, &request)?;

@@ -8,7 +8,7 @@ use crate::{
     progress::Progress,
 };
 use overact_codegen::emission;
-use overact_robot::load::{Robot, load_with};
+use overact_robot::CompiledFile;
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -97,13 +97,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     )
 }
 
-fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure> {
+fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     let count = arguments.files.len();
     let bar = Progress::new("generating", as_json);
     for (at, file) in arguments.files.iter().enumerate() {
         bar.at(at as f64 / count as f64, &file.display().to_string());
-        match load_with(file, &arguments.effort.request()) {
+        match CompiledFile::read(file, &arguments.effort.request()) {
             Ok(robot) => {
                 tell_note(&robot, as_json);
                 good.push(robot);
@@ -118,7 +118,7 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<Robot>, Failure>
     }
 }
 
-fn module(robot: &Robot, path: &Path, arguments: &Arguments) -> Module {
+fn module(robot: &CompiledFile, path: &Path, arguments: &Arguments) -> Module {
     let file = arguments
         .output
         .as_ref()

@@ -3,13 +3,11 @@
 //! Measured or virtual, the identification sees positions and torques of the actuators only. The true
 //! values of a virtual experiment stand beside the estimates and nowhere in them.
 
-mod tracking;
-
 use super::runs;
 use crate::{failure::Failure, output, progress::Progress, report as files};
 use overact::Model;
-use overact_identification::{Dataset, Identification, identify};
-use overact_robot::{InterpretedRobot, load::load_to_serve};
+use overact_identification::{Identification, Progress as Doing, Settings};
+use overact_robot::{Identifier, Robot, Runs, tracking};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -40,34 +38,22 @@ pub(crate) struct Arguments {
 /// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check_folder(arguments.output.as_deref())?;
-    let robot = load_to_serve(&arguments.file)?;
+    let robot = Robot::from_toml(&arguments.file)?;
     let reports = arguments
         .reports
         .check(&robot, arguments.output.as_deref())?;
     let kept = match &arguments.kept {
-        Some(names) => Some(super::kept_actuators(&robot.model, names)?),
+        Some(names) => Some(super::kept_actuators(robot.model().model(), names)?),
         None => None,
     };
-    let served = InterpretedRobot::new(robot.model.clone());
-    let runs = arguments.runs.runs(&robot, &served, as_json)?;
-    let mut settings = arguments.runs.settings(&robot, &served.info(), &runs);
+    let runs = arguments.runs.runs(&robot, as_json)?;
+    let mut settings = arguments.runs.settings(&robot, &runs);
     settings.kept_actuators = kept.unwrap_or(settings.kept_actuators);
-    let dataset = Dataset {
-        runs: &runs.runs,
-        validation: &runs.validation,
-        true_values: runs.truth.as_ref(),
-    };
-    let bar = Progress::new("identifying", as_json);
-    let mut result = identify(&served, &dataset, &settings, &|stage| {
-        runs::tell(&bar, stage)
-    })?;
-    drop(bar);
-    if !robot.description.identification.essential {
-        without_essential(&mut result, robot.description.identification.r_sigma);
-    }
+    let mut result = identified(&robot, &runs, settings, as_json)?;
     let beside = reports.published().filter(|_| arguments.runs.are_virtual());
     if arguments.tracking || beside.is_some() {
-        result.tracking = tracking::tracking(&robot, &served, &result, as_json)?;
+        let bar = Progress::new("simulating", as_json);
+        result.tracking = tracking(&robot, &result, &|part, run| bar.at(part, run))?;
     }
     let text = if as_json {
         output::json(&result)?
@@ -76,7 +62,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         overact_report::report(&result) + &overact_report::beside(&result, beside)
     };
     // All files are written together, so that none is there without the others.
-    let mut written = reports.written(&robot, &served.info(), &result)?;
+    let mut written = reports.written(&robot, &robot.model().info(), &result)?;
     if let Some(path) = &arguments.output {
         let newline = if text.ends_with('\n') { "" } else { "\n" };
         written.push((path.clone(), format!("{text}{newline}").into_bytes()));
@@ -88,15 +74,15 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     }
 }
 
-/// The base parameters only; the setting that kept the elimination from starting is put back.
-fn without_essential(result: &mut Identification, r_sigma: f64) {
-    let essential = overact_identification::Stage::Essential;
-    result
-        .estimates
-        .retain(|estimate| estimate.stage != essential);
-    result.cross_validation.retain(|one| one.stage != essential);
-    result.settings.r_sigma = r_sigma;
-    let figures = &mut result.figures;
-    figures.predictions.retain(|one| one.stage != essential);
-    figures.residuals.retain(|one| one.stage != essential);
+/// The identification, with a bar on a terminal.
+fn identified(
+    robot: &Robot,
+    runs: &Runs,
+    settings: Settings,
+    as_json: bool,
+) -> Result<Identification, Failure> {
+    let bar = Progress::new("identifying", as_json);
+    let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
+    let identifier = Identifier::new(robot).data(runs).settings(settings);
+    Ok(identifier.progress(&tell).run()?)
 }

@@ -6,7 +6,7 @@ mod table;
 
 use crate::{drawing, effort, failure::Failure, note::tell_note, output};
 use document::Document;
-use overact_robot::load::load_with;
+use overact_robot::CompiledFile;
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = load_with(&arguments.file, &arguments.effort.request())?;
+    let robot = CompiledFile::read(&arguments.file, &arguments.effort.request())?;
     tell_note(&robot, as_json);
     if let Some(svg) = &arguments.svg {
         let text = drawing::svg(&robot.model.mechanism);

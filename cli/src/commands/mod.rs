@@ -105,40 +105,13 @@ fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Fa
     }
 }
 
-/// More choices of kept actuators than this are not looked at.
-const PARTITIONS: usize = 1000;
-
-/// The choices of r among n in lexicographic order, the first [`PARTITIONS`] of them.
-fn choices(n: usize, r: usize) -> Vec<Vec<usize>> {
-    let mut all = vec![(0..r).collect::<Vec<usize>>()];
-    while all.len() < PARTITIONS
-        && let Some(last) = all.last()
-        && let Some(at) = (0..r).rev().find(|&i| last[i] < n - r + i)
-    {
-        let mut next = last.clone();
-        next[at] += 1;
-        for i in at + 1..r {
-            next[i] = next[i - 1] + 1;
-        }
-        all.push(next);
-    }
-    all
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Arguments, choices};
+    use super::Arguments;
     use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_consistent() {
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn choices_are_complete() {
-        assert_eq!(choices(4, 3), [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]);
-        assert_eq!(choices(8, 6).len(), 28);
-        assert_eq!(choices(2, 2), [[0, 1]]);
     }
 }

@@ -1,14 +1,14 @@
 //! `overact partitions`: case 2 for every choice of kept actuators, ranked.
 
-use super::{choices, runs};
+use super::runs;
 use crate::{
     failure::{Failure, Problem},
     output,
     progress::Progress,
 };
 use overact::Model;
-use overact_identification::{Choice, Dataset, Study, significant, study};
-use overact_robot::{InterpretedRobot, load::load_to_serve};
+use overact_identification::{Choice, Progress as Doing, Study, significant};
+use overact_robot::{Identifier, Robot};
 use std::path::PathBuf;
 
 /// Arguments of the command.
@@ -30,25 +30,18 @@ pub(crate) struct Arguments {
 /// A robot without redundancy, or as `overact identify`.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     output::check_folder(arguments.output.as_deref())?;
-    let robot = load_to_serve(&arguments.file)?;
-    let served = InterpretedRobot::new(robot.model.clone());
-    let info = served.info();
-    if info.sizes.actuators == info.sizes.dof {
+    let robot = Robot::from_toml(&arguments.file)?;
+    let sizes = robot.model().info().sizes;
+    if sizes.actuators == sizes.dof {
         let message = "the robot has no more actuators than degrees of freedom, so there is nothing to choose";
-        return Err(Problem::new(message).file(robot.file).into());
+        return Err(Problem::new(message).file(robot.file()).into());
     }
-    let runs = arguments.runs.runs(&robot, &served, as_json)?;
-    let settings = arguments.runs.settings(&robot, &info, &runs);
-    let choices = choices(info.sizes.actuators, info.sizes.dof);
-    let dataset = Dataset {
-        runs: &runs.runs,
-        validation: &runs.validation,
-        true_values: runs.truth.as_ref(),
-    };
+    let runs = arguments.runs.runs(&robot, as_json)?;
+    let settings = arguments.runs.settings(&robot, &runs);
     let bar = Progress::new("comparing", as_json);
-    let result = study(&served, &dataset, &choices, &settings, &|stage| {
-        runs::tell(&bar, stage)
-    })?;
+    let tell = |doing: Doing<'_>| runs::tell(&bar, doing);
+    let identifier = Identifier::new(&robot).data(&runs).settings(settings);
+    let result = identifier.progress(&tell).study()?;
     drop(bar);
     let text = if as_json {
         output::json(&result)?

@@ -7,14 +7,9 @@ use crate::{
     progress::Progress,
 };
 use overact::Model;
-use overact_codegen::diagnostic::did_you_mean;
 use overact_identification::significant;
-use overact_robot::{
-    InterpretedRobot,
-    experiment::{experiment, located},
-    load::{Robot, load_to_serve},
-};
-use overact_simulation::{Experiment, Record, simulate, write_csv};
+use overact_robot::{Robot, VirtualExperiment};
+use overact_simulation::{Experiment, Record, write_csv};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -57,19 +52,20 @@ struct Summary {
 /// # Errors
 /// A description without an experiment, or a run that can't be made.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    let robot = load_to_serve(&arguments.file)?;
-    let served = InterpretedRobot::new(robot.model.clone());
-    let (mut virtual_experiment, without_effect) = experiment(&robot, &served.info())?;
-    keep_runs(&robot, &mut virtual_experiment, &arguments.runs)?;
+    let robot = Robot::from_toml(&arguments.file)?;
+    let mut experiment = robot.experiment()?;
+    keep_runs(&mut experiment, &arguments.runs)?;
     if let Some(seed) = arguments.seed {
-        virtual_experiment.seed = seed;
+        experiment.plan_mut().seed = seed;
     }
-    let files = files(&virtual_experiment, arguments.output.as_deref(), as_json)?;
-    warn(&without_effect, as_json);
-    let records = records(&robot, &served, &virtual_experiment, as_json)?;
+    let files = files(experiment.plan(), arguments.output.as_deref(), as_json)?;
+    warn(experiment.without_effect(), as_json);
+    let bar = Progress::new("simulating", as_json);
+    let records = experiment.records(&|fraction, run| bar.at(fraction, run))?;
+    drop(bar);
     let logs = records.iter().map(csv).collect::<Result<Vec<_>, _>>()?;
     let summaries: Vec<Summary> = records.iter().zip(&files).map(summary).collect();
-    let document = serde_json::json!({ "robot": served.info().name, "runs": summaries });
+    let document = serde_json::json!({ "robot": robot.model().info().name, "runs": summaries });
     if files.iter().all(Option::is_none) && !as_json {
         let text = logs
             .into_iter()
@@ -101,40 +97,14 @@ pub(super) fn warn(without_effect: &[String], as_json: bool) {
     }
 }
 
-/// Makes all runs, with a bar on a terminal.
-pub(super) fn records(
-    robot: &Robot,
-    served: &InterpretedRobot,
-    experiment: &Experiment,
-    as_json: bool,
-) -> Result<Vec<Record>, Failure> {
-    let bar = Progress::new("simulating", as_json);
-    let tell = |fraction: f64, run: &str| bar.at(fraction, run);
-    simulate(served, experiment, &tell).map_err(|error| located(robot, &error).into())
-}
-
-fn keep_runs(robot: &Robot, experiment: &mut Experiment, names: &[String]) -> Result<(), Failure> {
-    let known: Vec<String> = experiment.runs.iter().map(|run| run.name.clone()).collect();
-    let unknown = names.iter().filter(|name| !known.contains(name));
-    let problems: Vec<Problem> = unknown
-        .map(|name| unknown_run(robot, name, &known))
-        .collect();
-    if !problems.is_empty() {
-        return Err(problems.into());
-    }
+/// Leaves only the runs of these names; all where there are none.
+fn keep_runs(experiment: &mut VirtualExperiment<'_>, names: &[String]) -> Result<(), Failure> {
+    experiment.check_runs(names)?;
     if !names.is_empty() {
-        experiment.runs.retain(|run| names.contains(&run.name));
+        let runs = &mut experiment.plan_mut().runs;
+        runs.retain(|run| names.contains(&run.name));
     }
     Ok(())
-}
-
-/// A run that the description does not have.
-pub(super) fn unknown_run(robot: &Robot, name: &str, known: &[String]) -> Problem {
-    let help = did_you_mean(name, known.iter().map(String::as_str));
-    let help = help.unwrap_or_else(|| format!("the runs are {}", known.join(", ")));
-    Problem::new(format!("the experiment has no run `{name}`"))
-        .file(robot.file.as_str())
-        .help(help)
 }
 
 /// The file of each run; none where the only one goes to stdout.

@@ -1,9 +1,8 @@
 //! How well the actuators, and every choice of kept ones, determine the platform at home.
 
-use crate::commands::choices;
 use nalgebra::DMatrix;
 use overact::{Function, Model};
-use overact_robot::InterpretedRobot;
+use overact_robot::{InterpretedRobot, partitions};
 use serde::Serialize;
 
 /// Condition numbers at the home pose, angular columns as they are (rad).
@@ -49,7 +48,7 @@ impl Conditioning {
             chosen: kept == chosen,
             condition: condition(&jacobian.select_rows(&kept)),
         };
-        let choices = if n > r { choices(n, r) } else { Vec::new() };
+        let choices = if n > r { partitions(n, r) } else { Vec::new() };
         let mut partitions: Vec<Partition> = choices.into_iter().map(partition).collect();
         let key = |p: &Partition| p.condition.unwrap_or(f64::INFINITY);
         partitions.sort_by(|a, b| key(a).total_cmp(&key(b)));

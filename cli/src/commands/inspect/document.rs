@@ -8,7 +8,7 @@ use overact_codegen::{
     model,
     selection::base::BaseParameter,
 };
-use overact_robot::{InterpretedRobot, load::Robot};
+use overact_robot::{CompiledFile, InterpretedRobot};
 use serde::Serialize;
 
 #[derive(Debug, Serialize)]
@@ -80,8 +80,8 @@ pub(super) struct Argument {
 }
 
 impl Document {
-    pub(super) fn new(robot: Robot) -> Self {
-        let Robot { file, model, .. } = robot;
+    pub(super) fn new(robot: CompiledFile) -> Self {
+        let CompiledFile { file, model, .. } = robot;
         let mechanism = &model.mechanism;
         let joints = mechanism.joints();
         let joint_names: Vec<String> = joints.iter().map(|&at| mechanism.joint_name(at)).collect();

@@ -1,10 +1,9 @@
 //! Table 4: how well the virtual robot follows held-out trajectories, with a PD controller alone and
 //! with the torques that the identified parameters ask for.
 
-use crate::{commands::runs, commands::simulate, failure::Failure};
+use crate::{error::Error, robot::Robot};
 use overact::Model;
 use overact_identification::{Estimate, Identification, Stage, TrackingError};
-use overact_robot::{InterpretedRobot, experiment::experiment, load::Robot};
 use overact_simulation::Experiment;
 
 /// Lets every controller follow the runs that are held out. Empty where there are none, or where the
@@ -12,13 +11,12 @@ use overact_simulation::Experiment;
 ///
 /// # Errors
 /// A virtual experiment that can't be made.
-pub(super) fn tracking(
+pub fn tracking(
     robot: &Robot,
-    served: &InterpretedRobot,
     result: &Identification,
-    as_json: bool,
-) -> Result<Vec<TrackingError>, Failure> {
-    if robot.description.experiment.is_none() {
+    progress: &dyn Fn(f64, &str),
+) -> Result<Vec<TrackingError>, Error> {
+    if robot.description().experiment.is_none() {
         return Ok(Vec::new());
     }
     let mut names: Vec<String> = Vec::new();
@@ -28,9 +26,10 @@ pub(super) fn tracking(
         }
     }
     // Measured runs have names of files: then those that the description holds out.
-    let (mut plain, _) = experiment(robot, &served.info())?;
+    let mut experiment = robot.experiment()?;
+    let mut plain = experiment.plan().clone();
     if !plain.runs.iter().any(|run| names.contains(&run.name)) {
-        names = runs::held_out(robot);
+        names = robot.held_out();
     }
     plain.runs.retain(|run| names.contains(&run.name));
     if plain.runs.is_empty() {
@@ -46,14 +45,15 @@ pub(super) fn tracking(
         };
         let computed = Experiment {
             feed_forward: true,
-            nominal_parameters: Some(standard(served, result, estimate)),
+            nominal_parameters: Some(standard(robot, result, estimate)),
             ..plain.clone()
         };
         controllers.push((name.to_owned(), computed));
     }
     let mut all = Vec::new();
-    for (controller, experiment) in controllers {
-        for record in simulate::records(robot, served, &experiment, as_json)? {
+    for (controller, plan) in controllers {
+        *experiment.plan_mut() = plan;
+        for record in experiment.records(progress)? {
             all.push(TrackingError {
                 run: record.name,
                 controller: controller.clone(),
@@ -85,8 +85,8 @@ fn last_estimates(result: &Identification) -> Vec<&Estimate> {
 
 /// Standard parameters with the same model: each base parameter stands on the one that is kept, the
 /// regrouped ones are zero.
-fn standard(served: &InterpretedRobot, result: &Identification, estimate: &Estimate) -> Vec<f64> {
-    let info = served.info();
+fn standard(robot: &Robot, result: &Identification, estimate: &Estimate) -> Vec<f64> {
+    let info = robot.model().info();
     let all = info.parameters.iter().chain(info.payload_parameters);
     let value = |name: &str| -> f64 {
         let mut parameters = estimate.parameters.iter();

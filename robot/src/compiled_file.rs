@@ -1,0 +1,89 @@
+//! A description from a file, read and compiled, with what is asked for.
+
+use crate::error::{Error, Problem};
+use overact_codegen::{
+    Request, RobotModel, compile_with, description::Description, diagnostic::Source,
+};
+use std::{fs, path::Path};
+
+/// A description with its model.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CompiledFile {
+    /// The path as the user gave it.
+    pub file: String,
+    /// What the file says.
+    pub description: Description,
+    /// The model.
+    pub model: RobotModel,
+}
+
+impl CompiledFile {
+    /// Reads a description and compiles what is asked for.
+    ///
+    /// # Errors
+    /// A file that can't be read, or everything that is wrong with the description.
+    pub fn read(path: &Path, request: &Request<'_>) -> Result<Self, Error> {
+        Self::new(read(path)?, request)
+    }
+
+    /// Compiles what is asked for of a description.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the description.
+    pub fn new(source: Source, request: &Request<'_>) -> Result<Self, Error> {
+        match compile_with(&source, request) {
+            Ok(compiled) => Ok(Self {
+                file: source.name,
+                description: compiled.description,
+                model: compiled.model,
+            }),
+            Err(diagnostics) => Err(Error::Description {
+                source,
+                diagnostics,
+            }),
+        }
+    }
+
+    /// What the description says that may not be meant: a motor marked by mistake looks like redundancy,
+    /// so redundancy that the description does not speak of is worth a word.
+    #[must_use]
+    pub fn note(&self) -> Option<String> {
+        let mechanism = &self.model.mechanism;
+        let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+        let said = (self.description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
+        if n <= r || said {
+            return None;
+        }
+        Some(format!(
+            "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
+             take `actuated = true` from a joint",
+            mechanism.actuator_names().join(", "),
+            match r {
+                1 => "1 degree of freedom".to_owned(),
+                _ => format!("{r} degrees of freedom"),
+            },
+            n - r,
+        ))
+    }
+}
+
+/// Reads a description's text.
+///
+/// # Errors
+/// A file that can't be read or is not UTF-8.
+fn read(path: &Path) -> Result<Source, Error> {
+    let name = path.display().to_string();
+    match fs::read_to_string(path) {
+        Ok(text) => Ok(Source::new(name, text)),
+        Err(error) => {
+            let missing = error.kind() == std::io::ErrorKind::NotFound;
+            let problem = Problem::new(format!("the file can't be read: {error}")).file(name);
+            Err(match missing {
+                true => problem.help("`overact new planar-4rrr my.toml` writes a first one"),
+                false => problem,
+            }
+            .into())
+        }
+    }
+}

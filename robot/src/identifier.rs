@@ -1,0 +1,171 @@
+//! An identification of a robot from runs, as its description asks for it.
+
+use crate::{error::Error, partitions::partitions, robot::Robot, runs::Runs};
+use overact::Model;
+use overact_identification::{
+    Dataset, Identification, Log, Progress, Settings, Stage, Study, identify, study,
+};
+use std::collections::BTreeMap;
+
+/// An identification that is being prepared.
+///
+/// ```no_run
+/// use overact_robot::{Identifier, Robot};
+/// use std::path::Path;
+///
+/// # fn main() -> Result<(), overact_robot::Error> {
+/// let robot = Robot::from_toml("robots/dualv.toml")?;
+/// let logs = robot.read_logs(&[(Path::new("log.csv"), false)], &|_| {})?;
+/// let result = Identifier::new(&robot).runs(&logs).run()?;
+/// for parameter in &result.estimates[0].parameters {
+///     println!("{} = {} {}", parameter.name, parameter.value, parameter.unit);
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct Identifier<'a> {
+    robot: &'a Robot,
+    runs: &'a [Log],
+    validation: &'a [Log],
+    true_values: Option<&'a BTreeMap<String, f64>>,
+    settings: Option<Settings>,
+    progress: &'a dyn Fn(Progress<'_>),
+}
+
+impl std::fmt::Debug for Identifier<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Identifier")
+            .field("robot", &self.robot.file())
+            .field("runs", &self.runs.len())
+            .field("validation", &self.validation.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Identifier<'a> {
+    /// An identification of a robot, without runs so far.
+    #[must_use]
+    pub fn new(robot: &'a Robot) -> Self {
+        Self {
+            robot,
+            runs: &[],
+            validation: &[],
+            true_values: None,
+            settings: None,
+            progress: &|_| {},
+        }
+    }
+
+    /// With the runs to identify from.
+    #[must_use]
+    pub fn runs(self, runs: &'a [Log]) -> Self {
+        Self { runs, ..self }
+    }
+
+    /// With runs to validate with.
+    #[must_use]
+    pub fn validation(self, validation: &'a [Log]) -> Self {
+        Self { validation, ..self }
+    }
+
+    /// With all that is known of runs: those to identify from, those to validate with, true values.
+    #[must_use]
+    pub fn data(self, data: &'a Runs) -> Self {
+        Self {
+            runs: data.identified.as_slice(),
+            validation: data.validation.as_slice(),
+            true_values: data.true_values.as_ref(),
+            ..self
+        }
+    }
+
+    /// With settings in place of the description's, [`Robot::settings`].
+    #[must_use]
+    pub fn settings(self, settings: Settings) -> Self {
+        let settings = Some(settings);
+        Self { settings, ..self }
+    }
+
+    /// With someone who hears what is being done.
+    #[must_use]
+    pub fn progress(self, progress: &'a dyn Fn(Progress<'_>)) -> Self {
+        Self { progress, ..self }
+    }
+
+    /// Estimates case 1 and case 2 of a redundant robot, or the joint model of another one, and
+    /// validates the estimates.
+    ///
+    /// # Errors
+    /// Runs or settings that can't be used, data that determine no parameter.
+    pub fn run(&self) -> Result<Identification, Error> {
+        let settings = self.with_defaults();
+        let essential = self.essential();
+        let mut result = identify(
+            self.robot.model(),
+            &self.dataset(),
+            &without_elimination(&settings, essential),
+            self.progress,
+        )?;
+        if !essential {
+            without_essential(&mut result);
+        }
+        result.settings = settings;
+        Ok(result)
+    }
+
+    /// Compares case 2 for all choices of kept actuators.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn study(&self) -> Result<Study, Error> {
+        let sizes = self.robot.model().info().sizes;
+        let choices = partitions(sizes.actuators, sizes.dof);
+        let settings = without_elimination(&self.with_defaults(), self.essential());
+        let (model, dataset) = (self.robot.model(), self.dataset());
+        Ok(study(model, &dataset, &choices, &settings, self.progress)?)
+    }
+
+    fn dataset(&self) -> Dataset<'a> {
+        Dataset {
+            runs: self.runs,
+            validation: self.validation,
+            true_values: self.true_values,
+        }
+    }
+
+    /// The settings; the description's unless others are given.
+    fn with_defaults(&self) -> Settings {
+        let frequency = self.runs.first().map_or(0.0, Log::sampling_frequency);
+        let own = || self.robot.settings(frequency);
+        self.settings.clone().unwrap_or_else(own)
+    }
+
+    /// Whether the description asks for essential parameters.
+    fn essential(&self) -> bool {
+        self.robot.description().identification.essential
+    }
+}
+
+/// Settings with which the elimination ends before it starts, where no essential parameters are asked
+/// for.
+fn without_elimination(settings: &Settings, essential: bool) -> Settings {
+    let r_sigma = match essential {
+        true => settings.r_sigma,
+        false => f64::INFINITY,
+    };
+    Settings {
+        r_sigma,
+        ..settings.clone()
+    }
+}
+
+/// Leaves the base parameters only.
+fn without_essential(result: &mut Identification) {
+    let is_kept = |stage: Stage| stage != Stage::Essential;
+    result.estimates.retain(|one| is_kept(one.stage));
+    result.cross_validation.retain(|one| is_kept(one.stage));
+    let figures = &mut result.figures;
+    figures.predictions.retain(|one| is_kept(one.stage));
+    figures.residuals.retain(|one| is_kept(one.stage));
+}

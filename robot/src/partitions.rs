@@ -1,0 +1,39 @@
+//! All choices of kept actuators of case 2.
+
+/// More choices than this are not looked at.
+const LARGEST_NUMBER: usize = 1000;
+
+/// The choices of `r` among `n` in lexicographic order, the first thousand of them.
+///
+/// ```
+/// assert_eq!(overact_robot::partitions(3, 2), [[0, 1], [0, 2], [1, 2]]);
+/// ```
+#[must_use]
+pub fn partitions(n: usize, r: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![(0..r).collect::<Vec<usize>>()];
+    while all.len() < LARGEST_NUMBER
+        && let Some(last) = all.last()
+        && let Some(at) = (0..r).rev().find(|&i| last[i] < n - r + i)
+    {
+        let mut next = last.clone();
+        next[at] += 1;
+        for i in at + 1..r {
+            next[i] = next[i - 1] + 1;
+        }
+        all.push(next);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::partitions;
+
+    #[test]
+    fn choices_are_complete() {
+        let four = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+        assert_eq!(partitions(4, 3), four);
+        assert_eq!(partitions(8, 6).len(), 28);
+        assert_eq!(partitions(2, 2), [[0, 1]]);
+    }
+}

@@ -1,0 +1,85 @@
+//! The runs of an identification: measured logs, or the virtual experiment.
+
+use crate::{error::Error, experiment::VirtualExperiment, robot::Robot};
+use overact_identification::{Log, data};
+use overact_simulation::Record;
+use std::{collections::BTreeMap, path::Path};
+
+/// Runs to identify from and runs to validate with.
+#[derive(Debug, Clone, Default)]
+pub struct Runs {
+    /// Those to identify from.
+    pub identified: Vec<Log>,
+    /// Those that are held out.
+    pub validation: Vec<Log>,
+    /// True values of the parameters of a virtual robot.
+    pub true_values: Option<BTreeMap<String, f64>>,
+}
+
+impl Runs {
+    /// f_m of the first run, Hz; 0 without a run.
+    #[must_use]
+    pub fn sampling_frequency(&self) -> f64 {
+        self.identified.first().map_or(0.0, Log::sampling_frequency)
+    }
+}
+
+impl Robot {
+    /// Reads logs, each with a word on whether the platform carried the payload; their columns are those
+    /// that the description names. `progress` hears the part that is done, from 0 to 1.
+    ///
+    /// # Errors
+    /// What is wrong with all of them.
+    pub fn read_logs(
+        &self,
+        files: &[(&Path, bool)],
+        progress: &(dyn Fn(f64) + Sync),
+    ) -> Result<Vec<Log>, Error> {
+        let mapping = self.mapping()?;
+        let (mut logs, mut errors) = (Vec::new(), Vec::new());
+        for log in data::read_all(files, &mapping, progress) {
+            match log {
+                Ok(log) => logs.push(log),
+                Err(error) => errors.push(Error::from(error)),
+            }
+        }
+        match errors.is_empty() {
+            true => Ok(logs),
+            false => Err(Error::Several(errors)),
+        }
+    }
+}
+
+impl VirtualExperiment<'_> {
+    /// Makes all runs; those named in `held_out` are to validate with.
+    ///
+    /// # Errors
+    /// Names that no run has, or as [`records`](Self::records).
+    pub fn runs(&self, held_out: &[String], progress: &dyn Fn(f64, &str)) -> Result<Runs, Error> {
+        self.check_runs(held_out)?;
+        let records = self.records(progress)?.into_iter();
+        let (validation, identified): (Vec<Record>, Vec<Record>) =
+            records.partition(|record| held_out.contains(&record.name));
+        let logs =
+            |records: Vec<Record>| records.into_iter().map(log).collect::<Result<Vec<_>, _>>();
+        Ok(Runs {
+            identified: logs(identified)?,
+            validation: logs(validation)?,
+            true_values: self.robot().true_values(),
+        })
+    }
+}
+
+/// A record as a log: positions and torques alone, as a laboratory would have them.
+fn log(record: Record) -> Result<Log, overact_identification::Error> {
+    let n = record.actuators.len();
+    let (positions, torques) = (record.positions, record.torques);
+    Log::new(
+        record.name,
+        record.sampling_hz,
+        n,
+        positions,
+        torques,
+        record.payload,
+    )
+}
