@@ -5,7 +5,7 @@ use crate::description::{self, Description};
 use crate::diagnostic::{Diagnostics, Source};
 use crate::effort::Effort;
 use crate::mechanism::{self, Mechanism};
-use crate::model::{Function, RobotModel};
+use crate::model::{CompiledFunction, RobotModel};
 use crate::parallel;
 use crate::request::{Request, Wanted};
 use crate::selection::{self, Assembler, Search};
@@ -64,7 +64,7 @@ fn derived(
     wanted.retain(|&(family, from)| is_wanted(&mechanism, family, from));
     let functions = parallel::map(&wanted, |&(family, from)| {
         let program = assembler.cheapest(family, from)?;
-        Ok(Function::new(&mechanism, family, from, program))
+        Ok(CompiledFunction::new(&mechanism, family, from, program))
     });
     Ok(RobotModel {
         functions: functions.into_iter().collect::<Result<_, Underivable>>()?,

@@ -39,5 +39,5 @@ pub mod selection;
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
-pub use model::{Function, RobotModel};
+pub use model::{CompiledFunction, RobotModel};
 pub use request::Request;

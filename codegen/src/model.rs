@@ -1,27 +1,32 @@
 //! A compiled robot: sizes, parameters and one program per function.
 
-use crate::derivation::{BodyParameter, Columns, Family, From, JointsBy, Selection};
+use crate::derivation::{BodyParameter, Columns, Family, JointsBy, MotionInput, Selection};
 use crate::lowering::Program;
 use crate::mechanism::{JointKind, Mechanism};
 use crate::selection::BaseParameter;
 
 /// A function of the robot.
 #[derive(Debug, Clone)]
-pub struct Function {
+pub struct CompiledFunction {
     /// Name of the Rust function.
     pub name: String,
     /// What it computes.
     pub family: Family,
     /// What it is evaluated from. From actuators, the program's pose is the one that forward
     /// kinematics finds.
-    pub from: From,
+    pub from: MotionInput,
     /// The program.
     pub program: Program,
 }
 
-impl Function {
+impl CompiledFunction {
     /// A function of a robot with its program.
-    pub(crate) fn new(mechanism: &Mechanism, family: Family, from: From, program: Program) -> Self {
+    pub(crate) fn new(
+        mechanism: &Mechanism,
+        family: Family,
+        from: MotionInput,
+        program: Program,
+    ) -> Self {
         Self {
             name: family.function_name(from, mechanism.platform.is_none()),
             family,
@@ -41,13 +46,13 @@ pub struct RobotModel {
     /// Base parameters with their regroupings, in the symmetric order (43).
     pub base: Vec<BaseParameter>,
     /// All functions.
-    pub functions: Vec<Function>,
+    pub functions: Vec<CompiledFunction>,
 }
 
 impl RobotModel {
     /// The function of a family, evaluated from what is asked for.
     #[must_use]
-    pub fn function(&self, family: Family, from: From) -> Option<&Function> {
+    pub fn function(&self, family: Family, from: MotionInput) -> Option<&CompiledFunction> {
         self.functions
             .iter()
             .find(|f| f.family == family && f.from == from)
@@ -55,11 +60,11 @@ impl RobotModel {
 
     /// The function that plain states (pose or, for a tree, joints) are given to.
     #[must_use]
-    pub fn plain(&self, family: Family) -> Option<&Function> {
+    pub fn plain(&self, family: Family) -> Option<&CompiledFunction> {
         let from = if self.is_tree() {
-            From::Joints
+            MotionInput::Joints
         } else {
-            From::Pose
+            MotionInput::Pose
         };
         self.function(family, from)
     }
@@ -72,14 +77,14 @@ impl RobotModel {
 
     /// Whether the function's joints are found by Newton's method before its program runs.
     #[must_use]
-    pub fn finds_joints(&self, function: &Function) -> bool {
-        self.selection.joints == JointsBy::Newton && function.from != From::Joints
+    pub fn finds_joints(&self, function: &CompiledFunction) -> bool {
+        self.selection.joints == JointsBy::Newton && function.from != MotionInput::Joints
     }
 
     /// Whether forward kinematics finds the function's pose before its program runs.
     #[must_use]
-    pub fn finds_pose(&self, function: &Function) -> bool {
-        function.from == From::Actuators && function.family != Family::PoseInClosedForm
+    pub fn finds_pose(&self, function: &CompiledFunction) -> bool {
+        function.from == MotionInput::Actuators && function.family != Family::PoseInClosedForm
     }
 
     /// The parameters that the columns of a function stand for.

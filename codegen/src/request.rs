@@ -1,11 +1,11 @@
 //! What a user asks of the generator: which functions, and how much work fewer operations are worth.
 
-use crate::derivation::{Family, From};
+use crate::derivation::{Family, MotionInput};
 use crate::effort::Effort;
 use crate::mechanism::Mechanism;
 
 /// Which functions of a robot a model shall have.
-pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, From) -> bool + Sync);
+pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, MotionInput) -> bool + Sync);
 
 /// What a model shall have, and what work it is worth; by default all functions, quickly.
 #[derive(Clone, Copy)]

@@ -14,7 +14,7 @@ use overact::{
 };
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, Family, From},
+    derivation::{Columns, Family, MotionInput},
     evaluation::{Evaluator, Failed, Rows},
     lowering::{Condition, Program},
     mechanism::Mechanism,
@@ -112,15 +112,15 @@ impl InterpretedRobot {
     /// Whether a function of a model is served, or serves to find pose and joints. A model needs no
     /// others to be interpreted.
     #[must_use]
-    pub fn serves(mechanism: &Mechanism, family: Family, from: From) -> bool {
+    pub fn serves(mechanism: &Mechanism, family: Family, from: MotionInput) -> bool {
         let plain = match mechanism.platform {
-            Some(_) => From::Pose,
-            None => From::Joints,
+            Some(_) => MotionInput::Pose,
+            None => MotionInput::Joints,
         };
         match family {
             Family::PoseInClosedForm => true,
             Family::ClosureError | Family::LegsJacobian | Family::ClosureActuatorJacobian => {
-                from == From::Joints
+                from == MotionInput::Joints
             }
             _ => from == plain && ALL.iter().any(|(_, served)| *served == family),
         }
@@ -133,7 +133,7 @@ impl InterpretedRobot {
     }
 
     fn serve(&self, function: Function, family: Family) -> Option<Served> {
-        let from_joints = || self.model.function(family, From::Joints);
+        let from_joints = || self.model.function(family, MotionInput::Joints);
         let wanted = self.model.plain(family).or_else(from_joints)?;
         let index = self
             .model
@@ -178,7 +178,7 @@ impl InterpretedRobot {
     fn pose_in_closed_form(&self, actuators: &[f64]) -> Option<Vec<f64>> {
         let function = self
             .model
-            .function(Family::PoseInClosedForm, From::Actuators)?;
+            .function(Family::PoseInClosedForm, MotionInput::Actuators)?;
         let mut pose = vec![0.0; self.names.sizes.pose];
         let given = [Rows {
             values: actuators,

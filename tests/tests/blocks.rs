@@ -1,6 +1,6 @@
 //! Programs evaluated over blocks of samples, and what they say where they have no value.
 
-use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::evaluation::{BLOCK, Rows};
 use overact_codegen::lowering::{Condition, Program};
 use overact_codegen::mechanism::states::random_states;
@@ -79,7 +79,9 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
         all[far].state.pose[0] = 3.0;
     }
     let family = Family::IdmRedPlatform(Columns::Standard);
-    let function = dualv()?.function(family, From::Pose).ok_or("no function")?;
+    let function = dualv()?
+        .function(family, MotionInput::Pose)
+        .ok_or("no function")?;
     let program = &function.program;
     let mut poses = Vec::new();
     let mut rates = Vec::new();
@@ -108,7 +110,9 @@ fn the_first_sample_out_of_reach_is_named() -> Result<(), Failure> {
 fn what_follows_a_state_out_of_reach_counts_for_nothing() -> Result<(), Failure> {
     let model = dualv()?;
     let family = Family::IdmRedPlatform(Columns::Standard);
-    let function = model.function(family, From::Pose).ok_or("no function")?;
+    let function = model
+        .function(family, MotionInput::Pose)
+        .ok_or("no function")?;
     let [rows, columns] = function.program.output.shape[..] else {
         return Err("the regressor is a matrix".into());
     };

@@ -14,7 +14,26 @@ struct House {
     order: &'static [&'static str],
 }
 
-const HOUSES: [House; 5] = [
+const HOUSES: [House; 6] = [
+    House {
+        folder: "codegen",
+        order: &[
+            "parallel",
+            "effort",
+            "diagnostic",
+            "cas",
+            "description",
+            "mechanism",
+            "derivation",
+            "lowering",
+            "evaluation",
+            "selection",
+            "model",
+            "request",
+            "compile",
+            "emission",
+        ],
+    },
     House {
         folder: "identification",
         order: &[

@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 use overact_codegen::Effort;
 use overact_codegen::compile_with;
-use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::{Diagnostics, Request, RobotModel, Source};
 use overact_tests::reference::energy::total_energy;
@@ -154,7 +154,7 @@ fn agree(sketch: &Sketch) -> Result<BTreeSet<String>, Failure> {
 
 /// The model with the functions that this seed looks at; for one in sixteen, operations are searched.
 fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
-    let wanted = |mechanism: &Mechanism, family: Family, from: From| {
+    let wanted = |mechanism: &Mechanism, family: Family, from: MotionInput| {
         let always = match family {
             // The closure error is what Newton's method drives to zero, not a quantity of its own. The
             // pose in closed form has the assembly mode of home, which a state may have left.
@@ -165,7 +165,7 @@ fn model_of(source: &Source, seed: u64) -> Result<RobotModel, Diagnostics> {
             | Family::JointAccelerations
             | Family::InverseDynamics
             | Family::IdmRedPlatform(_)
-            | Family::IdmRedActuators(Columns::Standard) => from != From::Actuators,
+            | Family::IdmRedActuators(Columns::Standard) => from != MotionInput::Actuators,
             _ => false,
         };
         let name = family.function_name(from, mechanism.platform.is_none());

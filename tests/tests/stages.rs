@@ -3,18 +3,18 @@
 //! The cost table pins the operation counts of all functions.
 
 use overact_codegen::cas::Arena;
-use overact_codegen::derivation::{Columns, Derived, Family, From, derive};
+use overact_codegen::derivation::{Columns, Derived, Family, MotionInput, derive};
 use overact_codegen::description::{self, Description};
 use overact_codegen::emission;
 use overact_codegen::lowering::{Operand, Operation, Program};
 use overact_codegen::mechanism::Mechanism;
 use overact_codegen::mechanism::states::random_states;
-use overact_codegen::model::Function;
+use overact_codegen::model::CompiledFunction;
 use overact_tests::support::backend::evaluate;
 use overact_tests::support::{Failure, dualv};
 use std::fmt::Write;
 
-fn function(family: Family, from: From) -> Result<&'static Function, Failure> {
+fn function(family: Family, from: MotionInput) -> Result<&'static CompiledFunction, Failure> {
     let found = dualv()?.function(family, from);
     found.ok_or_else(|| format!("no {family:?} from {from:?}").into())
 }
@@ -92,7 +92,7 @@ fn derivation_of_the_dualv() -> Result<(), Failure> {
     let derived_text = |family: Family, picked: &dyn Fn(usize, usize) -> bool| {
         let arena = Arena::new();
         let (mechanism, selection) = (&model.mechanism, &model.selection);
-        let derived = derive(&arena, mechanism, selection, family, From::Joints)
+        let derived = derive(&arena, mechanism, selection, family, MotionInput::Joints)
             .map_err(|e| format!("{e:?}"))?;
         Ok::<String, Failure>(printed(&derived, picked))
     };
@@ -118,7 +118,7 @@ fn printed(derived: &Derived<'_>, picked: &dyn Fn(usize, usize) -> bool) -> Stri
 
 #[test]
 fn lowering_of_the_inverse_jacobian() -> Result<(), Failure> {
-    let program = &function(Family::InverseJacobian, From::Joints)?.program;
+    let program = &function(Family::InverseJacobian, MotionInput::Joints)?.program;
     insta::assert_snapshot!(listing(program)?);
     Ok(())
 }
@@ -215,7 +215,11 @@ fn cost_of_all_functions() -> Result<(), Failure> {
 
 #[test]
 fn regressor_from_joints_stays_as_small_as_it_is() -> Result<(), Failure> {
-    let program = &function(Family::IdmRedPlatform(Columns::Standard), From::Joints)?.program;
+    let program = &function(
+        Family::IdmRedPlatform(Columns::Standard),
+        MotionInput::Joints,
+    )?
+    .program;
     let cost = program.cost();
     assert_eq!(program.output.shape, [3, 64]);
     assert!(cost.operations() <= OPERATIONS, "{cost}");
@@ -245,7 +249,10 @@ fn emission_of_two_functions() -> Result<(), Failure> {
 #[test]
 fn evaluation_of_the_regressor() -> Result<(), Failure> {
     let model = dualv()?;
-    let function = function(Family::IdmRedPlatform(Columns::Standard), From::Joints)?;
+    let function = function(
+        Family::IdmRedPlatform(Columns::Standard),
+        MotionInput::Joints,
+    )?;
     let state = &random_states(&model.mechanism, 1, 7)[0];
     let values = evaluate(&function.program, &|name| match name {
         "pose" => Some(&state.pose),

@@ -1,6 +1,6 @@
 //! Times a generated function and the evaluation of its program over blocks, in turns, and prints the
 //! shortest times per sample in nanoseconds: function, blocks as they lie, rows.
-use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::evaluation::{Evaluator, Number, Rows};
 use overact_codegen::{Source, compile};
 use overact_timed::@MODULE@;
@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let text = fs::read_to_string("@DESCRIPTION@")?;
     let model = compile(&Source::new("description", &text)).map_err(|error| format!("{error:?}"))?.model;
     let family = Family::IdmRedPlatform(Columns::@COLUMNS@);
-    let program = &model.function(family, From::Joints).ok_or("no such function")?.program;
+    let program = &model.function(family, MotionInput::Joints).ok_or("no such function")?.program;
     let mut start = 0;
     let inputs: Vec<Vec<f64>> = LENGTHS
         .iter()

@@ -11,7 +11,7 @@ use crate::{
 use clap::ValueEnum;
 use overact_codegen::{
     Effort, Request, RobotModel,
-    derivation::{Columns, Family, From},
+    derivation::{Columns, Family, MotionInput},
     evaluation::Rows,
     lowering::Program,
     mechanism::Mechanism,
@@ -68,11 +68,11 @@ enum Choice {
 }
 
 impl Source {
-    const fn from(self) -> From {
+    const fn from(self) -> MotionInput {
         match self {
-            Self::Pose => From::Pose,
-            Self::Joints => From::Joints,
-            Self::Actuators => From::Actuators,
+            Self::Pose => MotionInput::Pose,
+            Self::Joints => MotionInput::Joints,
+            Self::Actuators => MotionInput::Actuators,
         }
     }
 }
@@ -102,7 +102,7 @@ struct Document {
 /// which it has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let name = arguments.function.as_str();
-    let wanted = |mechanism: &Mechanism, family: Family, from: From| {
+    let wanted = |mechanism: &Mechanism, family: Family, from: MotionInput| {
         let full = || family.function_name(from, mechanism.platform.is_none());
         InterpretedRobot::serves(mechanism, family, from) || family.name() == name || full() == name
     };
@@ -174,7 +174,7 @@ fn parameters(model: &RobotModel, family: Family) -> Vec<String> {
 fn evaluate(
     robot: &InterpretedRobot,
     program: &Program,
-    from: From,
+    from: MotionInput,
     states: &States,
 ) -> Result<Vec<f64>, Failure> {
     let inputs = gather::inputs(robot, program, from, states)?;

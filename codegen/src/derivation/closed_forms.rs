@@ -1,7 +1,7 @@
 //! Every robot of the library closes with the joints that a rule gives, in the home's working mode.
 
 use crate::cas::Arena;
-use crate::derivation::{Derived, Family, From, Selection, Underivable, derive};
+use crate::derivation::{Derived, Family, MotionInput, Selection, Underivable, derive};
 use crate::diagnostic::Source;
 use crate::mechanism::numeric::{platform_frame, target};
 use crate::mechanism::{Home, Mechanism, check};
@@ -80,7 +80,7 @@ fn derived<'a>(
     arena: &'a Arena,
     mechanism: &'a Mechanism,
     family: Family,
-    from: From,
+    from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
     let selection = Selection::default();
     derive(arena, mechanism, &selection, family, from)
@@ -93,7 +93,7 @@ fn joints_by_rule_close_every_leg_and_keep_the_mode_of_home() {
             continue;
         };
         let arena = Arena::new();
-        let derived = derived(&arena, &mechanism, Family::Joints, From::Pose)
+        let derived = derived(&arena, &mechanism, Family::Joints, MotionInput::Pose)
             .unwrap_or_else(|e| panic!("{name}: {e:?}"));
         let joints = Values {
             arena: &arena,
@@ -129,11 +129,16 @@ fn poses_by_rule_are_those_that_the_actuators_came_from() {
             &arena,
             &mechanism,
             Family::PoseInClosedForm,
-            From::Actuators,
+            MotionInput::Actuators,
         );
         let Ok(found) = found else { continue };
-        let inverse = derived(&arena, &mechanism, Family::ActuatorPositions, From::Pose)
-            .unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let inverse = derived(
+            &arena,
+            &mechanism,
+            Family::ActuatorPositions,
+            MotionInput::Pose,
+        )
+        .unwrap_or_else(|e| panic!("{name}: {e:?}"));
         let values = |derived| Values {
             arena: &arena,
             derived,

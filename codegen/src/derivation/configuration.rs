@@ -4,20 +4,10 @@
 //! angle is ever computed: the closure gives its sine and cosine algebraically, and every other angle
 //! of the leg follows by the addition theorem.
 
+use super::motion_input::MotionInput;
 use crate::cas::{Arena, Direction, Expr, Number, Ratio};
 use crate::mechanism::Mechanism;
 use std::cell::RefCell;
-
-/// What a model is evaluated from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum From {
-    /// The platform's pose; joints follow from the closure.
-    Pose,
-    /// The joint positions (and the pose, for the platform's orientation).
-    Joints,
-    /// The pose that forward kinematics finds, with the actuators' velocities and accelerations.
-    Actuators,
-}
 
 /// Cosine and sine of an angle.
 pub type Unit<'a> = (Expr<'a>, Expr<'a>);
@@ -26,7 +16,7 @@ pub type Unit<'a> = (Expr<'a>, Expr<'a>);
 #[derive(Debug, Clone)]
 pub struct Configuration<'a> {
     arena: &'a Arena,
-    from: From,
+    from: MotionInput,
     /// What was asked for without being known, if that has symbols instead of no value.
     unknowns: Option<RefCell<Vec<Unknown>>>,
     /// Angles whose sine and cosine are known from the closure.
@@ -40,7 +30,7 @@ pub struct Configuration<'a> {
 impl<'a> Configuration<'a> {
     /// The configuration of `mechanism`.
     #[must_use]
-    pub fn new(arena: &'a Arena, mechanism: &Mechanism, from: From) -> Self {
+    pub fn new(arena: &'a Arena, mechanism: &Mechanism, from: MotionInput) -> Self {
         let joints = mechanism.joints();
         let names = joints.iter().map(|&index| {
             (
@@ -60,7 +50,7 @@ impl<'a> Configuration<'a> {
 
     /// What the configuration is given by.
     #[must_use]
-    pub const fn from(&self) -> From {
+    pub const fn from(&self) -> MotionInput {
         self.from
     }
 
@@ -105,8 +95,8 @@ impl<'a> Configuration<'a> {
     #[must_use]
     pub fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         match self.from {
-            From::Joints => Some(self.arena.variable(&Self::joint_symbol(index))),
-            From::Pose | From::Actuators => {
+            MotionInput::Joints => Some(self.arena.variable(&Self::joint_symbol(index))),
+            MotionInput::Pose | MotionInput::Actuators => {
                 let known = self.positions.iter().find(|(at, _)| *at == index);
                 let asked = || Some(self.ask(Unknown::Slide(index))?.slide(self.arena));
                 known.map(|p| p.1).or_else(asked)
@@ -129,9 +119,9 @@ impl<'a> Configuration<'a> {
     #[must_use]
     pub fn unit(&self, angle: &Direction) -> Option<Unit<'a>> {
         let unit = match self.from {
-            From::Joints => self.arena.cosine_and_sine(angle),
+            MotionInput::Joints => self.arena.cosine_and_sine(angle),
             _ if self.is_input(angle) => self.arena.cosine_and_sine(angle),
-            From::Pose | From::Actuators => match self.composed(angle) {
+            MotionInput::Pose | MotionInput::Actuators => match self.composed(angle) {
                 Some(unit) => unit,
                 None => return self.unknown_unit(angle),
             },

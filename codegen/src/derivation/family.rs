@@ -1,7 +1,7 @@
 //! The functions that a robot has: names, meaning, equations, units.
 
-use super::configuration::From;
 use super::forward_kinematics::closed_form;
+use super::motion_input::MotionInput;
 use super::selection::JointsBy;
 use crate::cas::Arena;
 use crate::mechanism::Mechanism;
@@ -197,7 +197,7 @@ impl Family {
 
     /// The name of the Rust function, unique in the robot.
     #[must_use]
-    pub fn function_name(self, from: From, tree: bool) -> String {
+    pub fn function_name(self, from: MotionInput, tree: bool) -> String {
         if self == Self::PoseInClosedForm {
             return self.name().to_owned();
         }
@@ -207,17 +207,17 @@ impl Family {
             ""
         };
         let from = match from {
-            From::Joints if !tree => "_from_joints",
-            From::Actuators => "_from_actuators",
-            From::Pose | From::Joints => "",
+            MotionInput::Joints if !tree => "_from_joints",
+            MotionInput::Actuators => "_from_actuators",
+            MotionInput::Pose | MotionInput::Joints => "",
         };
         format!("{}{base}{from}", self.name())
     }
 
     /// All functions of a robot with what they are evaluated from.
     #[must_use]
-    pub fn all(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Self, From)> {
-        use From::{Actuators, Joints, Pose};
+    pub fn all(mechanism: &Mechanism, joints: JointsBy) -> Vec<(Self, MotionInput)> {
+        use MotionInput::{Actuators, Joints, Pose};
         let tree = mechanism.platform.is_none();
         let redundant = mechanism.actuated().len() > mechanism.dof();
         let payload = mechanism
@@ -225,16 +225,16 @@ impl Family {
             .as_ref()
             .is_some_and(|p| p.payload.is_some());
         let mut all = Vec::new();
-        let mut add = |families: &[Self], from: &[From]| {
+        let mut add = |families: &[Self], from: &[MotionInput]| {
             for &family in families {
                 for &from in from {
                     all.push((family, from));
                 }
             }
         };
-        let pose: &[From] = if tree { &[Joints] } else { &[Pose] };
-        let pose_and_joints: &[From] = if tree { &[Joints] } else { &[Pose, Joints] };
-        let dynamic: &[From] = if tree {
+        let pose: &[MotionInput] = if tree { &[Joints] } else { &[Pose] };
+        let pose_and_joints: &[MotionInput] = if tree { &[Joints] } else { &[Pose, Joints] };
+        let dynamic: &[MotionInput] = if tree {
             &[Joints]
         } else {
             &[Pose, Joints, Actuators]
@@ -292,17 +292,5 @@ impl Family {
             );
         }
         all
-    }
-}
-
-impl From {
-    /// `pose`, `joints` or `actuators`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pose => "pose",
-            Self::Joints => "joints",
-            Self::Actuators => "actuators",
-        }
     }
 }

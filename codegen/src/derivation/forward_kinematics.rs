@@ -12,8 +12,9 @@
 //! The sign of t is the assembly mode of the home configuration. A `point` or `translation` platform
 //! is solved by one meeting; a `planar` one by two, where two pairs of legs hold it at two points.
 
-use super::configuration::{Configuration, From, Unknown, angle_near};
+use super::configuration::{Configuration, Unknown, angle_near};
 use super::inverse_kinematics::{Reach, Task, advance, at_zero, equations};
+use super::motion_input::MotionInput;
 use super::platform::PlatformPose;
 use crate::cas::{Arena, Expr, Matrix3, Number, Ratio, Substitution, SymbolId, Vector3};
 use crate::mechanism::numeric::platform_frame;
@@ -128,7 +129,7 @@ impl<'a> Work<'a> {
 
     /// A configuration in which the leg's actuators are known.
     fn measured(self, leg: usize) -> Configuration<'a> {
-        let mut configuration = Configuration::new(self.arena, self.mechanism, From::Pose);
+        let mut configuration = Configuration::new(self.arena, self.mechanism, MotionInput::Pose);
         let joints = self.mechanism.joints();
         for (k, &index) in self.mechanism.actuated().iter().enumerate() {
             if joints[index].leg != leg {

@@ -1,11 +1,12 @@
 //! The functions that every robot has, as named inputs and output expressions.
 
-use super::configuration::{From, angle_near};
+use super::configuration::angle_near;
 use super::elimination::Rows;
 use super::family::{Columns, Family};
 use super::forward_kinematics::closed_form;
 use super::guard::{Guard, GuardKind};
 use super::linear::{Factored, apply, null_space, product, pseudo_inverse, transposed};
+use super::motion_input::MotionInput;
 use super::parameter::BodyParameter;
 use super::regressor::Projection;
 use super::robot::Robot;
@@ -55,14 +56,14 @@ pub fn derive<'a>(
     mechanism: &'a Mechanism,
     selection: &Selection,
     family: Family,
-    from: From,
+    from: MotionInput,
 ) -> Result<Derived<'a>, Underivable> {
     if family == Family::PoseInClosedForm {
         return pose_in_closed_form(arena, mechanism);
     }
     let configuration = match (from, selection.joints) {
-        (From::Pose | From::Actuators, JointsBy::Rule) => From::Pose,
-        _ => From::Joints,
+        (MotionInput::Pose | MotionInput::Actuators, JointsBy::Rule) => MotionInput::Pose,
+        _ => MotionInput::Joints,
     };
     let robot = Robot::new(arena, mechanism, configuration, &selection.formulation)?;
     let mut sheet = Sheet {
@@ -108,19 +109,21 @@ fn pose_in_closed_form<'a>(
 pub(super) struct Sheet<'a, 's> {
     pub(super) robot: Robot<'a>,
     selection: &'s Selection,
-    from: From,
+    from: MotionInput,
     twist: Vec<Expr<'a>>,
     inputs: Vec<(&'static str, usize)>,
     guards: Vec<Guard<'a>>,
 }
 
 impl<'a> Robot<'a> {
-    fn configuration_inputs(&self, from: From) -> Vec<(&'static str, usize)> {
+    fn configuration_inputs(&self, from: MotionInput) -> Vec<(&'static str, usize)> {
         let joints = ("joints", self.mechanism.joints().len());
         match (&self.platform, from) {
             (None, _) => vec![joints],
-            (Some(_), From::Pose | From::Actuators) => vec![("pose", self.mechanism.pose_len())],
-            (Some(_), From::Joints) => vec![("pose", self.mechanism.pose_len()), joints],
+            (Some(_), MotionInput::Pose | MotionInput::Actuators) => {
+                vec![("pose", self.mechanism.pose_len())]
+            }
+            (Some(_), MotionInput::Joints) => vec![("pose", self.mechanism.pose_len()), joints],
         }
     }
 }
@@ -135,7 +138,7 @@ impl<'a> Sheet<'a, '_> {
     /// that fit the actuators' rates best.
     fn twist(&mut self) -> Vec<Expr<'a>> {
         let tree = self.robot.platform.is_none();
-        if self.from == From::Actuators {
+        if self.from == MotionInput::Actuators {
             let rates = self.input("actuator_velocities", self.robot.mechanism.actuated().len());
             self.twist = self.least_squares(&rates);
             return self.twist.clone();
@@ -148,7 +151,7 @@ impl<'a> Sheet<'a, '_> {
 
     fn acceleration(&mut self) -> Vec<Expr<'a>> {
         let tree = self.robot.platform.is_none();
-        if self.from == From::Actuators {
+        if self.from == MotionInput::Actuators {
             let twist = self.twist.clone();
             return self.acceleration_of(&twist);
         }
@@ -251,7 +254,7 @@ impl<'a> Sheet<'a, '_> {
         let (arena, mechanism) = (self.robot.arena, self.robot.mechanism);
         let configuration = &self.robot.configuration;
         let position = |(index, of): (usize, &crate::mechanism::JointIndex)| {
-            if mechanism.platform.is_none() || configuration.from() == From::Joints {
+            if mechanism.platform.is_none() || configuration.from() == MotionInput::Joints {
                 return arena.variable(&format!("joints[{index}]"));
             }
             if mechanism.joint(*of).kind == JointKind::Prismatic {

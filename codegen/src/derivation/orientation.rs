@@ -1,8 +1,9 @@
 //! Orientations as products of turns about z and constant tilts, so that the orientation of one frame
 //! in another is multiplied out between the two alone, wherever the legs start.
 
-use super::configuration::{Configuration, From};
+use super::configuration::Configuration;
 use super::leg::joint_turn;
+use super::motion_input::MotionInput;
 use super::platform::constant_rotation;
 use super::rates::parallel;
 use crate::cas::{Angle, Arena, Direction, Matrix3, Ratio};
@@ -122,7 +123,7 @@ pub fn station_count(mechanism: &Mechanism, leg: usize) -> usize {
         return 1;
     }
     let arena = Arena::new();
-    let configuration = Configuration::new(&arena, mechanism, From::Joints);
+    let configuration = Configuration::new(&arena, mechanism, MotionInput::Joints);
     let first_joint = mechanism.leg_range(leg).start;
     Orientation::of_leg(&mechanism.legs[leg], first_joint, &configuration)
         .map_or(1, |frames| Orientation::stations(&frames).len())

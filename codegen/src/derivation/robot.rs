@@ -5,11 +5,12 @@ use super::bias::end_bias;
 use super::body::{BodyMotion, leg_bodies};
 use super::carried::{CarriedBody, Mount};
 use super::centres::{Centre, centres};
-use super::configuration::{Configuration, From};
+use super::configuration::Configuration;
 use super::elimination::Rows;
 use super::guard::{Guard, GuardKind};
 use super::inverse_kinematics::{Task, solve_leg};
 use super::leg::{LegClosure, LegFrames};
+use super::motion_input::MotionInput;
 use super::platform::PlatformPose;
 use super::rates::Rates;
 use super::selection::Formulation;
@@ -76,12 +77,16 @@ impl<'a> Robot<'a> {
     pub fn new(
         arena: &'a Arena,
         mechanism: &'a Mechanism,
-        from: From,
+        from: MotionInput,
         formulation: &Formulation,
     ) -> Result<Self, Underivable> {
         let motion = mechanism.platform.as_ref().map(|p| p.motion);
         // The configuration of a tree is its joints, whatever it is called.
-        let from = if motion.is_none() { From::Joints } else { from };
+        let from = if motion.is_none() {
+            MotionInput::Joints
+        } else {
+            from
+        };
         let mut robot = Self {
             arena,
             mechanism,
@@ -105,7 +110,7 @@ impl<'a> Robot<'a> {
         let station = formulation.stations.get(index).copied().unwrap_or_default();
         let first_joint = self.mechanism.leg_range(index).start;
         let name = || leg.name.clone();
-        if let (Some(platform), From::Pose | From::Actuators) =
+        if let (Some(platform), MotionInput::Pose | MotionInput::Actuators) =
             (&self.platform, self.configuration.from())
         {
             let task = Task::new(arena, self.mechanism, index, platform)

@@ -1,15 +1,15 @@
 //! One generated function: documentation, signature, body.
 
 use super::expression::Body;
-use crate::derivation::{Family, From};
+use crate::derivation::{Family, MotionInput};
 use crate::lowering::Array;
-use crate::model::{Function, RobotModel};
+use crate::model::{CompiledFunction, RobotModel};
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 
 /// The function as an item of an `impl` block.
 #[must_use]
-pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
+pub fn item(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
     if model.finds_joints(function) && function.family == Family::Joints {
         return super::inverse::item(model);
     }
@@ -57,15 +57,15 @@ pub fn item(model: &RobotModel, function: &Function) -> TokenStream {
 
 /// The function from joints that has the same program: where Newton's method finds the joints of a
 /// pose, the function from the pose only calls it.
-fn twin<'m>(model: &'m RobotModel, function: &Function) -> Option<&'m Function> {
-    let is_pose = needs_joints(model, function) && function.from == From::Pose;
+fn twin<'m>(model: &'m RobotModel, function: &CompiledFunction) -> Option<&'m CompiledFunction> {
+    let is_pose = needs_joints(model, function) && function.from == MotionInput::Pose;
     is_pose
-        .then(|| model.function(function.family, From::Joints))
+        .then(|| model.function(function.family, MotionInput::Joints))
         .flatten()
 }
 
 /// The call of a function with arguments of the names of its inputs, as a `Result`.
-fn call(function: &Function, fallible: bool) -> TokenStream {
+fn call(function: &CompiledFunction, fallible: bool) -> TokenStream {
     let name = format_ident!("{}", function.name);
     let inputs = function
         .program
@@ -82,14 +82,14 @@ fn call(function: &Function, fallible: bool) -> TokenStream {
 
 /// Whether the function returns a `Result`.
 #[must_use]
-pub fn is_fallible(model: &RobotModel, function: &Function) -> bool {
+pub fn is_fallible(model: &RobotModel, function: &CompiledFunction) -> bool {
     model.finds_pose(function)
         || needs_joints(model, function)
         || !function.program.guards.is_empty()
 }
 
 /// Whether the function's program, or the search of its joints, uses the pose.
-fn needs_pose(model: &RobotModel, function: &Function) -> bool {
+fn needs_pose(model: &RobotModel, function: &CompiledFunction) -> bool {
     let used = function.program.used_inputs();
     let pose = function
         .program
@@ -100,7 +100,7 @@ fn needs_pose(model: &RobotModel, function: &Function) -> bool {
 }
 
 /// Whether the function's program uses joints that Newton's method has to find first.
-fn needs_joints(model: &RobotModel, function: &Function) -> bool {
+fn needs_joints(model: &RobotModel, function: &CompiledFunction) -> bool {
     let inputs = &function.program.inputs;
     let used = function.program.used_inputs();
     let joints = inputs
@@ -127,7 +127,7 @@ pub fn array_type(array: &Array) -> TokenStream {
     }
 }
 
-fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
+fn arguments(model: &RobotModel, function: &CompiledFunction) -> TokenStream {
     let used = function.program.used_inputs();
     // A pose is needed to find the joints; a function that only calls another one hands all on.
     let hands_on = twin(model, function).is_some();
@@ -167,16 +167,18 @@ fn arguments(model: &RobotModel, function: &Function) -> TokenStream {
 }
 
 /// Lines of documentation: meaning, inputs, output, errors, operations.
-fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
+fn documentation(model: &RobotModel, function: &CompiledFunction) -> Vec<String> {
     let mut lines = vec![format!(" {}", function.family.summary()), String::new()];
     let from = match (function.from, model.is_tree()) {
         (_, true) => " From the joints' positions and rates.",
-        (From::Pose, _) => " From the platform's pose and motion.",
-        (From::Joints, _) => {
+        (MotionInput::Pose, _) => " From the platform's pose and motion.",
+        (MotionInput::Joints, _) => {
             " From measured joint positions and the platform's motion; of the pose only the orientation is used."
         }
-        (From::Actuators, _) if !model.finds_pose(function) => " From the actuators' positions.",
-        (From::Actuators, _) => {
+        (MotionInput::Actuators, _) if !model.finds_pose(function) => {
+            " From the actuators' positions."
+        }
+        (MotionInput::Actuators, _) => {
             " From the actuators' motion: forward kinematics from the pose `start`, then least squares."
         }
     };
@@ -218,7 +220,7 @@ fn documentation(model: &RobotModel, function: &Function) -> Vec<String> {
     lines
 }
 
-fn columns_constant(function: &Function) -> &'static str {
+fn columns_constant(function: &CompiledFunction) -> &'static str {
     use crate::derivation::Columns;
     match (function.family, function.family.columns()) {
         (Family::IdmRedPayload | Family::IdmRedPayloadActuators, _) => "`PAYLOAD_PARAMETERS`",

@@ -1,7 +1,7 @@
 //! Inverse kinematics of robots whose legs no rule solves: Newton's method on the generated closure.
 
 use super::function::is_fallible;
-use crate::derivation::{Family, From};
+use crate::derivation::{Family, MotionInput};
 use crate::mechanism::Motion;
 use crate::model::RobotModel;
 use proc_macro2::{Literal, TokenStream};
@@ -12,7 +12,7 @@ use quote::quote;
 pub fn item(model: &RobotModel) -> TokenStream {
     let mechanism = &model.mechanism;
     let mark = |family: Family| {
-        let function = model.function(family, From::Joints);
+        let function = model.function(family, MotionInput::Joints);
         function
             .filter(|f| is_fallible(model, f))
             .map(|_| quote!(?))

@@ -1,7 +1,7 @@
 //! The generated `impl overact::Model`, which hands blocks of samples to the generated functions.
 
 use super::function::is_fallible;
-use crate::derivation::{Columns, Family, From};
+use crate::derivation::{Columns, Family, MotionInput};
 use crate::model::RobotModel;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -180,7 +180,7 @@ pub fn pose_from_actuators(model: &RobotModel) -> TokenStream {
         )
     };
     let is_redundant = model.mechanism.actuated().len() > model.mechanism.dof();
-    let (way, body) = match model.function(Family::PoseInClosedForm, From::Actuators) {
+    let (way, body) = match model.function(Family::PoseInClosedForm, MotionInput::Actuators) {
         Some(_) if is_redundant => (
             " Where the iteration fails from there, it starts again from `pose_in_closed_form`.",
             quote! {

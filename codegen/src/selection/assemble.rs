@@ -2,7 +2,7 @@
 
 use super::search::Search;
 use crate::cas::Arena;
-use crate::derivation::{Columns, Family, From, JointsBy, Selection, Underivable, derive};
+use crate::derivation::{Columns, Family, JointsBy, MotionInput, Selection, Underivable, derive};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 
@@ -22,7 +22,7 @@ impl Assembler<'_> {
     ///
     /// # Errors
     /// See [`Underivable`].
-    pub fn program(&self, family: Family, from: From) -> Result<Program, Underivable> {
+    pub fn program(&self, family: Family, from: MotionInput) -> Result<Program, Underivable> {
         let arena = Arena::new();
         let derived = derive(&arena, self.mechanism, self.selection, family, from)?;
         Ok(self.search.lower(&arena, self.mechanism, family, &derived))
@@ -32,7 +32,7 @@ impl Assembler<'_> {
     ///
     /// # Errors
     /// See [`Underivable`].
-    pub fn cheapest(&self, family: Family, from: From) -> Result<Program, Underivable> {
+    pub fn cheapest(&self, family: Family, from: MotionInput) -> Result<Program, Underivable> {
         let combined = self.program(family, from)?;
         if self.selection.combined.is_empty() || family.columns() != Some(Columns::Standard) {
             return Ok(combined);
@@ -56,8 +56,8 @@ pub(super) fn joints(
     selection: &Selection,
 ) -> Result<JointsBy, Underivable> {
     let from = match mechanism.platform {
-        Some(_) => From::Pose,
-        None => From::Joints,
+        Some(_) => MotionInput::Pose,
+        None => MotionInput::Joints,
     };
     match derive(&Arena::new(), mechanism, selection, Family::Joints, from) {
         Ok(_) => Ok(JointsBy::Rule),

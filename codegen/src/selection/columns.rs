@@ -5,7 +5,7 @@ use super::base::{BaseParameter, select, symmetric_order};
 use super::combine::exact_combinations;
 use super::regressor::Regressor;
 use super::search::Search;
-use crate::derivation::{Columns, Combination, Family, From, Selection, Underivable};
+use crate::derivation::{Columns, Combination, Family, MotionInput, Selection, Underivable};
 use crate::evaluation::{BLOCK, Evaluator, Rows};
 use crate::lowering::{Operand, Program};
 use crate::mechanism::states::{State, random_states};
@@ -57,7 +57,7 @@ fn operations(
         search: &Search::short(),
     };
     let family = Family::IdmRedPlatform(Columns::Base);
-    let program = trial.program(family, From::Joints)?;
+    let program = trial.program(family, MotionInput::Joints)?;
     Ok(program.cost().operations())
 }
 

@@ -10,7 +10,7 @@ use super::base::{BaseParameter, nearby_ratio};
 use super::regressor::{FAMILY, Regressor};
 use super::search::Search;
 use crate::cas::Number;
-use crate::derivation::{BodyParameter, Combination, From, Selection, Underivable};
+use crate::derivation::{BodyParameter, Combination, MotionInput, Selection, Underivable};
 use crate::mechanism::Mechanism;
 
 /// The combinations that make the standard regressor from joint angles cheaper than the one that is had
@@ -33,7 +33,7 @@ pub(super) fn cheaper_columns(
             },
             search: &Search::none(),
         };
-        let program = trial.program(FAMILY, From::Joints)?;
+        let program = trial.program(FAMILY, MotionInput::Joints)?;
         Ok(program.cost().operations())
     };
     let mut chosen: Vec<Combination> = Vec::new();

@@ -21,7 +21,7 @@ pub use base::BaseParameter;
 pub use search::Search;
 
 use crate::cas::Arena;
-use crate::derivation::{BodyParameter, Family, From, Selection, Underivable, derive};
+use crate::derivation::{BodyParameter, Family, MotionInput, Selection, Underivable, derive};
 use crate::mechanism::Mechanism;
 
 /// Chooses form and columns of a robot's model.
@@ -57,7 +57,7 @@ fn payload_columns(mechanism: &Mechanism) -> Result<Vec<BodyParameter>, Underiva
         mechanism,
         &selection,
         Family::IdmRedPayload,
-        From::Joints,
+        MotionInput::Joints,
     )?;
     let present = derived.present_columns();
     Ok(present.iter().map(|&c| selection.payload[c]).collect())

@@ -4,7 +4,9 @@
 use super::search::Search;
 use crate::cas::arena::Handle;
 use crate::cas::{Arena, Expr, Number};
-use crate::derivation::{BodyParameter, Columns, Family, From, Selection, Underivable, derive};
+use crate::derivation::{
+    BodyParameter, Columns, Family, MotionInput, Selection, Underivable, derive,
+};
 use crate::lowering::Program;
 use crate::mechanism::Mechanism;
 
@@ -30,7 +32,7 @@ impl Regressor {
     /// See [`Underivable`].
     pub(super) fn new(mechanism: &Mechanism, selection: &Selection) -> Result<Self, Underivable> {
         let arena = Arena::new();
-        let mut derived = derive(&arena, mechanism, selection, FAMILY, From::Joints)?;
+        let mut derived = derive(&arena, mechanism, selection, FAMILY, MotionInput::Joints)?;
         let present = derived.present_columns();
         derived.keep_columns(&present);
         let program = Search::none().lower(&arena, mechanism, FAMILY, &derived);

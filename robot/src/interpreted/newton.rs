@@ -6,7 +6,7 @@ use overact::{
     inverse::{self, Legs},
 };
 use overact_codegen::{
-    derivation::{Family, From},
+    derivation::{Family, MotionInput},
     evaluation::Rows,
     lowering::Program,
 };
@@ -18,7 +18,7 @@ impl InterpretedRobot {
         let sizes = self.info().sizes;
         let program = |family| {
             self.model
-                .function(family, From::Joints)
+                .function(family, MotionInput::Joints)
                 .map(|f| &f.program)
         };
         let (Some(closure), Some(jacobian)) =

@@ -4,7 +4,7 @@
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
 use overact_codegen::cas::Stream;
-use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::evaluation::Rows;
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
@@ -64,7 +64,7 @@ pub fn study(stem: &str, effort: Effort) -> Result<Vec<Errors>, Failure> {
         let (Family::IdmRedPlatform(columns), Some(other)) = (function.family, other) else {
             continue;
         };
-        if derived.finds_joints(function) || function.from == From::Actuators {
+        if derived.finds_joints(function) || function.from == MotionInput::Actuators {
             continue;
         }
         for (distance, states) in &groups {
@@ -92,10 +92,10 @@ pub fn study(stem: &str, effort: Effort) -> Result<Vec<Errors>, Failure> {
     Ok(errors)
 }
 
-fn name(columns: Columns, from: From) -> &'static str {
+fn name(columns: Columns, from: MotionInput) -> &'static str {
     match (columns, from) {
-        (Columns::Standard, From::Joints) => "standard columns, from joints",
-        (Columns::Base, From::Joints) => "base columns, from joints",
+        (Columns::Standard, MotionInput::Joints) => "standard columns, from joints",
+        (Columns::Base, MotionInput::Joints) => "base columns, from joints",
         (Columns::Standard, _) => "standard columns, from pose",
         (Columns::Base, _) => "base columns, from pose",
     }
@@ -103,8 +103,9 @@ fn name(columns: Columns, from: From) -> &'static str {
 
 fn model(stem: &str, effort: Effort) -> Result<RobotModel, Failure> {
     let source = description(stem)?;
-    let wanted = |_: &Mechanism, family: Family, from: From| {
-        from != From::Actuators && matches!(family, Family::IdmRedPlatform(_) | Family::Joints)
+    let wanted = |_: &Mechanism, family: Family, from: MotionInput| {
+        from != MotionInput::Actuators
+            && matches!(family, Family::IdmRedPlatform(_) | Family::Joints)
     };
     let request = Request {
         wanted: &wanted,

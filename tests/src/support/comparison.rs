@@ -8,10 +8,10 @@ use super::{Backend, Failure, Sample};
 use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
-use overact_codegen::derivation::{Columns, Family, From, Selection, Underivable};
+use overact_codegen::derivation::{Columns, Family, MotionInput, Selection, Underivable};
 use overact_codegen::lowering::Program;
 use overact_codegen::selection::{Assembler, Search};
-use overact_codegen::{Function, RobotModel};
+use overact_codegen::{CompiledFunction, RobotModel};
 
 /// Condition number of a partition up to which the plain tolerance holds; beyond, case 2 is compared
 /// with a tolerance of so many roundings times the condition number.
@@ -53,7 +53,7 @@ impl Comparison {
     /// If the reference can't compute it, or the backend has no value.
     pub fn function(
         &mut self,
-        function: &Function,
+        function: &CompiledFunction,
         backend: &dyn Backend,
         all: &[Sample],
         truths: &[Truth<'_>],
@@ -156,7 +156,7 @@ fn program_of(model: &RobotModel, kept: &[usize]) -> Result<Option<Program>, Fai
         selection: &selection,
         search: &Search::none(),
     };
-    match assembler.program(family, From::Joints) {
+    match assembler.program(family, MotionInput::Joints) {
         Ok(program) => Ok(Some(program)),
         Err(Underivable::SingularPartition) => Ok(None),
         Err(error) => Err(format!("{error:?}").into()),

@@ -8,7 +8,7 @@ use crate::reference::parameters::{BODY, INERTIAL, leg_start, names, platform_st
 use crate::reference::{Dynamics, Mechanism, State};
 use nalgebra::{DMatrix, DVector};
 use overact_codegen::RobotModel;
-use overact_codegen::derivation::{BodyParameter, Columns, Family, From};
+use overact_codegen::derivation::{BodyParameter, Columns, Family, MotionInput};
 use std::cell::OnceCell;
 
 /// The reference of a robot, its columns arranged as the model arranges them.
@@ -108,7 +108,7 @@ impl Expected {
     pub fn output(
         &self,
         family: Family,
-        from: From,
+        from: MotionInput,
         sample: &Sample,
     ) -> Result<DMatrix<f64>, Failure> {
         self.at(sample)?.output(family, from)
@@ -201,7 +201,7 @@ impl Truth<'_> {
     /// # Errors
     ///
     /// If the reference can't compute it.
-    pub fn output(&self, family: Family, from: From) -> Result<DMatrix<f64>, Failure> {
+    pub fn output(&self, family: Family, from: MotionInput) -> Result<DMatrix<f64>, Failure> {
         let dynamic = matches!(
             family,
             Family::IdmRedPlatform(_)
@@ -209,7 +209,7 @@ impl Truth<'_> {
                 | Family::IdmRedPayload
                 | Family::InverseDynamics
         );
-        let fitted = dynamic && from == From::Actuators;
+        let fitted = dynamic && from == MotionInput::Actuators;
         let side = if fitted { &self.fitted } else { &self.here };
         match kinematic(&side.dynamics, family, self.sample)? {
             Some(matrix) => Ok(matrix),

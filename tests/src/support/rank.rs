@@ -5,7 +5,7 @@ use super::{Failure, Sample};
 use crate::reference::linear::normalized_singular_values;
 use nalgebra::DMatrix;
 use overact_codegen::RobotModel;
-use overact_codegen::derivation::{Columns, Family, From};
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use std::fmt;
 
 /// Singular values below this fraction of the largest one count as zero.
@@ -67,7 +67,7 @@ impl fmt::Display for Rank {
 /// If the model has no value at a sample.
 pub fn regressor(model: &RobotModel, samples: &[Sample]) -> Result<DMatrix<f64>, Failure> {
     let family = Family::IdmRedPlatform(Columns::Standard);
-    let function = model.function(family, From::Joints);
+    let function = model.function(family, MotionInput::Joints);
     let program = &function.ok_or("no regressor from joints")?.program;
     let (rows, columns) = (model.mechanism.dof(), model.selection.standard.len());
     let mut all = DMatrix::zeros(rows * samples.len(), columns);

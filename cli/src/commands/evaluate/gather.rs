@@ -7,7 +7,7 @@ use crate::{
 };
 use overact::{Function, Model, math::wrap_angle};
 use overact_codegen::{
-    derivation::From,
+    derivation::MotionInput,
     lowering::{Array, Program},
 };
 use overact_robot::InterpretedRobot;
@@ -38,7 +38,7 @@ impl std::convert::From<Problem> for Lack {
 pub(super) fn inputs(
     robot: &InterpretedRobot,
     program: &Program,
-    from: From,
+    from: MotionInput,
     states: &States,
 ) -> Result<Vec<Vec<f64>>, Failure> {
     let mut gatherer = Gatherer {
@@ -75,8 +75,8 @@ pub(super) fn inputs(
 }
 
 /// An input as the states are to hold it: from actuators, the pose is found and not given.
-fn described(array: &Array, from: From, robot: &InterpretedRobot) -> String {
-    if array.name == "pose" && from == From::Actuators {
+fn described(array: &Array, from: MotionInput, robot: &InterpretedRobot) -> String {
+    if array.name == "pose" && from == MotionInput::Actuators {
         return format!("`actuators` ({} numbers)", robot.info().sizes.actuators);
     }
     format!("`{}` ({} numbers)", array.name, array.len())
@@ -85,7 +85,7 @@ fn described(array: &Array, from: From, robot: &InterpretedRobot) -> String {
 struct Gatherer<'a> {
     robot: &'a InterpretedRobot,
     states: &'a States,
-    from: From,
+    from: MotionInput,
     /// The pose from which forward kinematics starts.
     previous: Vec<f64>,
 }
@@ -127,7 +127,7 @@ impl Gatherer<'_> {
     /// The pose: given, or by forward kinematics from the actuators or the actuated joints.
     fn pose(&mut self, at: usize) -> Result<Vec<f64>, Lack> {
         let sizes = self.robot.info().sizes;
-        if self.from != From::Actuators
+        if self.from != MotionInput::Actuators
             && let Some(pose) = self.states.get(at, "pose", sizes.pose)?
         {
             return Ok(pose.to_vec());
@@ -136,13 +136,13 @@ impl Gatherer<'_> {
             .states
             .get(at, "actuators", sizes.actuators)?
             .map(<[f64]>::to_vec);
-        if self.from == From::Joints && actuators.is_none() {
+        if self.from == MotionInput::Joints && actuators.is_none() {
             let joints = self.states.get(at, "joints", sizes.joints)?;
             let actuated = self.robot.info().actuated_joints;
             actuators = joints.map(|joints| actuated.iter().map(|&i| joints[i]).collect());
         }
         let Some(actuators) = actuators else {
-            let wanted = if self.from == From::Actuators {
+            let wanted = if self.from == MotionInput::Actuators {
                 "actuators"
             } else {
                 "pose"

@@ -7,9 +7,9 @@ use crate::{
 };
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, Family, From},
+    derivation::{Columns, Family, MotionInput},
     diagnostic::did_you_mean,
-    model::Function,
+    model::CompiledFunction,
 };
 
 /// The function that the arguments name: by its family with what it is evaluated from, or by the full
@@ -21,9 +21,9 @@ pub(super) fn function<'m>(
     model: &'m RobotModel,
     arguments: &Arguments,
     states: &States,
-) -> Result<&'m Function, Failure> {
+) -> Result<&'m CompiledFunction, Failure> {
     let name = arguments.function.as_str();
-    let family: Vec<&Function> = model
+    let family: Vec<&CompiledFunction> = model
         .functions
         .iter()
         .filter(|f| f.family.name() == name)
@@ -32,15 +32,15 @@ pub(super) fn function<'m>(
         return by_full_name(model, name);
     }
     let columns = arguments.columns.map_or(Columns::Standard, Choice::columns);
-    let is_meant = |f: &&Function| f.family.columns().is_none_or(|c| c == columns);
-    let offered: Vec<&Function> = family.into_iter().filter(is_meant).collect();
+    let is_meant = |f: &&CompiledFunction| f.family.columns().is_none_or(|c| c == columns);
+    let offered: Vec<&CompiledFunction> = family.into_iter().filter(is_meant).collect();
     if offered.is_empty() {
         let message = format!("`{name}` is not offered with {} columns", columns.name());
         return Err(Problem::new(message).into());
     }
-    let from = |from: From| offered.iter().find(|f| f.from == from).copied();
+    let from = |from: MotionInput| offered.iter().find(|f| f.from == from).copied();
     // The state of a tree are its joints, whatever they are called.
-    let tree = model.is_tree().then(|| from(From::Joints)).flatten();
+    let tree = model.is_tree().then(|| from(MotionInput::Joints)).flatten();
     if let Some(function) = tree {
         return Ok(function);
     }
@@ -54,12 +54,20 @@ pub(super) fn function<'m>(
         };
         return from(source.from()).ok_or_else(missing);
     }
-    let held = [("actuators", From::Actuators), ("joints", From::Joints)];
+    let held = [
+        ("actuators", MotionInput::Actuators),
+        ("joints", MotionInput::Joints),
+    ];
     let by_states = held
         .iter()
         .find(|(key, _)| states.hold(key))
-        .map_or(From::Pose, |h| h.1);
-    let order = [by_states, From::Pose, From::Joints, From::Actuators];
+        .map_or(MotionInput::Pose, |h| h.1);
+    let order = [
+        by_states,
+        MotionInput::Pose,
+        MotionInput::Joints,
+        MotionInput::Actuators,
+    ];
     // There is one, since `offered` is not empty.
     order
         .into_iter()
@@ -67,7 +75,7 @@ pub(super) fn function<'m>(
         .ok_or_else(|| Problem::new("no such function").into())
 }
 
-fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m Function, Failure> {
+fn by_full_name<'m>(model: &'m RobotModel, name: &str) -> Result<&'m CompiledFunction, Failure> {
     if let Some(function) = model.functions.iter().find(|f| f.name == name) {
         return Ok(function);
     }

@@ -3,7 +3,7 @@
 use super::conditioning::Conditioning;
 use overact_codegen::{
     RobotModel,
-    derivation::{Columns, From},
+    derivation::{Columns, MotionInput},
     lowering::{Array, Cost},
     model,
     selection::base::BaseParameter,
@@ -202,7 +202,7 @@ impl Base {
 }
 
 impl Function {
-    fn new(model: &RobotModel, function: &model::Function) -> Self {
+    fn new(model: &RobotModel, function: &model::CompiledFunction) -> Self {
         let argument = |array: &Array| Argument {
             name: array.name.clone(),
             shape: array.shape.clone(),
@@ -210,7 +210,7 @@ impl Function {
         };
         let program = &function.program;
         let mut inputs: Vec<Argument> = program.inputs.iter().map(argument).collect();
-        if function.from == From::Actuators {
+        if function.from == MotionInput::Actuators {
             // The pose is what forward kinematics finds from the actuators, near the start pose.
             let free = |name: &str, length, optional| Argument {
                 name: name.to_owned(),
