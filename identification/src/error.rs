@@ -7,6 +7,7 @@ use serde::Serialize;
 
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Problem {
     /// What is wrong, in one sentence.
     pub message: String,
@@ -81,6 +82,7 @@ impl fmt::Display for Problem {
 
 /// One problem or several that were found together.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Error {
     /// The problems, in the order in which they were found; at least one.
     #[serde(rename = "errors")]

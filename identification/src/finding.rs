@@ -18,6 +18,7 @@ pub struct Finding {
 /// The kinds of trouble that data have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum FindingKind {
     /// A torque stays at its extreme: the drive or the measurement saturates.
     ClippedTorque,

@@ -47,8 +47,9 @@ pub use estimation::{
 };
 pub use finding::{Finding, FindingKind, Thresholds};
 pub use identify::{
-    BaseParameter, Choice, CrossValidation, Dataset, Estimate, Identification, Outcome,
-    ParameterEstimate, Prepared, Progress, Regrouping, Run, Stage, Study, estimate_projection,
+    BaseParameter, CrossValidation, Dataset, Estimate, Identification, Outcome, ParameterEstimate,
+    Prepared, Progress, RankedProjection, Regrouping, RunSummary, Stage, Study,
+    estimate_projection,
     figures::{Figures, PredictionFigures, ResidualFigures},
     identify, prepare, study,
     verdict::{TrackingError, Verdict},
@@ -57,7 +58,8 @@ pub use kinematics::{Motion, Motions, motion};
 pub use regression::{
     columns::{Column, ColumnSet, Direction},
     factor::Factor,
-    system::{Part, PartitionCondition, Projection, Stretch, System},
+    projection::{ModelKind, Projection},
+    system::{Part, PartitionCondition, Stretch, System},
 };
 pub use series::{ConditionSeries, LineResidual, ResidualSeries, RunFigures, Series};
 pub use settings::{Normalisation, Settings};

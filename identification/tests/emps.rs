@@ -4,8 +4,8 @@ mod common;
 
 use common::EMPS;
 use overact_identification::{
-    Dataset, Gain, Identification, Log, Mapping, Normalisation, Settings, Stage, data::read_mat,
-    identify,
+    Dataset, Gain, Identification, Log, Mapping, ModelKind, Normalisation, Settings, Stage,
+    data::read_mat, identify,
 };
 
 /// Reads one of the benchmark's files.
@@ -64,7 +64,7 @@ fn symmetric_friction_is_the_published_table() {
         };
         println!("{:#?}", result.estimates);
         let base = &result.estimates[0];
-        assert_eq!((base.model, base.stage), ("joints", Stage::Base));
+        assert_eq!((base.model, base.stage), (ModelKind::Joints, Stage::Base));
         let expected = [
             ("m_1R", "95.1089", "0.1141"),
             ("fv_1", "203.5034", "0.5631"),

@@ -8,8 +8,8 @@ use std::{cell::RefCell, collections::BTreeMap, f64::consts::PI};
 use common::{Drives, PAIR};
 use overact::Model;
 use overact_identification::{
-    ColumnSet, Dataset, Estimate, Identification, Log, PayloadUse, Projection, Settings, Stage,
-    base_parameters, estimate_projection, identify, motion, prepare,
+    ColumnSet, Dataset, Estimate, Identification, Log, ModelKind, PayloadUse, Projection, Settings,
+    Stage, base_parameters, estimate_projection, identify, motion, prepare,
 };
 
 /// Values of the robot's parameters and the payload's, in column order.
@@ -140,7 +140,7 @@ fn both_cases_and_the_payload_recover_the_truth() {
             },
         );
         println!("{:#?}", result.estimates);
-        let models: Vec<(&str, Stage)> = result
+        let models: Vec<(ModelKind, Stage)> = result
             .estimates
             .iter()
             .map(|estimate| (estimate.model, estimate.stage))
@@ -148,10 +148,10 @@ fn both_cases_and_the_payload_recover_the_truth() {
         assert_eq!(
             models,
             [
-                ("platform", Stage::Base),
-                ("platform", Stage::Essential),
-                ("actuators", Stage::Base),
-                ("actuators", Stage::Essential)
+                (ModelKind::Platform, Stage::Base),
+                (ModelKind::Platform, Stage::Essential),
+                (ModelKind::Actuators, Stage::Base),
+                (ModelKind::Actuators, Stage::Essential)
             ]
         );
         assert_eq!(result.estimates[2].kept_actuators, [["leg1", "leg2"][kept]]);

@@ -2,7 +2,9 @@
 //! tracking errors (Table 4). Without published results, the tables that only they complete are left
 //! out.
 
-use overact_identification::{CrossValidation, Estimate, Identification, Stage, significant};
+use overact_identification::{
+    CrossValidation, Estimate, Identification, ModelKind, Stage, significant,
+};
 
 use super::{published::Published, terminal::table};
 
@@ -42,11 +44,10 @@ fn section(title: &str, (header, rows): (Vec<String>, Vec<Vec<String>>)) -> Stri
 }
 
 /// What a model is called.
-fn case(model: &str) -> &str {
+const fn case(model: ModelKind) -> &'static str {
     match model {
-        "platform" => "case 1",
-        "actuators" => "case 2",
-        _ => "joints",
+        ModelKind::Platform | ModelKind::Actuators => model.case(),
+        ModelKind::Joints => model.name(),
     }
 }
 

@@ -33,11 +33,11 @@ pub fn numbers(identification: &Identification) -> Result<String, Error> {
         }
     }
     for estimate in &identification.estimates {
-        (rows.model, rows.stage) = (estimate.model, estimate.stage.name());
+        (rows.model, rows.stage) = (estimate.model.name(), estimate.stage.name());
         add_estimate(&mut rows, estimate);
     }
     for one in &identification.cross_validation {
-        (rows.model, rows.stage, rows.run) = (one.model, one.stage.name(), &one.run);
+        (rows.model, rows.stage, rows.run) = (one.model.name(), one.stage.name(), &one.run);
         let table = "cross_validation";
         rows.add(table, "", "residual_norm", one.residual_norm);
         rows.add(

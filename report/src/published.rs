@@ -3,6 +3,7 @@
 //! They come from a TOML file such as `robots/published/dualv.toml`. Tables: parameters by the names
 //! of the base parameters, torque errors and tracking errors by actuator.
 
+use overact_identification::ModelKind;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -34,7 +35,7 @@ pub struct Published {
 #[serde(deny_unknown_fields)]
 pub struct PublishedEstimate {
     /// `platform`, `actuators` or `joints`.
-    pub model: String,
+    pub model: ModelKind,
     /// 100 ||ρ||/||Y||.
     #[serde(default)]
     pub relative_error_percent: Option<f64>,
@@ -60,7 +61,7 @@ pub struct PublishedTorques {
     /// Name of the run.
     pub run: String,
     /// `platform`, `actuators` or `joints`.
-    pub model: String,
+    pub model: ModelKind,
     /// 100 ||τ - τ*||/||τ|| of each actuator.
     pub torques_percent: Vec<f64>,
 }
@@ -80,7 +81,7 @@ pub struct PublishedTracking {
 impl Published {
     /// The estimate of a model.
     #[must_use]
-    pub fn estimate(&self, model: &str) -> Option<&PublishedEstimate> {
+    pub fn estimate(&self, model: ModelKind) -> Option<&PublishedEstimate> {
         self.estimates.iter().find(|one| one.model == model)
     }
 

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use overact_identification::{
-    BaseParameter, CrossValidation, Estimate, Identification, LineError, Regrouping, significant,
+    BaseParameter, CrossValidation, Estimate, Identification, LineError, ModelKind, Regrouping,
+    significant,
 };
 
 /// Largest denominator of a fraction that a coefficient is printed as.
@@ -129,12 +130,12 @@ fn fraction(value: f64) -> Option<(u64, u64)> {
 #[must_use]
 pub fn estimate(estimate: &Estimate) -> String {
     let what = match estimate.model {
-        "platform" => String::from("Case 1, inputs projected on the platform"),
-        "actuators" => format!(
+        ModelKind::Platform => String::from("Case 1, inputs projected on the platform"),
+        ModelKind::Actuators => format!(
             "Case 2, inputs projected on {}",
             estimate.kept_actuators.join(", ")
         ),
-        _ => String::from("Joint model"),
+        ModelKind::Joints => String::from("Joint model"),
     };
     let mut text = format!("{what}: {} parameters\n", estimate.stage.name());
     let truth = estimate
@@ -197,7 +198,7 @@ fn quality(estimate: &Estimate) -> String {
         let _ = writeln!(text, "by line: {}", lines.join(", "));
     }
     if let Some(partition) = &estimate.partition
-        && estimate.model == "actuators"
+        && estimate.model == ModelKind::Actuators
     {
         let _ = writeln!(
             text,
@@ -265,7 +266,7 @@ pub fn cross_validation(all: &[CrossValidation]) -> String {
     let rows = all.iter().map(|one| {
         let mut row = vec![
             one.run.clone(),
-            one.model.to_owned(),
+            one.model.name().to_owned(),
             one.stage.name().to_owned(),
             significant(one.residual_norm, 7),
             format!("{:.4}", one.relative_error_percent),

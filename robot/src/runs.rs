@@ -8,9 +8,9 @@ use std::{collections::BTreeMap, path::Path};
 /// Runs to identify from and runs to validate with.
 #[derive(Debug, Clone, Default)]
 pub struct Runs {
-    /// Those to identify from.
+    /// Runs to identify from.
     pub identified: Vec<Log>,
-    /// Those that are held out.
+    /// Runs that are held out, to validate with.
     pub validation: Vec<Log>,
     /// True values of the parameters of a virtual robot.
     pub true_values: Option<BTreeMap<String, f64>>,

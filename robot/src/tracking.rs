@@ -3,7 +3,7 @@
 
 use crate::{error::Error, robot::Robot};
 use overact::Model;
-use overact_identification::{Estimate, Identification, Stage, TrackingError};
+use overact_identification::{Estimate, Identification, ModelKind, Stage, TrackingError};
 use overact_simulation::Experiment;
 
 /// Lets every controller follow the runs that are held out. Empty where there are none, or where the
@@ -39,9 +39,9 @@ pub fn tracking(
     let mut controllers = vec![(String::from("pd"), plain.clone())];
     for estimate in last_estimates(result) {
         let name = match estimate.model {
-            "platform" => "computed torque, case 1",
-            "actuators" => "computed torque, case 2",
-            _ => "computed torque",
+            ModelKind::Platform => "computed torque, case 1",
+            ModelKind::Actuators => "computed torque, case 2",
+            ModelKind::Joints => "computed torque",
         };
         let computed = Experiment {
             feed_forward: true,

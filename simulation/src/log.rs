@@ -13,7 +13,7 @@ use crate::run::Record;
 /// Writes a record.
 ///
 /// # Errors
-/// Those of the writer.
+/// What the writer refuses.
 pub fn write_csv(record: &Record, writer: impl Write) -> io::Result<()> {
     let n = record.actuators.len();
     let mut csv = csv::Writer::from_writer(writer);

@@ -7,7 +7,7 @@ use crate::{
     progress::Progress,
 };
 use overact::Model;
-use overact_identification::{Choice, Progress as Doing, Study, significant};
+use overact_identification::{Progress as Doing, RankedProjection, Study, significant};
 use overact_robot::{Identifier, Robot};
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 }
 
 /// A row of the table.
-fn cells(row: &Choice, name: String) -> Vec<String> {
+fn cells(row: &RankedProjection, name: String) -> Vec<String> {
     let number = |value: Option<f64>, digits| {
         value.map_or_else(|| "-".to_owned(), |value| significant(value, digits))
     };

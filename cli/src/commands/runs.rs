@@ -125,5 +125,6 @@ pub(super) fn tell(bar: &Progress, doing: Doing<'_>) {
         Doing::Validation { run, done, samples } => {
             bar.at(part(done, samples), &format!("cross-validation on {run}"));
         }
+        _ => {}
     }
 }

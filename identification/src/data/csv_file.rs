@@ -34,7 +34,7 @@ pub fn read_csv(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Er
     read_telling(path, mapping, payload, &|_| {})
 }
 
-/// The same; `advance` is told every now and then how many bytes more have been read.
+/// Reads a run from CSV; `advance` is told every now and then how many bytes more have been read.
 pub(super) fn read_telling(
     path: &Path,
     mapping: &Mapping,

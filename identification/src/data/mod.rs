@@ -34,7 +34,7 @@ pub fn read(path: &Path, mapping: &Mapping, payload: bool) -> Result<Log, Error>
     read_telling(path, mapping, payload, &|_| {})
 }
 
-/// The same; `advance` is told every now and then how many bytes more have been read.
+/// Reads a run from a file; `advance` is told every now and then how many bytes more have been read.
 fn read_telling(
     path: &Path,
     mapping: &Mapping,

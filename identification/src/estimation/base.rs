@@ -39,6 +39,7 @@ pub enum PayloadUse {
 
 /// The base parameters of a column set.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct BaseParameters {
     /// Kept columns, in the symmetric order.
     pub columns: Vec<usize>,

@@ -25,6 +25,7 @@ const EXACT: f64 = 1e-9;
 
 /// Estimated parameters and how good they are.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Estimation {
     /// Estimates χ, in the order of the selected columns (SI units).
     pub values: Vec<f64>,

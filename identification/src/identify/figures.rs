@@ -12,7 +12,10 @@
 use serde::Serialize;
 
 use super::result::Stage;
-use crate::series::{LineResidual, RunFigures, Series};
+use crate::{
+    regression::projection::ModelKind,
+    series::{LineResidual, RunFigures, Series},
+};
 
 /// All plots.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -32,8 +35,8 @@ pub struct PredictionFigures {
     pub run: String,
     /// Whether parameters are identified from it; else it is held out.
     pub identified: bool,
-    /// Model of the estimate: `platform`, `actuators` or `joints`.
-    pub model: &'static str,
+    /// Model of the estimate.
+    pub model: ModelKind,
     /// Stage of the estimate.
     pub stage: Stage,
     /// The lines of Γ.
@@ -46,7 +49,7 @@ pub struct PredictionFigures {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ResidualFigures {
     /// Model of the estimate.
-    pub model: &'static str,
+    pub model: ModelKind,
     /// Stage of the estimate.
     pub stage: Stage,
     /// Each line of Γ.

@@ -16,6 +16,7 @@ use crate::{
     data::Log,
     error::Error,
     finding::{Finding, FindingKind, Thresholds},
+    regression::projection::ModelKind,
     settings::Settings,
     significant,
 };
@@ -125,7 +126,7 @@ pub(super) fn verdicts(
     thresholds: &Thresholds,
 ) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
-    let mut models: Vec<&'static str> = estimates.iter().map(|(_, one)| one.model).collect();
+    let mut models: Vec<ModelKind> = estimates.iter().map(|(_, one)| one.model).collect();
     models.dedup();
     for model in models {
         verdicts.push(of_model(
@@ -163,7 +164,7 @@ pub(super) fn located(finding: &Finding) -> String {
 
 /// The verdict on one model.
 fn of_model(
-    model: &'static str,
+    model: ModelKind,
     estimates: &[(usize, Estimate)],
     cross_validation: &[CrossValidation],
     findings: &[Finding],
@@ -218,11 +219,7 @@ fn of_model(
         reasons.push(String::from("the data are suspicious, see there"));
     }
     Verdict {
-        subject: match model {
-            "platform" => String::from("case 1"),
-            "actuators" => String::from("case 2"),
-            _ => String::from("joint model"),
-        },
+        subject: model.case().to_owned(),
         trusted,
         reasons,
     }
@@ -235,7 +232,7 @@ fn partition(
     thresholds: &Thresholds,
 ) -> Option<(bool, String)> {
     let partition = base.partition.as_ref()?;
-    if base.model != "actuators" {
+    if base.model != ModelKind::Actuators {
         return None;
     }
     let kept = base.kept_actuators.join(", ");
@@ -284,13 +281,18 @@ fn partition(
 /// The relative errors (percent) of both cases where that of case 2 is lower: of the essential
 /// parameters, else of all.
 fn lower_error(estimates: &[(usize, Estimate)]) -> Option<(f64, f64)> {
-    let error = |model: &str, stage: Stage| {
+    let error = |model: ModelKind, stage: Stage| {
         let mut all = estimates.iter().map(|(_, one)| one);
         all.find(|one| one.model == model && one.stage == stage)
             .map(|one| one.relative_error_percent)
     };
     [Stage::Essential, Stage::Base]
         .into_iter()
-        .filter_map(|stage| Some((error("platform", stage)?, error("actuators", stage)?)))
+        .filter_map(|stage| {
+            Some((
+                error(ModelKind::Platform, stage)?,
+                error(ModelKind::Actuators, stage)?,
+            ))
+        })
         .find(|(case_1, case_2)| case_2 < case_1)
 }

@@ -23,11 +23,11 @@ pub use dataset::Dataset;
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use result::{
-    BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping, Run,
-    Stage,
+    BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping,
+    RunSummary, Stage,
 };
 pub use stages::{Outcome, estimate_projection};
-pub use study::{Choice, Study, study};
+pub use study::{RankedProjection, Study, study};
 
 use cross_validation::cross_validate;
 use prepare::{check_runs, prepared_warnings};
@@ -36,7 +36,7 @@ use stages::estimate_all;
 use crate::{
     error::Error,
     finding::{Finding, Thresholds},
-    regression::system::Projection,
+    regression::projection::Projection,
     settings::Settings,
 };
 

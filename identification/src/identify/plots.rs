@@ -11,7 +11,7 @@ use crate::{
     error::Error,
     estimation::correlation::line_residual,
     kinematics::distribution::{least_norm, product},
-    regression::system::{Projection, System},
+    regression::{projection::Projection, system::System},
     series::{LineResidual, ResidualSeries, RunFigures, Series},
     settings::Settings,
     validation::platform_input,

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use overact::Model;
 
-use super::{progress::Progress, result::Run};
+use super::{progress::Progress, result::RunSummary};
 use crate::{
     assessment,
     data::Log,
@@ -14,7 +14,8 @@ use crate::{
     regression::{
         columns::ColumnSet,
         observation::{Observer, Seen},
-        system::{Observed, Projection, System},
+        projection::Projection,
+        system::{Observed, System},
     },
     settings::{Settings, check_partition},
 };
@@ -24,6 +25,7 @@ const LARGEST_STRETCHES: usize = 1 << 23;
 
 /// The data as the projections see them: their systems, the columns and the base parameters.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Prepared {
     /// The columns of the model.
     pub columns: ColumnSet,
@@ -36,7 +38,7 @@ pub struct Prepared {
     /// For each projection, its system in the base parameters, or why it has none.
     pub systems: Vec<Result<System, Error>>,
     /// The runs.
-    pub runs: Vec<Run>,
+    pub runs: Vec<RunSummary>,
     /// What is told of the runs beside their equations.
     pub(super) seen: Vec<Seen>,
     /// What is suspicious in them.
@@ -121,7 +123,7 @@ pub fn prepare(
     Error::check(problems)?;
     let runs = runs.iter().zip(&seen);
     Ok(Prepared {
-        runs: runs.map(|(log, seen)| Run::new(log, seen)).collect(),
+        runs: runs.map(|(log, seen)| RunSummary::new(log, seen)).collect(),
         projections: projections.to_vec(),
         columns,
         base,

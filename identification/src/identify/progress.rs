@@ -1,7 +1,10 @@
 //! What a long identification tells while it works.
 
+use crate::regression::projection::ModelKind;
+
 /// What an identification is doing.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Progress<'a> {
     /// Finds the base parameters.
     Base,
@@ -16,8 +19,8 @@ pub enum Progress<'a> {
     },
     /// Estimates and eliminates parameters.
     Estimation {
-        /// `platform`, `actuators` or `joints`.
-        model: &'static str,
+        /// Which inputs the model explains.
+        model: ModelKind,
     },
     /// Compares predictions with a run that was not identified from.
     Validation {

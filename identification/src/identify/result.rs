@@ -16,7 +16,9 @@ use crate::{
     data::Log,
     estimation::{base::BaseParameters, essential::Removal, estimate::LineError},
     finding::{Finding, Thresholds},
-    regression::{columns::ColumnSet, observation::Seen, system::PartitionCondition},
+    regression::{
+        columns::ColumnSet, observation::Seen, projection::ModelKind, system::PartitionCondition,
+    },
     series::Series,
     settings::Settings,
     validation::{TorqueComparison, Validation},
@@ -33,7 +35,7 @@ pub struct Identification {
     /// Name of the robot.
     pub robot: String,
     /// The runs identified from.
-    pub runs: Vec<Run>,
+    pub runs: Vec<RunSummary>,
     /// The base parameters and what is regrouped into them.
     pub base_parameters: Vec<BaseParameter>,
     /// Standard parameters that have no effect on the model.
@@ -62,7 +64,7 @@ pub struct Identification {
 
 /// A run identified from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Run {
+pub struct RunSummary {
     /// Its name.
     pub name: String,
     /// Samples used, before decimation.
@@ -75,7 +77,7 @@ pub struct Run {
     pub closure_residual: f64,
 }
 
-impl Run {
+impl RunSummary {
     /// What is told of a run.
     pub(super) fn new(log: &Log, seen: &Seen) -> Self {
         Self {
@@ -159,7 +161,7 @@ impl BaseParameter {
 pub enum Stage {
     /// All base parameters.
     Base,
-    /// Those that the data determine.
+    /// Only parameters that the data determine.
     Essential,
 }
 
@@ -177,8 +179,8 @@ impl Stage {
 /// One estimate of the robot's parameters.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
-    /// `platform` (case 1), `actuators` (case 2) or `joints` (no redundancy).
-    pub model: &'static str,
+    /// Which inputs it explains.
+    pub model: ModelKind,
     /// Names of the actuators on which the inputs are projected; empty for the platform.
     pub kept_actuators: Vec<String>,
     /// Which parameters are estimated.
@@ -267,7 +269,7 @@ pub struct CrossValidation {
     /// Whether the platform carried the payload.
     pub payload: bool,
     /// Model of the estimate.
-    pub model: &'static str,
+    pub model: ModelKind,
     /// Stage of the estimate.
     pub stage: Stage,
     /// ||Y - W χ||.
@@ -278,7 +280,7 @@ pub struct CrossValidation {
     pub lines: Vec<LineError>,
     /// Each actuator's torque against the least-norm prediction.
     pub torques: Vec<LineError>,
-    /// The same with the measured torques freed of their internal part (50); empty without
+    /// Each measured torque, freed of its internal part (50), against the prediction; empty without
     /// redundancy.
     pub projected_torques: Vec<LineError>,
     /// Table 3: each actuator's torque against both predictions, the least-norm one and that of

@@ -19,7 +19,8 @@ use crate::{
     regression::{
         elimination::eliminate,
         factor::{DATA_RANK_TOLERANCE, Factor},
-        system::{Projection, System},
+        projection::Projection,
+        system::System,
     },
     settings::Settings,
 };
@@ -32,6 +33,7 @@ const LARGEST_RELATIVE_ERROR_PERCENT: f64 = 50.0;
 
 /// The estimates of one projection.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Outcome {
     /// All base parameters.
     pub base: Estimate,
@@ -97,7 +99,7 @@ pub(super) fn estimate_all(
     progress: &dyn Fn(Progress<'_>),
 ) -> Vec<Result<Outcome, Error>> {
     for projection in &prepared.projections {
-        let model = projection.name();
+        let model = projection.model();
         progress(Progress::Estimation { model });
     }
     (0..prepared.projections.len())
@@ -139,7 +141,7 @@ impl Context<'_> {
         (removals, stop): (Vec<Removal>, Option<String>),
     ) -> Estimate {
         Estimate {
-            model: self.system.projection.name(),
+            model: self.system.projection.model(),
             kept_actuators: self.kept_actuators.clone(),
             stage,
             weighted: self.weighted,
@@ -210,7 +212,7 @@ fn on_data(
     let places: Vec<usize> = (0..base.columns.len()).collect();
     let found = eliminate(all.matrix(), &places, DATA_RANK_TOLERANCE);
     let name = |place: usize| base.names.get(place).map_or("", String::as_str);
-    let label = system.projection.name();
+    let label = system.projection.model();
     for &column in &found.zero {
         warnings.push(format!(
             "model {label}: `{}` is not identifiable: its column is zero on these data",
@@ -245,7 +247,7 @@ fn on_data(
 
 /// What is wrong with a system, its estimate or its elimination.
 fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) -> Vec<String> {
-    let label = system.projection.name();
+    let label = system.projection.model();
     let mut warnings = Vec::new();
     if let Some(partition) = &system.partition
         && partition.largest > LARGEST_PARTITION_CONDITION

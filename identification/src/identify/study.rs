@@ -21,27 +21,32 @@ use crate::{
     error::Error,
     estimation::essential::HeldOut,
     finding::Thresholds,
-    regression::system::{PartitionCondition, Projection},
+    regression::{
+        projection::{ModelKind, Projection},
+        system::PartitionCondition,
+    },
     settings::Settings,
     significant,
 };
 
 /// How well case 1 and every choice of case 2 do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Study {
     /// Name of the robot.
     pub robot: String,
     /// Case 1.
-    pub platform: Choice,
+    pub platform: RankedProjection,
     /// Case 2, best first; choices that can't be trusted come last.
-    pub partitions: Vec<Choice>,
+    pub partitions: Vec<RankedProjection>,
     /// What a user should know.
     pub warnings: Vec<String>,
 }
 
 /// How well one projection does.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Choice {
+#[non_exhaustive]
+pub struct RankedProjection {
     /// Names of the kept actuators; empty for case 1.
     pub kept_actuators: Vec<String>,
     /// Whether the choice stays away from its singularities.
@@ -102,7 +107,7 @@ pub fn study(
         settings,
         progress,
     )?;
-    let mut rows: Vec<Choice> = Vec::new();
+    let mut rows: Vec<RankedProjection> = Vec::new();
     for (number, outcome) in outcomes.iter().enumerate() {
         let info = model.info();
         let names = match &projections[number] {
@@ -119,16 +124,16 @@ pub fn study(
                     .collect();
                 choice(&prepared, number, names, (outcome, &reference), &own)
             }
-            Err(error) => Choice {
+            Err(error) => RankedProjection {
                 kept_actuators: names,
                 error: Some(error.to_string()),
-                ..Choice::default()
+                ..RankedProjection::default()
             },
         });
     }
     let platform = rows.remove(0);
     rank(&mut rows);
-    let key = |row: &Choice| (!row.trusted, row.deviation_ratio.unwrap_or(f64::INFINITY));
+    let key = |row: &RankedProjection| (!row.trusted, row.deviation_ratio.unwrap_or(f64::INFINITY));
     rows.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
@@ -151,7 +156,7 @@ fn choice(
     kept_actuators: Vec<String>,
     (outcome, reference): (&Outcome, &Outcome),
     torques: &[&CrossValidation],
-) -> Choice {
+) -> RankedProjection {
     let (base, essential) = (&outcome.base, &outcome.essential);
     let partition = base.partition.clone();
     let limit = Thresholds::default().partition_condition;
@@ -163,7 +168,7 @@ fn choice(
         .flat_map(|one| &one.torques)
         .map(|error| error.relative_error_percent)
         .collect();
-    Choice {
+    RankedProjection {
         kept_actuators,
         trusted: partition
             .as_ref()
@@ -211,7 +216,7 @@ fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> 
     let selected = base.columns();
     let folds = |number: usize| {
         let system = prepared.systems.get(number)?.as_ref().ok()?;
-        let weights = if number == 0 && base.model != "platform" {
+        let weights = if number == 0 && base.model != ModelKind::Platform {
             vec![1.0; system.lines.len()]
         } else {
             base.weights.clone()
@@ -223,16 +228,17 @@ fn held_out(prepared: &Prepared, number: usize, base: &Estimate) -> Option<f64> 
 }
 
 /// Fills the places of all choices that have an estimate.
-fn rank(rows: &mut [Choice]) {
-    let placed = |of: fn(&Choice) -> Option<f64>, rows: &[Choice]| -> Vec<usize> {
-        let value = |row: &Choice| of(row).unwrap_or(f64::INFINITY);
-        let better = |row: &Choice| {
-            rows.iter()
-                .filter(|other| value(other) < value(row))
-                .count()
+fn rank(rows: &mut [RankedProjection]) {
+    let placed =
+        |of: fn(&RankedProjection) -> Option<f64>, rows: &[RankedProjection]| -> Vec<usize> {
+            let value = |row: &RankedProjection| of(row).unwrap_or(f64::INFINITY);
+            let better = |row: &RankedProjection| {
+                rows.iter()
+                    .filter(|other| value(other) < value(row))
+                    .count()
+            };
+            rows.iter().map(|row| 1 + better(row)).collect()
         };
-        rows.iter().map(|row| 1 + better(row)).collect()
-    };
     let conditions = placed(|row| row.partition_condition, rows);
     let qualities = placed(|row| row.deviation_ratio, rows);
     let predictions = placed(|row| row.torque_percent.or(row.held_out_percent), rows);
@@ -244,7 +250,7 @@ fn rank(rows: &mut [Choice]) {
 }
 
 /// What is said about a choice that can't be trusted.
-fn warning(row: &Choice, platform: &Choice) -> Option<String> {
+fn warning(row: &RankedProjection, platform: &RankedProjection) -> Option<String> {
     let names = row.kept_actuators.join(", ");
     if let Some(error) = &row.error {
         return Some(format!("{names}: {error}"));

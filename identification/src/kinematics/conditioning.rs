@@ -40,7 +40,7 @@ pub(crate) struct Condition {
 }
 
 impl Condition {
-    /// That of the identity.
+    /// The condition of an identity matrix.
     pub(crate) const PERFECT: Self = Self {
         number: 1.0,
         determinant: 1.0,
@@ -49,7 +49,7 @@ impl Condition {
 
 /// A choice of actuators, with memory for its matrices.
 #[derive(Debug, Clone)]
-pub(crate) struct Choice {
+pub(crate) struct KeptActuators {
     kept: Vec<usize>,
     scales: Vec<f64>,
     /// Columns of the kept rows, scaled.
@@ -58,7 +58,7 @@ pub(crate) struct Choice {
     work: Vec<f64>,
 }
 
-impl Choice {
+impl KeptActuators {
     /// The actuators `kept`, with the `scales` of the platform's coordinates.
     pub(crate) fn new(kept: Vec<usize>, scales: &[f64]) -> Self {
         let (n, r) = (kept.len(), scales.len());
@@ -139,13 +139,13 @@ pub(crate) fn couples(model: &dyn Model) -> bool {
     let (n, r) = (info.sizes.actuators, info.sizes.dof);
     let mut jacobian = vec![0.0; n * r];
     let evaluated = model.evaluate(Function::InverseJacobian, &[info.home_pose], &mut jacobian);
-    let choice = Choice::new((0..n).collect(), &home_scales(model));
+    let choice = KeptActuators::new((0..n).collect(), &home_scales(model));
     evaluated.is_ok() && !choice.is_identity(&jacobian)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Choice;
+    use super::KeptActuators;
     use nalgebra::DMatrix;
 
     #[test]
@@ -160,13 +160,13 @@ mod tests {
                 let jacobian: Vec<f64> = (0..n * r).map(|_| random()).collect();
                 let scales: Vec<f64> = (0..r).map(|_| 1.0 + random()).collect();
                 let scaled = DMatrix::from_fn(n, r, |i, j| jacobian[i * r + j] * scales[j]);
-                let whole = Choice::new((0..n).collect(), &scales).condition(&jacobian);
+                let whole = KeptActuators::new((0..n).collect(), &scales).condition(&jacobian);
                 let values = scaled.singular_values();
                 assert!((whole.number * values.min() / values.max() - 1.0).abs() < 1e-12);
 
                 let kept: Vec<usize> = (n - r..n).rev().collect();
                 let rows = scaled.select_rows(&kept);
-                let mut choice = Choice::new(kept.clone(), &scales);
+                let mut choice = KeptActuators::new(kept.clone(), &scales);
                 let found = choice.condition(&jacobian);
                 let values = rows.singular_values();
                 assert!((found.number * values.min() / values.max() - 1.0).abs() < 1e-10);
@@ -179,7 +179,7 @@ mod tests {
                 assert!((product - DMatrix::identity(r, r)).norm() < 1e-9);
             }
         }
-        let mut singular = Choice::new(vec![0, 1], &[1.0, 1.0]);
+        let mut singular = KeptActuators::new(vec![0, 1], &[1.0, 1.0]);
         let jacobian = [1.0, 2.0, 2.0, 4.0];
         assert!(singular.condition(&jacobian).number > 1e15);
         assert!(singular.condition(&jacobian).determinant.abs() < 1e-15);

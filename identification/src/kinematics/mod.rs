@@ -29,6 +29,7 @@ use stream::{Derivatives, Stream};
 /// The motion of the platform in some successive samples of a run and the torques that belong to
 /// them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Motion {
     /// Name of the run.
     pub run: String,

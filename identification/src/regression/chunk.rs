@@ -1,6 +1,6 @@
 //! Some successive samples as equations: conditions of the kept actuators, and rows projected on them.
 
-use crate::kinematics::conditioning::{Choice, Condition};
+use crate::kinematics::conditioning::{Condition, KeptActuators};
 
 /// Some successive samples, evaluated: for each projection and line samples x (columns + 1), Y last.
 pub(crate) struct Chunk {
@@ -10,7 +10,11 @@ pub(crate) struct Chunk {
 }
 
 /// The conditions of a choice of actuators sample by sample.
-pub(super) fn conditions(choice: &mut Choice, jacobians: &[f64], size: usize) -> Vec<Condition> {
+pub(super) fn conditions(
+    choice: &mut KeptActuators,
+    jacobians: &[f64],
+    size: usize,
+) -> Vec<Condition> {
     let one = |jacobian: &[f64]| {
         if choice.is_identity(jacobian) {
             Condition::PERFECT
@@ -24,7 +28,7 @@ pub(super) fn conditions(choice: &mut Choice, jacobians: &[f64], size: usize) ->
 /// Rows of Γ² = J_a^-T Γ¹ from rows of Γ¹, line by line, and the first sample at which J_a is singular.
 pub(super) fn projected(
     platform: &[Vec<f64>],
-    choice: &mut Choice,
+    choice: &mut KeptActuators,
     jacobians: &[f64],
     size: usize,
 ) -> (Vec<Vec<f64>>, Option<usize>) {

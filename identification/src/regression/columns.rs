@@ -19,7 +19,7 @@ use crate::{error::Error, settings::Settings};
 
 /// Where the numbers of a column come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
+enum Origin {
     /// A column of [`Function::IdmRedPlatform`].
     Robot(usize),
     /// A column of [`Function::IdmRedPayload`].
@@ -37,6 +37,7 @@ pub enum Direction {
 
 /// One column of the identification model.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Column {
     /// Name of its parameter.
     pub name: String,
@@ -52,7 +53,7 @@ pub struct Column {
     pub direction: Option<(usize, Direction)>,
     /// How the column of a Coulomb parameter is evaluated around reversals of its joint.
     reversal: Option<Reversal>,
-    source: Source,
+    origin: Origin,
 }
 
 /// The column of a Coulomb parameter around reversals.
@@ -67,7 +68,7 @@ struct Reversal {
 
 impl Column {
     /// The whole column of a standard parameter.
-    fn new(parameter: &Parameter, source: Source) -> Self {
+    fn new(parameter: &Parameter, origin: Origin) -> Self {
         Self {
             name: parameter.name.to_owned(),
             standard: parameter.name.to_owned(),
@@ -76,7 +77,7 @@ impl Column {
             body: parameter.body,
             direction: None,
             reversal: None,
-            source,
+            origin,
         }
     }
 
@@ -147,7 +148,7 @@ impl ColumnSet {
         };
         let mut columns = Vec::new();
         for (index, (parameter, joint)) in info.parameters.iter().zip(joints).enumerate() {
-            let whole = Column::new(parameter, Source::Robot(index));
+            let whole = Column::new(parameter, Origin::Robot(index));
             match joint {
                 Some(joint) => columns.extend(whole.split(joint)),
                 None if asymmetric_friction
@@ -158,12 +159,12 @@ impl ColumnSet {
         }
         if payload {
             let parameters = info.payload_parameters.iter().enumerate();
-            columns.extend(parameters.map(|(k, p)| Column::new(p, Source::Payload(k))));
+            columns.extend(parameters.map(|(k, p)| Column::new(p, Origin::Payload(k))));
         }
         Ok(Self { columns })
     }
 
-    /// The same columns, those of Coulomb friction being zero where the speed of their joint is below the
+    /// These columns, those of Coulomb friction being zero where the speed of their joint is below the
     /// dead band of the settings, and having the mean sign over a sampling interval where these ask
     /// for it.
     ///
@@ -174,7 +175,7 @@ impl ColumnSet {
         if band > 0.0 || averaged {
             let joints = friction_joints(model, settings.seed)?;
             for column in &mut self.columns {
-                if let (Source::Robot(index), Symbol::Fs) = (column.source, column.symbol) {
+                if let (Origin::Robot(index), Symbol::Fs) = (column.origin, column.symbol) {
                     column.reversal = joints[index].map(|joint| Reversal {
                         joint,
                         band,
@@ -208,7 +209,7 @@ impl ColumnSet {
     #[must_use]
     pub fn indices(&self, payload: bool) -> Vec<usize> {
         (0..self.columns.len())
-            .filter(|&index| matches!(self.columns[index].source, Source::Payload(_)) == payload)
+            .filter(|&index| matches!(self.columns[index].origin, Origin::Payload(_)) == payload)
             .collect()
     }
 
@@ -237,7 +238,7 @@ impl ColumnSet {
         };
         let columns = || picked.iter().filter_map(|&index| self.columns.get(index));
         let split = columns().any(|column| column.joint().is_some());
-        let has_payload = columns().any(|column| matches!(column.source, Source::Payload(_)));
+        let has_payload = columns().any(|column| matches!(column.origin, Origin::Payload(_)));
         let robot = ask(Function::IdmRedPlatform, true)?;
         let payload = ask(Function::IdmRedPayload, loaded && has_payload)?;
         let averaged = columns().any(|column| column.reversal.is_some_and(|own| own.averaged));
@@ -246,18 +247,18 @@ impl ColumnSet {
         let width = picked.len() + more;
         let mut lines = vec![vec![0.0; samples * width]; sizes.dof];
         // Where the numbers of a row come from: places of the robot's columns, then the payload's.
-        let place = |wanted: fn(Source) -> Option<usize>| -> Vec<(usize, usize)> {
+        let place = |wanted: fn(Origin) -> Option<usize>| -> Vec<(usize, usize)> {
             let all = columns().enumerate();
-            all.filter_map(|(to, column)| Some((to, wanted(column.source)?)))
+            all.filter_map(|(to, column)| Some((to, wanted(column.origin)?)))
                 .collect()
         };
-        let own = place(|source| match source {
-            Source::Robot(k) => Some(k),
-            Source::Payload(_) => None,
+        let own = place(|origin| match origin {
+            Origin::Robot(k) => Some(k),
+            Origin::Payload(_) => None,
         });
-        let load = place(|source| match source {
-            Source::Payload(k) => Some(k),
-            Source::Robot(_) => None,
+        let load = place(|origin| match origin {
+            Origin::Payload(k) => Some(k),
+            Origin::Robot(_) => None,
         });
         let sources = [
             (&robot, sizes.parameters, own),

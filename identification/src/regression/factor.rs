@@ -147,7 +147,7 @@ impl Factor {
         Self::reduced_together(std::slice::from_ref(self), &[1.0], selected)
     }
 
-    /// The same for the equations of several factors, each scaled by a weight.
+    /// The reduced system of the equations of several factors, each scaled by a weight.
     pub(crate) fn reduced_together(
         factors: &[Self],
         weights: &[f64],

@@ -4,6 +4,7 @@
 //! - `friction`, `states`: which joint a friction parameter belongs to, and states to find it out by;
 //! - `chunk`, `observation`: successive samples as equations; the pass over a run;
 //! - `sink`, `factor`: decimated equations as R factors, stretches and points of plots;
+//! - `projection`: on what the inputs are projected;
 //! - `points`: what is plotted of the motion;
 //! - `system`: the system (39)-(41) of one projection;
 //! - `elimination`: columns that depend on others.
@@ -15,6 +16,7 @@ pub(crate) mod factor;
 mod friction;
 pub(crate) mod observation;
 pub(crate) mod points;
+pub(crate) mod projection;
 pub(crate) mod sink;
 pub(crate) mod states;
 pub(crate) mod system;

@@ -11,8 +11,9 @@ use super::{
     chunk::{Chunk, conditions, projected},
     columns::ColumnSet,
     points::Points,
+    projection::Projection,
     sink::{LineSink, Plan, observed},
-    system::{Observed, Projection, singular},
+    system::{Observed, singular},
 };
 use crate::{
     blocks::{BLOCK, slice},
@@ -21,7 +22,7 @@ use crate::{
     filters::Decimator,
     kinematics::{
         Motion, Motions,
-        conditioning::{Choice, home_scales},
+        conditioning::{KeptActuators, home_scales},
     },
     monitor::Monitor,
     series::RunFigures,
@@ -210,7 +211,7 @@ impl Observer<'_> {
         for (projection, wanted) in self.projections.iter().zip(wanted) {
             let all = || (0..n).collect();
             let kept = projection.kept(&info).unwrap_or_else(all);
-            let mut choice = Choice::new(kept, scales);
+            let mut choice = KeptActuators::new(kept, scales);
             chunk
                 .conditions
                 .push(conditions(&mut choice, &jacobians, n * r));

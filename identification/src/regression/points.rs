@@ -2,11 +2,7 @@
 
 use overact::Model;
 
-use super::{
-    chunk::Chunk,
-    sink::Plan,
-    system::{PartitionCondition, Projection},
-};
+use super::{chunk::Chunk, projection::Projection, sink::Plan, system::PartitionCondition};
 use crate::{
     blocks::BLOCK,
     data::Log,

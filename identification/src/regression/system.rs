@@ -6,74 +6,16 @@
 //! eq. (1) for a robot without a loop.
 //!
 //! Y and every column are decimated in parallel (40) and their rows sorted by line of Γ (41). What is
-//! kept of them does not grow with the data: one R [`factor`](crate::regression::factor) for each line and part of
+//! kept of them does not grow with the data: one R `factor` for each line and part of
 //! a run, and some stretches of successive equations, from which the correlation of the residual is
 //! told.
 
 use nalgebra::DMatrix;
 use overact::Info;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use super::factor::Factor;
+use super::{factor::Factor, projection::Projection};
 use crate::{error::Problem, kinematics::Motion};
-
-/// On what the inputs are projected.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Projection {
-    /// Case 1: the platform.
-    Platform,
-    /// Case 2: these r kept actuators of a redundant robot.
-    Actuators(Vec<usize>),
-    /// All actuators of a robot without redundancy.
-    Joints,
-}
-
-impl Projection {
-    /// `platform`, `actuators` or `joints`.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Platform => "platform",
-            Self::Actuators(_) => "actuators",
-            Self::Joints => "joints",
-        }
-    }
-
-    /// The kept actuators, or `None` on the platform.
-    #[must_use]
-    pub fn kept(&self, info: &Info<'_>) -> Option<Vec<usize>> {
-        match self {
-            Self::Platform => None,
-            Self::Actuators(kept) => Some(kept.clone()),
-            Self::Joints => Some((0..info.sizes.actuators).collect()),
-        }
-    }
-
-    /// Names of the lines of Γ.
-    #[must_use]
-    pub fn line_names(&self, info: &Info<'_>) -> Vec<String> {
-        let named = |names: &[&str], index: usize| {
-            names
-                .get(index)
-                .map_or_else(|| format!("line {index}"), |name| (*name).to_owned())
-        };
-        match self.kept(info) {
-            None => (0..info.sizes.dof)
-                .map(|line| named(info.coordinates, line))
-                .collect(),
-            Some(kept) => kept
-                .iter()
-                .map(|&actuator| named(info.actuators, actuator))
-                .collect(),
-        }
-    }
-}
-
-impl Serialize for Projection {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
 
 /// How badly conditioned the kept rows J_a of J_p^inv get along a trajectory, and where. It depends
 /// on the units of the platform's coordinates; above 30 or so case 2 suffers.
@@ -125,6 +67,7 @@ pub struct System {
 
 /// The equations of a part of a run.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Part {
     /// Number of the run.
     pub run: usize,
@@ -134,6 +77,7 @@ pub struct Part {
 
 /// Successive equations of a run.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Stretch {
     /// Number of the run.
     pub run: usize,

@@ -25,7 +25,9 @@ use crate::{
         distribution::{least_multipliers, least_norm, product, transposed_product},
     },
     monitor::Monitor,
-    regression::{Chunk, observation::Observer, points::Points, sink::Plan, system::Projection},
+    regression::{
+        Chunk, observation::Observer, points::Points, projection::Projection, sink::Plan,
+    },
     series::{RunFigures, Series},
 };
 
@@ -38,7 +40,7 @@ pub struct TorqueComparison {
     pub actuator: String,
     /// 100 ||τ - τ*||/||τ||, τ* being the least-norm torque.
     pub least_norm_percent: f64,
-    /// The same for the torque of eq. (26) with an overconstraint of zero, which satisfies the model but
+    /// 100 ||τ - τ*||/||τ||, τ* being the torque of eq. (26) without overconstraint, which satisfies the model but
     /// is not of least norm; none without redundancy, and for models that lack the closure matrices.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closure_percent: Option<f64>,
@@ -46,6 +48,7 @@ pub struct TorqueComparison {
 
 /// How well parameters reproduce a run.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Validation {
     /// Name of the run.
     pub run: String,
@@ -57,7 +60,7 @@ pub struct Validation {
     pub lines: Vec<LineError>,
     /// Each actuator's torque against the least-norm prediction.
     pub torques: Vec<LineError>,
-    /// The same with the measured torques freed of their internal part (50); empty without
+    /// Each measured torque, freed of its internal part (50), against the prediction; empty without
     /// redundancy.
     pub projected_torques: Vec<LineError>,
     /// Each actuator's torque against both predictions.

@@ -9,7 +9,7 @@ use crate::{
     escape::escape,
     plot::{Axis, Chart, Line, Look, Rule},
 };
-use overact_identification::{ConditionSeries, Identification, RunFigures};
+use overact_identification::{ConditionSeries, Identification, ModelKind, RunFigures};
 
 /// The section.
 pub(super) fn section(contents: &Contents<'_>) -> Section {
@@ -49,7 +49,10 @@ pub(super) fn section(contents: &Contents<'_>) -> Section {
 /// Condition numbers of the systems, and the worst of the kept actuators.
 fn table(identification: &Identification) -> String {
     let rows = identification.estimates.iter().map(|one| {
-        let partition = one.partition.as_ref().filter(|_| one.model == "actuators");
+        let partition = one
+            .partition
+            .as_ref()
+            .filter(|_| one.model == ModelKind::Actuators);
         vec![
             Cell::text(case_heading(one.model)),
             Cell::text(one.stage.name()),

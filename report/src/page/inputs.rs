@@ -4,7 +4,7 @@
 use super::{
     Contents,
     markup::{Section, details, figure, key},
-    select::{case, case_heading, durations, finals, is_final, relative_error, worst_part},
+    select::{case_heading, durations, finals, is_final, relative_error, worst_part},
 };
 use crate::{
     escape::escape,
@@ -69,7 +69,7 @@ pub(super) fn torques(contents: &Contents<'_>) -> String {
     for (index, one) in ordered.iter().enumerate() {
         let id = format!("figure-torques-{}", index + 1);
         let figure = compared(&id, one, &one.torques, "τ", contents.units);
-        let heading = format!("{}, parameters of {}", one.run, case(one.model));
+        let heading = format!("{}, parameters of {}", one.run, one.model.case());
         // The first model's runs are shown, all others on demand.
         if ordered
             .first()

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use super::{
     Contents,
     markup::{Cell, Section, Table, details, figure, key, paragraph, with_deviation},
-    select::{case, case_heading, finals, look, projection},
+    select::{case_heading, finals, look, projection},
 };
 use crate::{
     escape::escape,
@@ -51,7 +51,7 @@ fn introduction(estimates: &[&Estimate]) -> String {
             let weighted = if one.weighted { ", weighted" } else { "" };
             format!(
                 "{}: {}{weighted}, {} equations, condition number {}, relative error {} %",
-                case(one.model),
+                one.model.case(),
                 projection(one),
                 one.equations,
                 significant(one.condition_number, 3),
@@ -172,7 +172,7 @@ fn header(
     }
     if !published.is_empty() && contents.published.is_some() {
         groups.push(Cell::text("Published").over(published.len()).class("group"));
-        let heading = |one: &&PublishedEstimate| Cell::text(case_heading(&one.model)).class("n");
+        let heading = |one: &&PublishedEstimate| Cell::text(case_heading(one.model)).class("n");
         columns.extend(published.iter().map(heading));
     }
     vec![groups, columns]
@@ -228,7 +228,7 @@ fn error_bars(estimates: &[&Estimate]) -> String {
                 outer: percent(2.0 * one.correlated_standard_deviation),
                 label: format!(
                     "{name}, {}: {} {}",
-                    case(estimate.model),
+                    estimate.model.case(),
                     with_deviation(one.value, one.correlated_standard_deviation),
                     one.unit
                 ),

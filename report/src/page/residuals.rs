@@ -3,7 +3,7 @@
 use super::{
     Contents,
     markup::{Section, details, figure, paragraph},
-    select::{case, case_heading, is_final, look},
+    select::{case_heading, is_final, look},
 };
 use crate::{
     escape::escape,
@@ -78,7 +78,7 @@ fn residuals(one: &ResidualFigures, units: &Units) -> String {
         .collect();
     let caption = format!(
         "For each line of Γ: the residual of the run in which it is largest; its autocorrelation, which lies between the dashed lines for 95 % of all lags if the residual is white; its power spectral density. Of {}: {}.",
-        case(one.model),
+        one.model.case(),
         colours.join(", ")
     );
     figure(
@@ -111,7 +111,7 @@ fn over_time(one: &ResidualFigures, line: &LineResidual, units: &Units) -> Optio
             y: Axis::linear(format!("residual{}", bracketed(units.torque(&line.name)))),
             lines: vec![Line::new(
                 Look::Residual,
-                format!("residual, {}", case(one.model)),
+                format!("residual, {}", one.model.case()),
                 &worst.time,
                 &worst.residual,
             )],

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::plot::Look;
-use overact_identification::{Estimate, Identification, Series, Stage};
+use overact_identification::{Estimate, Identification, ModelKind, Series, Stage};
 
 /// Points of a series that a plot can show without becoming a blot.
 const READABLE: usize = 300;
@@ -21,44 +21,37 @@ pub(super) fn finals(identification: &Identification) -> Vec<&Estimate> {
 }
 
 /// Whether an estimate is the last one of its model.
-pub(super) fn is_final(identification: &Identification, model: &str, stage: Stage) -> bool {
+pub(super) fn is_final(identification: &Identification, model: ModelKind, stage: Stage) -> bool {
     finals(identification)
         .iter()
         .any(|one| one.model == model && one.stage == stage)
 }
 
-/// `case 1`, `case 2` or `joint model`.
-pub(super) fn case(model: &str) -> &'static str {
+/// The case at the beginning of a sentence.
+pub(super) const fn case_heading(model: ModelKind) -> &'static str {
     match model {
-        "platform" => "case 1",
-        "actuators" => "case 2",
-        _ => "joint model",
-    }
-}
-
-/// The same at the beginning of a sentence.
-pub(super) fn case_heading(model: &str) -> &'static str {
-    match model {
-        "platform" => "Case 1",
-        "actuators" => "Case 2",
-        _ => "Joint model",
+        ModelKind::Platform => "Case 1",
+        ModelKind::Actuators => "Case 2",
+        ModelKind::Joints => "Joint model",
     }
 }
 
 /// What a model does with the inputs.
 pub(super) fn projection(estimate: &Estimate) -> String {
     match estimate.model {
-        "platform" => String::from("inputs projected on the platform"),
-        "actuators" => format!("inputs projected on {}", estimate.kept_actuators.join(", ")),
-        _ => String::from("inputs of all joints"),
+        ModelKind::Platform => String::from("inputs projected on the platform"),
+        ModelKind::Actuators => {
+            format!("inputs projected on {}", estimate.kept_actuators.join(", "))
+        }
+        ModelKind::Joints => String::from("inputs of all joints"),
     }
 }
 
 /// The look of a model's lines.
-pub(super) fn look(model: &str) -> Look {
+pub(super) const fn look(model: ModelKind) -> Look {
     match model {
-        "actuators" => Look::Second,
-        _ => Look::First,
+        ModelKind::Actuators => Look::Second,
+        ModelKind::Platform | ModelKind::Joints => Look::First,
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{
     Contents, inputs,
     markup::{Cell, Section, Table, paragraph},
-    select::{case, is_final},
+    select::is_final,
 };
 use crate::escape::escape;
 use overact_identification::{CrossValidation, Identification};
@@ -79,7 +79,7 @@ fn table(contents: &Contents<'_>) -> String {
     for one in &identification.cross_validation {
         if is_final(identification, one.model, one.stage) {
             for (prediction, errors) in predictions(one) {
-                rows.push(row(&one.run, case(one.model), prediction, &errors));
+                rows.push(row(&one.run, one.model.case(), prediction, &errors));
             }
         }
     }
@@ -87,7 +87,7 @@ fn table(contents: &Contents<'_>) -> String {
     for one in published.iter().flat_map(|all| &all.cross_validation) {
         let errors: Vec<Option<f64>> = one.torques_percent.iter().copied().map(Some).collect();
         let run = format!("{} (published)", one.run);
-        rows.push(row(&run, case(&one.model), "eq. (26)", &errors));
+        rows.push(row(&run, one.model.case(), "eq. (26)", &errors));
     }
     let mut header = vec![
         Cell::text("run"),

@@ -47,7 +47,7 @@ impl Axis {
         }
     }
 
-    /// The same axis, on which these values lie.
+    /// This axis, wide enough for these values.
     pub(crate) fn including(mut self, values: &[f64]) -> Self {
         self.includes.extend_from_slice(values);
         self

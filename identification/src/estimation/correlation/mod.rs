@@ -61,7 +61,7 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    /// That of the residual which the `estimation` of the columns `selected` leaves; none without
+    /// The matrix of the residual which the `estimation` of the columns `selected` leaves; none without
     /// successive equations.
     pub(crate) fn new(
         system: &System,

@@ -5,7 +5,8 @@ use super::{Noise, line_residual};
 use crate::{
     regression::{
         factor::Factor,
-        system::{Projection, Stretch, System},
+        projection::Projection,
+        system::{Stretch, System},
     },
     settings::{Normalisation, Settings},
 };

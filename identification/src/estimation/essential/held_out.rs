@@ -91,7 +91,7 @@ impl HeldOut {
         self.error_percent_in(self, selected)
     }
 
-    /// The same with the equations of another projection: its folds are predicted by what is
+    /// The relative error with the equations of another projection: its folds are predicted by what is
     /// estimated from the others of this one.
     pub(crate) fn error_percent_in(&self, other: &Self, selected: &[usize]) -> Option<f64> {
         if self.folds.len() != other.folds.len() {

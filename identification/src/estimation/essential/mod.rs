@@ -63,7 +63,7 @@ pub struct Removal {
     /// ||ρ||/||Y|| on parts of the data that were not estimated from, before the step, percent; none
     /// where the data can't be divided.
     pub held_out_before_percent: Option<f64>,
-    /// The same after the step.
+    /// Relative error of the held-out data after the step, percent.
     pub held_out_after_percent: Option<f64>,
     /// The remaining parameter that the step moves most, seen from the base estimate and counted in
     /// units of the tolerance.
@@ -90,6 +90,7 @@ pub struct Drift {
 
 /// The essential parameters and the way to them.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Essential {
     /// Columns that are left, in the order of the base parameters.
     pub selected: Vec<usize>,

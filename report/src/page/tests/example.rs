@@ -7,9 +7,10 @@ use crate::{
 use overact::{Info, Sizes};
 use overact_identification::{
     BaseParameter, ConditionSeries, CrossValidation, Drift, Estimate, Figures, Finding,
-    FindingKind, Identification, LineError, LineResidual, Normalisation, ParameterEstimate,
-    PartitionCondition, PredictionFigures, Regrouping, Removal, ResidualFigures, ResidualSeries,
-    Run, RunFigures, Series, Settings, Stage, Thresholds, TorqueComparison, TrackingError, Verdict,
+    FindingKind, Identification, LineError, LineResidual, ModelKind, Normalisation,
+    ParameterEstimate, PartitionCondition, PredictionFigures, Regrouping, Removal, ResidualFigures,
+    ResidualSeries, RunFigures, RunSummary, Series, Settings, Stage, Thresholds, TorqueComparison,
+    TrackingError, Verdict,
 };
 
 /// A name that breaks whatever does not escape it.
@@ -68,7 +69,7 @@ fn removal(name: &str, accepted: bool) -> Removal {
     }
 }
 
-fn estimate(model: &'static str, stage: Stage) -> Estimate {
+fn estimate(model: ModelKind, stage: Stage) -> Estimate {
     Estimate {
         model,
         kept_actuators: vec![HOSTILE.to_owned()],
@@ -98,7 +99,7 @@ fn estimate(model: &'static str, stage: Stage) -> Estimate {
     }
 }
 
-fn cross_validation(model: &'static str) -> CrossValidation {
+fn cross_validation(model: ModelKind) -> CrossValidation {
     CrossValidation {
         run: String::from("held out"),
         payload: false,
@@ -169,11 +170,14 @@ fn figures() -> Figures {
     Figures {
         runs: vec![run(HOSTILE, true), run("held out", false)],
         predictions: vec![
-            prediction(HOSTILE, true, "platform"),
-            prediction("held out", false, "platform"),
-            prediction(HOSTILE, true, "actuators"),
+            prediction(HOSTILE, true, ModelKind::Platform),
+            prediction("held out", false, ModelKind::Platform),
+            prediction(HOSTILE, true, ModelKind::Actuators),
         ],
-        residuals: vec![residual("platform"), residual("actuators")],
+        residuals: vec![
+            residual(ModelKind::Platform),
+            residual(ModelKind::Actuators),
+        ],
     }
 }
 
@@ -212,7 +216,7 @@ pub(super) fn identification() -> Identification {
     };
     Identification {
         robot: HOSTILE.to_owned(),
-        runs: vec![Run {
+        runs: vec![RunSummary {
             name: HOSTILE.to_owned(),
             samples: 5000,
             sampling_frequency: 1000.0,
@@ -225,12 +229,15 @@ pub(super) fn identification() -> Identification {
         ],
         without_effect: vec![HOSTILE.to_owned()],
         estimates: vec![
-            estimate("platform", Stage::Base),
-            estimate("platform", Stage::Essential),
-            estimate("actuators", Stage::Base),
-            estimate("actuators", Stage::Essential),
+            estimate(ModelKind::Platform, Stage::Base),
+            estimate(ModelKind::Platform, Stage::Essential),
+            estimate(ModelKind::Actuators, Stage::Base),
+            estimate(ModelKind::Actuators, Stage::Essential),
         ],
-        cross_validation: vec![cross_validation("platform"), cross_validation("actuators")],
+        cross_validation: vec![
+            cross_validation(ModelKind::Platform),
+            cross_validation(ModelKind::Actuators),
+        ],
         warnings: vec![format!("beware of {HOSTILE}"), String::from("clipped")],
         findings: vec![Finding {
             kind: FindingKind::ClippedTorque,
@@ -272,7 +279,7 @@ pub(super) fn published() -> Published {
         note: Some(HOSTILE.to_owned()),
         actuators: vec![String::from("leg1")],
         estimates: vec![PublishedEstimate {
-            model: String::from("platform"),
+            model: ModelKind::Platform,
             relative_error_percent: Some(11.0),
             parameters: [(
                 String::from("m_platformR"),
@@ -285,7 +292,7 @@ pub(super) fn published() -> Published {
         }],
         cross_validation: vec![PublishedTorques {
             run: String::from("trajectory 1"),
-            model: String::from("platform"),
+            model: ModelKind::Platform,
             torques_percent: vec![9.1],
         }],
         tracking: vec![PublishedTracking {

@@ -1,0 +1,98 @@
+//! On what the inputs are projected, and which model explains them then.
+
+use std::fmt;
+
+use overact::Info;
+use serde::{Deserialize, Serialize};
+
+/// Which inputs a model explains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ModelKind {
+    /// Case 1: inputs projected on the platform.
+    Platform,
+    /// Case 2: inputs projected on as many actuators as there are degrees of freedom.
+    Actuators,
+    /// The inputs of all joints of a robot without redundancy.
+    Joints,
+}
+
+impl ModelKind {
+    /// `platform`, `actuators` or `joints`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Platform => "platform",
+            Self::Actuators => "actuators",
+            Self::Joints => "joints",
+        }
+    }
+
+    /// The paper's name: `case 1`, `case 2`; `joint model` without redundancy.
+    #[must_use]
+    pub const fn case(self) -> &'static str {
+        match self {
+            Self::Platform => "case 1",
+            Self::Actuators => "case 2",
+            Self::Joints => "joint model",
+        }
+    }
+}
+
+impl fmt::Display for ModelKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// On what the inputs are projected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Projection {
+    /// Case 1: the platform.
+    Platform,
+    /// Case 2: these r kept actuators of a redundant robot.
+    Actuators(Vec<usize>),
+    /// All actuators of a robot without redundancy.
+    Joints,
+}
+
+impl Projection {
+    /// Which model explains these inputs.
+    #[must_use]
+    pub const fn model(&self) -> ModelKind {
+        match self {
+            Self::Platform => ModelKind::Platform,
+            Self::Actuators(_) => ModelKind::Actuators,
+            Self::Joints => ModelKind::Joints,
+        }
+    }
+
+    /// The kept actuators, or `None` on the platform.
+    #[must_use]
+    pub fn kept(&self, info: &Info<'_>) -> Option<Vec<usize>> {
+        match self {
+            Self::Platform => None,
+            Self::Actuators(kept) => Some(kept.clone()),
+            Self::Joints => Some((0..info.sizes.actuators).collect()),
+        }
+    }
+
+    /// Names of the lines of Γ.
+    #[must_use]
+    pub fn line_names(&self, info: &Info<'_>) -> Vec<String> {
+        let named = |names: &[&str], index: usize| {
+            names
+                .get(index)
+                .map_or_else(|| format!("line {index}"), |name| (*name).to_owned())
+        };
+        match self.kept(info) {
+            None => (0..info.sizes.dof)
+                .map(|line| named(info.coordinates, line))
+                .collect(),
+            Some(kept) => kept
+                .iter()
+                .map(|&actuator| named(info.actuators, actuator))
+                .collect(),
+        }
+    }
+}
