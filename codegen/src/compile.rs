@@ -12,6 +12,7 @@ use crate::selection::{self, Assembler, Search};
 
 /// A description and the model that was made from it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Compiled {
     /// What the text says.
     pub description: Description,

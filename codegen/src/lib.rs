@@ -7,37 +7,41 @@
 //! u_i of the wrench that p alone produces: Γ¹ = (J_p^inv)ᵀ τ = IDM_red χ, eq. (30) of Briot, Krut, Gautier
 //! 2015. Everything is linear in the parameters and divides by nothing but the leg determinants.
 //!
-//! The stages, in the order of [`compile`](mod@compile), each a folder or file with its theory:
+//! The stages, in the order of [`compile`](fn@compile), each a folder or file with its theory:
 //!
 //! | stage | from | to |
 //! |---|---|---|
 //! | [`description`] | TOML | values with units and places; errors in [`diagnostic`] |
 //! | [`mechanism`] | description | checked legs, platform, home configuration |
-//! | [`derivation`] | mechanism | expressions of the algebra [`cas`] |
-//! | [`selection`] | regressor | its form, and its present, independent and combined columns |
+//! | [`derivation`] | mechanism | expressions of the algebra `cas` |
+//! | `selection` | regressor | its form, and its present, independent and combined columns |
 //! | [`lowering`] | expressions | a straight-line program with its operation count |
 //! | [`emission`] | programs | Rust |
 //! | [`evaluation`] | programs | numbers, block by block |
 //!
 //! The crate is pure: text in, model or diagnostics out.
 
-pub mod cas;
-pub mod compile;
+#[allow(unreachable_pub, reason = "public to the stages that stand above")]
+mod cas;
+mod compile;
 pub mod derivation;
 pub mod description;
 pub mod diagnostic;
-pub mod effort;
+mod effort;
 pub mod emission;
 pub mod evaluation;
+#[doc(hidden)]
+pub mod internals;
 pub mod lowering;
 pub mod mechanism;
-pub mod model;
+mod model;
 mod parallel;
-pub mod request;
-pub mod selection;
+mod request;
+mod selection;
 
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;
 pub use model::{CompiledFunction, RobotModel};
 pub use request::Request;
+pub use selection::BaseParameter;

@@ -7,6 +7,7 @@ use crate::selection::BaseParameter;
 
 /// A function of the robot.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct CompiledFunction {
     /// Name of the Rust function.
     pub name: String,
@@ -38,6 +39,7 @@ impl CompiledFunction {
 
 /// A robot's model.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RobotModel {
     /// The robot.
     pub mechanism: Mechanism,

@@ -5,7 +5,7 @@ use crate::effort::Effort;
 use crate::mechanism::Mechanism;
 
 /// Which functions of a robot a model shall have.
-pub type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, MotionInput) -> bool + Sync);
+pub(crate) type Wanted<'a> = &'a (dyn Fn(&Mechanism, Family, MotionInput) -> bool + Sync);
 
 /// What a model shall have, and what work it is worth; by default all functions, quickly.
 #[derive(Clone, Copy)]

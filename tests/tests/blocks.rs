@@ -2,9 +2,8 @@
 
 use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::evaluation::{BLOCK, Rows};
+use overact_codegen::internals::{random_states, sample};
 use overact_codegen::lowering::{Condition, Program};
-use overact_codegen::mechanism::states::random_states;
-use overact_codegen::selection::columns::sample;
 use overact_robots::DualV;
 use overact_tests::reference::robots;
 use overact_tests::support::backend::evaluate;

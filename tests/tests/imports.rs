@@ -32,6 +32,7 @@ const HOUSES: [House; 6] = [
             "request",
             "compile",
             "emission",
+            "internals",
         ],
     },
     House {

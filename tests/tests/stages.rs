@@ -2,14 +2,13 @@
 //!
 //! The cost table pins the operation counts of all functions.
 
-use overact_codegen::cas::Arena;
-use overact_codegen::derivation::{Columns, Derived, Family, MotionInput, derive};
+use overact_codegen::CompiledFunction;
+use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::description::{self, Description};
 use overact_codegen::emission;
+use overact_codegen::internals::{Arena, Derived, derive, random_states};
 use overact_codegen::lowering::{Operand, Operation, Program};
 use overact_codegen::mechanism::Mechanism;
-use overact_codegen::mechanism::states::random_states;
-use overact_codegen::model::CompiledFunction;
 use overact_tests::support::backend::evaluate;
 use overact_tests::support::{Failure, dualv};
 use std::fmt::Write;

@@ -120,7 +120,9 @@ fn extent(places: &[[f64; 3]]) -> f64 {
 }
 
 fn gravity(mechanism: &Mechanism) -> Point {
-    let [x, y, z] = mechanism.gravity.map(overact_codegen::cas::Number::value);
+    let [x, y, z] = mechanism
+        .gravity
+        .map(overact_codegen::mechanism::Number::value);
     Vector3::new(x, y, z)
 }
 

@@ -48,7 +48,6 @@ impl Handle {
 
 /// What a node computes. Operands of products and quotients are positive: signs move outwards.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the variants say it")]
 pub enum Op {
     Constant(u32),
     Symbol(SymbolId),

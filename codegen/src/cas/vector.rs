@@ -13,12 +13,6 @@ pub struct Vector3<'a>(pub [Expr<'a>; 3]);
 pub struct Matrix3<'a>(pub [[Expr<'a>; 3]; 3]);
 
 impl<'a> Vector3<'a> {
-    /// A vector from its components.
-    #[must_use]
-    pub const fn new(x: Expr<'a>, y: Expr<'a>, z: Expr<'a>) -> Self {
-        Self([x, y, z])
-    }
-
     /// The zero vector.
     #[must_use]
     pub fn zero(arena: &'a Arena) -> Self {
@@ -78,15 +72,6 @@ impl<'a> Vector3<'a> {
     #[must_use]
     pub fn scaled(self, factor: Expr<'a>) -> Self {
         Self(self.0.map(|c| c * factor))
-    }
-
-    /// The vector with named components `name_x`, `name_y`, `name_z`.
-    #[must_use]
-    pub fn named(self, name: &str) -> Self {
-        for (component, axis) in self.0.iter().zip(["x", "y", "z"]) {
-            let _ = component.named(&format!("{name}_{axis}"));
-        }
-        self
     }
 }
 

@@ -27,8 +27,6 @@ pub struct ClosedForm<'a> {
     pub pose: Vec<Expr<'a>>,
     /// Conditions for the spheres to meet, with the name of a leg that holds one.
     pub reach: Vec<(Reach<'a>, String)>,
-    /// Indices of the actuators that it is found from, in ascending order.
-    pub actuators: Vec<usize>,
 }
 
 /// |X|² + h · X + f = 0 for a platform point X, on its free axes.
@@ -357,14 +355,9 @@ impl<'a> Work<'a> {
             let radicand = meeting.radicand;
             (Reach { radicand }, leg_name(meeting))
         });
-        let used: Vec<usize> = meetings.iter().flat_map(|m| m.legs.clone()).collect();
-        let joints = self.mechanism.joints();
-        let actuated = self.mechanism.actuated();
-        let actuators = (0..actuated.len()).filter(|&k| used.contains(&joints[actuated[k]].leg));
         ClosedForm {
             pose,
             reach: reach.collect(),
-            actuators: actuators.collect(),
         }
     }
 }

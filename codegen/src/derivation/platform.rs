@@ -1,6 +1,6 @@
 //! The platform: pose, twist t = D v and acceleration as vectors in the base frame, eq. (14).
 
-use crate::cas::{Angle, Arena, Direction, Expr, Matrix3, Number, Vector3};
+use crate::cas::{Angle, Arena, Expr, Matrix3, Number, Vector3};
 use crate::mechanism::{Motion, Placement, TwistCoordinate};
 
 /// Position and orientation of the platform frame in the base frame.
@@ -12,8 +12,6 @@ pub struct PlatformPose<'a> {
     pub origin: Vector3<'a>,
     /// Orientation.
     pub rotation: Matrix3<'a>,
-    /// The angle of the only rotation, where there is one.
-    pub angle: Option<(usize, Direction)>,
 }
 
 /// Velocity and acceleration of the platform.
@@ -45,13 +43,11 @@ impl<'a> PlatformPose<'a> {
                 origin[*axis] = input(i);
             }
         }
-        let mut angle = None;
         let mut rotation = Matrix3::identity(arena);
         if let Some(axis) = motion.rotation_axis() {
             let phi = arena.angle(&format!("pose[{}]", count - 1));
             let (cosine, sine) = arena.cosine_and_sine(&phi);
             rotation = Matrix3::rotation(axis, cosine.named("c_phi"), sine.named("s_phi"));
-            angle = Some((axis, phi));
         } else if motion.has_quaternion() {
             rotation = quaternion_rotation(std::array::from_fn(|i| input(count - 4 + i)));
         }
@@ -60,7 +56,6 @@ impl<'a> PlatformPose<'a> {
             motion,
             origin: Vector3(origin),
             rotation,
-            angle,
         }
     }
 

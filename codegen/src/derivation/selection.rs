@@ -28,11 +28,10 @@ pub struct Selection {
 /// robot.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Formulation {
-    /// The axes in which the closure of each leg is written, see
-    /// [`Orientation::stations`](super::orientation::Orientation::stations); 0, and none, are the
-    /// base's.
+    /// The axes in which the closure of each leg is written: by number, a frame that is met on the way
+    /// from the base along the leg; 0, and none, are the base's.
     pub stations: Vec<usize>,
-    /// Whether axes that meet in a point share the moment about it, see [`centres`](super::centres).
+    /// Whether axes that meet in a point share the moment about it.
     pub meeting: bool,
 }
 

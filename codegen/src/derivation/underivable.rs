@@ -5,6 +5,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 
 /// Why a model cannot be derived in the wanted form.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Underivable {
     /// No rule gives this leg's joints from the pose in closed form.
     InverseKinematics {

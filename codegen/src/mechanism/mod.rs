@@ -23,7 +23,7 @@ pub use check::check;
 pub use home::Home;
 pub use motion::TwistCoordinate;
 
-use crate::cas::{Angle, Number, Ratio};
+pub use crate::cas::{Angle, Number, Ratio};
 pub use crate::description::{BaseColumns, End, JointKind, Motion, Placement, StandardParameter};
 
 /// A joint and the body behind it.

@@ -13,6 +13,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// A base parameter: an independent column and what is regrouped into it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BaseParameter {
     /// The parameter whose column is kept.
     pub parameter: BodyParameter,
@@ -27,7 +28,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 
 /// The symmetric order (43) as indices of `parameters`.
 #[must_use]
-pub fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter]) -> Vec<usize> {
+pub(super) fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..parameters.len()).collect();
     order.sort_by_key(|&i| match parameters[i] {
         BodyParameter::Platform(symbol) => (0, 0, 0, symbol, 0),
@@ -41,7 +42,7 @@ pub fn symmetric_order(mechanism: &Mechanism, parameters: &[BodyParameter]) -> V
 
 /// Independent columns of `matrix` (rows of many states) in the given order.
 #[must_use]
-pub fn select(
+pub(super) fn select(
     matrix: &DMatrix<f64>,
     order: &[usize],
     parameters: &[BodyParameter],
@@ -111,7 +112,7 @@ fn combinations(matrix: &DMatrix<f64>, kept: &[usize], dependent: &[usize]) -> D
 /// The simplest fraction within 1e-10 of a number, by its continued fraction: a guess, because nearly
 /// every number has a fraction of six digits as near as that.
 #[must_use]
-pub fn nearby_ratio(value: f64) -> Option<Ratio> {
+pub(super) fn nearby_ratio(value: f64) -> Option<Ratio> {
     let (mut h0, mut h1, mut k0, mut k1) = (0_i128, 1_i128, 1_i128, 0_i128);
     let mut rest = value;
     for _ in 0..20 {

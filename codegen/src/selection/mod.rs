@@ -8,16 +8,17 @@
 //! operations ([`combine`]). All choices go by one measure: the operations of the program that
 //! [`assemble`] makes of a function, searched as far as [`search`] says.
 
-pub mod assemble;
-pub mod base;
-pub mod columns;
+mod assemble;
+mod base;
+mod columns;
 mod combine;
 mod formulation;
 mod regressor;
-pub mod search;
+mod search;
 
 pub use assemble::Assembler;
 pub use base::BaseParameter;
+pub use columns::sample;
 pub use search::Search;
 
 use crate::cas::Arena;
@@ -28,7 +29,9 @@ use crate::mechanism::Mechanism;
 ///
 /// # Errors
 /// See [`Underivable`].
-pub fn select(mechanism: &Mechanism) -> Result<(Selection, Vec<BaseParameter>), Underivable> {
+pub(crate) fn select(
+    mechanism: &Mechanism,
+) -> Result<(Selection, Vec<BaseParameter>), Underivable> {
     let mut selection = Selection {
         standard: BodyParameter::all(mechanism),
         payload: payload_columns(mechanism)?,

@@ -3,12 +3,11 @@
 
 use super::precise::{Precise, difference, rounded};
 use super::{Failure, description};
-use overact_codegen::cas::Stream;
 use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::evaluation::Rows;
+use overact_codegen::internals::{Stream, pose_towards, random_states};
 use overact_codegen::lowering::Program;
 use overact_codegen::mechanism::Mechanism;
-use overact_codegen::mechanism::states::{pose_towards, random_states};
 use overact_codegen::{Effort, Request, RobotModel, compile_with};
 
 /// Rays from the home pose on which singular configurations are approached.

@@ -9,8 +9,8 @@ use crate::reference::linear::relative_difference;
 use nalgebra::DMatrix;
 use overact::Error;
 use overact_codegen::derivation::{Columns, Family, MotionInput, Selection, Underivable};
+use overact_codegen::internals::{Assembler, Search};
 use overact_codegen::lowering::Program;
-use overact_codegen::selection::{Assembler, Search};
 use overact_codegen::{CompiledFunction, RobotModel};
 
 /// Condition number of a partition up to which the plain tolerance holds; beyond, case 2 is compared

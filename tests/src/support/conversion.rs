@@ -2,8 +2,8 @@
 
 use crate::reference::{End, Frame, Joint, JointKind, Leg, Mechanism, Motion};
 use nalgebra::{Rotation3, Vector3};
-use overact_codegen::cas::{Angle, Number};
 use overact_codegen::mechanism;
+use overact_codegen::mechanism::{Angle, Number};
 
 /// The reference's data of a mechanism. The workspace, in twist coordinates, is the caller's choice:
 /// descriptions have none.

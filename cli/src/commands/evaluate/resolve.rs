@@ -6,10 +6,9 @@ use crate::{
     states::States,
 };
 use overact_codegen::{
-    RobotModel,
+    CompiledFunction, RobotModel,
     derivation::{Columns, Family, MotionInput},
     diagnostic::did_you_mean,
-    model::CompiledFunction,
 };
 
 /// The function that the arguments name: by its family with what it is evaluated from, or by the full

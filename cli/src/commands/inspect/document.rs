@@ -2,11 +2,9 @@
 
 use super::conditioning::Conditioning;
 use overact_codegen::{
-    RobotModel,
+    BaseParameter, RobotModel,
     derivation::{Columns, MotionInput},
     lowering::{Array, Cost},
-    model,
-    selection::base::BaseParameter,
 };
 use overact_robot::{CompiledFile, InterpretedRobot};
 use serde::Serialize;
@@ -202,7 +200,7 @@ impl Base {
 }
 
 impl Function {
-    fn new(model: &RobotModel, function: &model::CompiledFunction) -> Self {
+    fn new(model: &RobotModel, function: &overact_codegen::CompiledFunction) -> Self {
         let argument = |array: &Array| Argument {
             name: array.name.clone(),
             shape: array.shape.clone(),

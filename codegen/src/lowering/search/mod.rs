@@ -1,7 +1,7 @@
 //! Cheaper ways to write a function's nodes, found by looking up their values.
 //!
 //! Every node has a fingerprint, its values at two random points of the field
-//! ([`cas`](crate::cas)). Whatever has the fingerprint of a node can stand for it. So for a node that is
+//! (`cas`). Whatever has the fingerprint of a node can stand for it. So for a node that is
 //! expensive, the search asks a table of values: is it the sum, the difference, the product or the
 //! quotient of two nodes that are there anyway? And if not: of one node that is there and one that could
 //! be had by a single operation, best of all an operation that serves several such nodes
