@@ -15,7 +15,7 @@ use crate::{
     regression::observation::Observer,
     series::RunFigures,
     settings::Settings,
-    validation::{Candidate, validate},
+    validation::{Candidate, Validation, validate},
 };
 
 /// What the runs of the cross-validation tell.
@@ -82,19 +82,31 @@ pub(super) fn cross_validate(
     // In the order of the estimates, each on all runs.
     for (index, (projection, estimate)) in estimates.iter().enumerate() {
         for (payload, validations) in &all {
-            match &validations[index] {
-                Ok(validation) => {
-                    let validation = CrossValidation::new(estimate, *payload, validation.clone());
-                    held_out.validations.push(validation);
-                    held_out.owners.push(*projection);
-                }
-                Err(error) if estimate.stage == Stage::Base => {
-                    let warning = format!("no cross-validation: {error}");
-                    held_out.warnings.push(warning);
-                }
-                Err(_) => {}
-            }
+            held_out.add(*projection, estimate, *payload, &validations[index]);
         }
     }
     Ok(held_out)
+}
+
+impl HeldOut {
+    /// Adds what a run tells of an estimate.
+    fn add(
+        &mut self,
+        projection: usize,
+        estimate: &Estimate,
+        payload: bool,
+        validation: &Result<Validation, Error>,
+    ) {
+        match validation {
+            Ok(validation) => {
+                let validation = CrossValidation::new(estimate, payload, validation.clone());
+                self.validations.push(validation);
+                self.owners.push(projection);
+            }
+            Err(error) if estimate.stage == Stage::Base => {
+                self.warnings.push(format!("no cross-validation: {error}"));
+            }
+            Err(_) => {}
+        }
+    }
 }

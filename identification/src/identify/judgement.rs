@@ -198,15 +198,9 @@ fn of_model(
             significant(essential.relative_error_percent, 3)
         ));
     }
-    let held_out: Vec<&CrossValidation> = cross_validation
-        .iter()
-        .filter(|one| one.model == model)
-        .collect();
-    if let Some(worst) = held_out
-        .iter()
-        .map(|one| one.relative_error_percent)
-        .reduce(f64::max)
-    {
+    let held_out = cross_validation.iter().filter(|one| one.model == model);
+    let errors = held_out.map(|one| one.relative_error_percent);
+    if let Some(worst) = errors.reduce(f64::max) {
         let good = worst <= thresholds.relative_error_percent;
         trusted &= good;
         reasons.push(format!(

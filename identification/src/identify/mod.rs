@@ -56,20 +56,8 @@ pub fn identify(
     let projections = projections(model, settings);
     let prepared = prepare(model, dataset.runs, &projections, settings, progress)?;
     let mut warnings = prepared_warnings(&prepared, dataset.validation);
-    let mut estimates = Vec::new();
     let outcomes = estimate_all(&prepared, settings, dataset.true_values, progress);
-    for (number, (outcome, projection)) in outcomes.into_iter().zip(&projections).enumerate() {
-        match outcome {
-            Ok(outcome) => {
-                warnings.extend(outcome.warnings);
-                estimates.extend([outcome.base, outcome.essential].map(|one| (number, one)));
-            }
-            Err(error) if matches!(projection, Projection::Actuators(_)) => {
-                warnings.push(format!("case 2 is left out: {error}"));
-            }
-            Err(error) => return Err(error),
-        }
-    }
+    let estimates = estimates(outcomes, &projections, &mut warnings)?;
     let held_out = cross_validate(
         model,
         &prepared,
@@ -113,6 +101,29 @@ pub fn identify(
             .collect(),
         cross_validation,
     })
+}
+
+/// The estimates, each with the number of its projection. A projection on kept actuators that fails is
+/// a warning, any other an error.
+fn estimates(
+    outcomes: Vec<Result<Outcome, Error>>,
+    projections: &[Projection],
+    warnings: &mut Vec<String>,
+) -> Result<Vec<(usize, Estimate)>, Error> {
+    let mut estimates = Vec::new();
+    for (number, (outcome, projection)) in outcomes.into_iter().zip(projections).enumerate() {
+        match outcome {
+            Ok(outcome) => {
+                warnings.extend(outcome.warnings);
+                estimates.extend([outcome.base, outcome.essential].map(|one| (number, one)));
+            }
+            Err(error) if matches!(projection, Projection::Actuators(_)) => {
+                warnings.push(format!("case 2 is left out: {error}"));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(estimates)
 }
 
 /// The projections of a robot: case 1 and case 2, or its joints without redundancy.

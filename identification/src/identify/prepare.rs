@@ -105,17 +105,11 @@ pub fn prepare(
         let run = log.name();
         let report = |done, samples| progress(Progress::Run { run, done, samples });
         let budget = LARGEST_STRETCHES / runs.len();
-        let observed = observer.run(number, log, budget, &report);
-        let judged = observed.and_then(|(observed, told)| {
-            let (monitor, closure) = (told.monitor.clone(), told.closure_residual);
-            let found = assessment::of_run(model, log, monitor, closure)?;
-            Ok((observed, told, found))
-        });
-        match judged {
-            Ok((observed, told, found)) => {
+        match observed(&observer, (number, log), budget, &report) {
+            Ok((equations, told, found)) => {
                 findings.extend(found);
                 seen.push(told);
-                points.push(add(&mut systems, observed));
+                points.push(add(&mut systems, equations));
             }
             Err(error) => problems.extend(assessment::explained(model, log, error).problems),
         }
@@ -135,11 +129,24 @@ pub fn prepare(
     })
 }
 
+/// What a run holds for the system of each projection, or why it has nothing for it.
+type Equations = Vec<Result<Observed, Error>>;
+
+/// Goes through a run: its equations, what is told of it, and what is suspicious in it.
+fn observed(
+    observer: &Observer<'_>,
+    (number, log): (usize, &Log),
+    budget: usize,
+    progress: &dyn Fn(usize, usize),
+) -> Result<(Equations, Seen, Vec<Finding>), Error> {
+    let (equations, seen) = observer.run(number, log, budget, progress)?;
+    let monitor = seen.monitor.clone();
+    let found = assessment::of_run(observer.model, log, monitor, seen.closure_residual)?;
+    Ok((equations, seen, found))
+}
+
 /// Adds what a run holds to the systems, and gives back the equations at the points of the plots.
-fn add(
-    systems: &mut [Result<System, Error>],
-    observed: Vec<Result<Observed, Error>>,
-) -> Vec<Vec<DMatrix<f64>>> {
+fn add(systems: &mut [Result<System, Error>], observed: Equations) -> Vec<Vec<DMatrix<f64>>> {
     let mut points = Vec::new();
     for (system, observed) in systems.iter_mut().zip(observed) {
         match (system.as_mut(), observed) {

@@ -76,14 +76,7 @@ impl Observer<'_> {
             equations,
             budget / (lines * width * self.projections.len()).max(1),
         );
-        let mut sinks = Vec::new();
-        for _ in 0..lines * self.projections.len() {
-            sinks.push(LineSink::new(
-                &plan,
-                decimator.stream(width, samples)?,
-                self.base.len(),
-            ));
-        }
+        let mut sinks = self.sinks(&plan, &decimator, samples)?;
         let mut torques = decimator.stream(info.sizes.actuators, samples)?;
         let mut decimated_torques = Vec::new();
         let mut points = Points::new(
@@ -111,19 +104,13 @@ impl Observer<'_> {
             progress(motions.done(), log.samples());
         }
         progress(log.samples(), log.samples());
-        let mut sinks = sinks.into_iter();
         let partitions = points.partitions(self.projections);
-        let systems = failed
-            .into_iter()
-            .zip(partitions)
-            .map(|(failure, partition)| {
-                let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
-                match failure {
-                    Some(error) => Err(error),
-                    None => Ok(observed(number, &plan, own, partition)),
-                }
-            })
-            .collect();
+        let mut sinks = sinks.into_iter();
+        let system = |(failure, partition): (Option<Error>, _)| {
+            let own: Vec<LineSink> = sinks.by_ref().take(lines).collect();
+            failure.map_or_else(|| Ok(observed(number, &plan, own, partition)), Err)
+        };
+        let systems = failed.into_iter().zip(partitions).map(system).collect();
         let seen = Seen {
             samples,
             closure_residual,
@@ -132,6 +119,21 @@ impl Observer<'_> {
             monitor: motions.into_monitor(),
         };
         Ok((systems, seen))
+    }
+
+    /// Where the equations of a run go: a sink for each line of each projection.
+    fn sinks(
+        &self,
+        plan: &Plan,
+        decimator: &Decimator,
+        samples: usize,
+    ) -> Result<Vec<LineSink>, Error> {
+        let (lines, parameters) = (self.model.info().sizes.dof, self.base.len());
+        let sink = |_| {
+            let stream = decimator.stream(parameters + 1, samples)?;
+            Ok(LineSink::new(plan, stream, parameters))
+        };
+        (0..lines * self.projections.len()).map(sink).collect()
     }
 
     /// Evaluates a block in parallel. Projections whose kept actuators are singular at a sample are
@@ -175,30 +177,7 @@ impl Observer<'_> {
             Error::from(motion.outside(first + error.sample, error.error))
         };
         let pose = slice(&motion.pose, info.sizes.pose, first, count);
-        let twist = slice(&motion.twist, r, first, count);
-        let acceleration = slice(&motion.acceleration, r, first, count);
-        let torques = slice(&motion.torques, n, first, count);
-        let states = [pose, twist, acceleration];
-        let mut platform = self
-            .columns
-            .evaluate(
-                self.model,
-                &states,
-                (count, 1.0 / motion.sampling_frequency),
-                motion.payload,
-                (self.base, 1),
-            )
-            .map_err(at)?;
-        let width = self.base.len() + 1;
-        let mut y = vec![0.0; count * r];
-        self.model
-            .evaluate(Function::ProjectPlatform, &[pose, torques], &mut y)
-            .map_err(at)?;
-        for (line, rows) in platform.iter_mut().enumerate() {
-            let measured = y[line..].iter().step_by(r);
-            let last = rows[width - 1..].iter_mut().step_by(width);
-            last.zip(measured).for_each(|(to, from)| *to = *from);
-        }
+        let platform = self.platform_rows(motion, first, count)?;
         let mut jacobians = vec![0.0; count * n * r];
         self.model
             .evaluate(Function::InverseJacobian, &[pose], &mut jacobians)
@@ -228,5 +207,45 @@ impl Observer<'_> {
             }
         }
         Ok((chunk, singular))
+    }
+
+    /// Rows of Γ¹ of `count` samples from number `first` of the motion on, line by line.
+    fn platform_rows(
+        &self,
+        motion: &Motion,
+        first: usize,
+        count: usize,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        let sizes = self.model.info().sizes;
+        let (r, n) = (sizes.dof, sizes.actuators);
+        let at = |error: overact::SampleError| {
+            Error::from(motion.outside(first + error.sample, error.error))
+        };
+        let pose = slice(&motion.pose, sizes.pose, first, count);
+        let twist = slice(&motion.twist, r, first, count);
+        let acceleration = slice(&motion.acceleration, r, first, count);
+        let torques = slice(&motion.torques, n, first, count);
+        let states = [pose, twist, acceleration];
+        let mut platform = self
+            .columns
+            .evaluate(
+                self.model,
+                &states,
+                (count, 1.0 / motion.sampling_frequency),
+                motion.payload,
+                (self.base, 1),
+            )
+            .map_err(at)?;
+        let width = self.base.len() + 1;
+        let mut y = vec![0.0; count * r];
+        self.model
+            .evaluate(Function::ProjectPlatform, &[pose, torques], &mut y)
+            .map_err(at)?;
+        for (line, rows) in platform.iter_mut().enumerate() {
+            let measured = y[line..].iter().step_by(r);
+            let last = rows[width - 1..].iter_mut().step_by(width);
+            last.zip(measured).for_each(|(to, from)| *to = *from);
+        }
+        Ok(platform)
     }
 }
