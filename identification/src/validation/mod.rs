@@ -82,6 +82,27 @@ pub(crate) struct Candidate<'a> {
     pub(crate) values: &'a [f64],
 }
 
+impl Candidate<'_> {
+    /// Predicts the lines of Γ by the equations of a sample, and puts measured and predicted values to
+    /// their places in a row.
+    fn predict<'e>(
+        &self,
+        equations: impl Iterator<Item = &'e [f64]>,
+        place: impl Fn(usize) -> Pair,
+        row: &mut [f64],
+    ) -> Vec<f64> {
+        let mut all = Vec::new();
+        for (line, equation) in equations.enumerate() {
+            let terms = self.selected.iter().zip(self.values);
+            let predicted = terms.map(|(&column, value)| equation[column] * value).sum();
+            row[place(line).measured] = equation[equation.len() - 1];
+            row[place(line).predicted] = predicted;
+            all.push(predicted);
+        }
+        all
+    }
+}
+
 /// What a run that is held out tells.
 pub(crate) struct Validated {
     /// For each candidate its comparison, or why it has none.
@@ -114,32 +135,19 @@ pub(crate) fn validate(
     let mut failed: Vec<Option<Error>> = observer.projections.iter().map(|_| None).collect();
     let plan = Plan::new(decimator.kept(samples), 0);
     let stride = plan.stride();
-    let mut points = Points::new(
-        (observer.model, observer.projections, observer.settings),
-        log,
-        &decimator,
-        samples,
-        &plan,
-    );
+    let seen = (observer.model, observer.projections, observer.settings);
+    let mut points = Points::new(seen, log, &decimator, samples, &plan);
     let mut sums = Sums::new(&layout, stride);
     let mut closure_residual = 0.0_f64;
     while let Some(motion) = motions.next()? {
         closure_residual = closure_residual.max(motion.closure_residual);
         let chunks = observer.chunks(&motion, &mut failed)?;
-        let rows: Vec<Vec<f64>> = chunks
-            .par_iter()
-            .enumerate()
-            .map(|(index, chunk)| {
-                rows(
-                    observer,
-                    &layout,
-                    &motion,
-                    (index * BLOCK, chunk),
-                    candidates,
-                    &failed,
-                )
-            })
-            .collect::<Result<_, Error>>()?;
+        let row = |(index, chunk)| {
+            let place = (index * BLOCK, chunk);
+            rows(observer, &layout, &motion, place, candidates, &failed)
+        };
+        let rows = chunks.par_iter().enumerate().map(row);
+        let rows = rows.collect::<Result<Vec<Vec<f64>>, Error>>()?;
         let mut kept = Vec::new();
         rows.iter().for_each(|rows| stream.push(rows, &mut kept));
         sums.take(&kept);
@@ -153,20 +161,18 @@ pub(crate) fn validate(
     };
     let of_candidate = |(number, candidate): (usize, &Candidate<'_>)| {
         let projection = &observer.projections[candidate.projection];
-        match &failed[candidate.projection] {
-            Some(error) => Err(error.clone()),
-            None => {
-                let names = projection.line_names(&info);
-                Ok(validation(
-                    &sums,
-                    number,
-                    log.name(),
-                    info.actuators,
-                    &names,
-                    &time,
-                ))
-            }
+        if let Some(error) = &failed[candidate.projection] {
+            return Err(error.clone());
         }
+        let (run, names) = (log.name(), projection.line_names(&info));
+        Ok(validation(
+            &sums,
+            number,
+            run,
+            info.actuators,
+            &names,
+            &time,
+        ))
     };
     points.partitions(observer.projections);
     let validations = candidates.iter().enumerate().map(of_candidate).collect();
@@ -278,16 +284,9 @@ fn rows(
                 continue;
             }
             let projection = &observer.projections[candidate.projection];
-            let lines = &chunk.lines[candidate.projection];
-            let width = observer.base.len() + 1;
-            let mut predicted = vec![0.0; r];
-            let equations = lines.iter().map(|rows| slice(rows, width, sample, 1));
-            for (line, equation) in equations.enumerate() {
-                let terms = candidate.selected.iter().zip(candidate.values);
-                predicted[line] = terms.map(|(&column, value)| equation[column] * value).sum();
-                row[layout.line(number, line).measured] = equation[width - 1];
-                row[layout.line(number, line).predicted] = predicted[line];
-            }
+            let lines = chunk.lines[candidate.projection].iter();
+            let equations = lines.map(|rows| slice(rows, observer.base.len() + 1, sample, 1));
+            let predicted = candidate.predict(equations, |line| layout.line(number, line), row);
             let place = &mut row[layout.predicted_torques(number)];
             if *projection == Projection::Joints {
                 place.copy_from_slice(&predicted);
