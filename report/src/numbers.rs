@@ -102,6 +102,11 @@ fn add_estimate<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
         rows.add_known(table, name, "error_percent", parameter.error_percent);
     }
     add_lines(rows, "line", &estimate.lines);
+    add_removals(rows, estimate);
+}
+
+/// The numbers of the way to the essential parameters.
+fn add_removals<'a>(rows: &mut Rows<'a>, estimate: &'a Estimate) {
     for removal in &estimate.removals {
         let (table, name) = ("removal", removal.name.as_str());
         let deviation = removal.relative_standard_deviation_percent;

@@ -64,70 +64,79 @@ fn stop_reason(stop: &str) -> String {
 
 /// The plots of the way: errors, and the rule of the stop.
 fn path(estimate: &Estimate, r_sigma: f64) -> String {
-    let removals = &estimate.removals;
-    let x = || Axis::linear("parameters cancelled").including(&[0.0]);
+    let errors = errors(estimate);
+    let mut entries = vec![("first", "runs identified from")];
+    if errors.lines.len() > 1 {
+        entries.push(("second", "held-out parts"));
+    }
+    let caption = "Left: the error hardly changes while needless parameters go, and jumps when one goes that is needed. Right: the rule of the stop; the way ends below the dashed line, or earlier where the second opinion refuses a step.";
+    figure(
+        &format!("figure-elimination-{}", estimate.model),
+        &[errors.svg(), ratio(estimate, r_sigma).svg()],
+        &key(&entries),
+        &escape(caption),
+    )
+}
+
+/// The axis of both plots.
+fn cancelled() -> Axis {
+    Axis::linear("parameters cancelled").including(&[0.0])
+}
+
+/// The relative errors along the way, on the runs identified from and, where there are any, on
+/// held-out parts.
+fn errors(estimate: &Estimate) -> Chart {
+    let own = "on the runs identified from";
+    let own = errors_line(&estimate.removals, own, Look::First, |one| {
+        (
+            Some(one.relative_error_before_percent),
+            Some(one.relative_error_after_percent),
+        )
+    });
+    let others = "on held-out parts";
+    let others = errors_line(&estimate.removals, others, Look::Second, |one| {
+        (one.held_out_before_percent, one.held_out_after_percent)
+    });
+    let mut lines = vec![own, others];
+    lines.retain(|line| !line.points.is_empty());
     let case = case_heading(estimate.model);
-    let mut errors = vec![
-        errors_line(
-            removals,
-            "on the runs identified from",
-            Look::First,
-            |one| {
-                (
-                    Some(one.relative_error_before_percent),
-                    Some(one.relative_error_after_percent),
-                )
-            },
-        ),
-        errors_line(removals, "on held-out parts", Look::Second, |one| {
-            (one.held_out_before_percent, one.held_out_after_percent)
-        }),
-    ];
-    errors.retain(|line| !line.points.is_empty());
-    let held_out = errors.len() > 1;
-    let errors = Chart {
+    Chart {
         title: String::from("Relative error"),
         description: format!("{case}: relative error after each cancelled parameter"),
-        x: x(),
+        x: cancelled(),
         y: Axis::linear("%"),
-        lines: errors,
+        lines,
         rules: Vec::new(),
-    };
+    }
+}
+
+/// The ratio of the largest to the smallest relative deviation along the way, with the rule of the stop.
+fn ratio(estimate: &Estimate, r_sigma: f64) -> Chart {
+    let removals = &estimate.removals;
     let steps: Vec<f64> = (0..removals.len()).map(|step| step as f64).collect();
     let ratios: Vec<f64> = removals.iter().map(|one| one.deviation_ratio).collect();
-    let mut ratio = Line::new(
+    let mut line = Line::new(
         Look::First,
         "largest by smallest deviation",
         &steps,
         &ratios,
     );
     if removals.iter().all(|one| one.accepted) {
-        ratio
-            .points
-            .push((removals.len() as f64, last_ratio(estimate)));
+        let end = (removals.len() as f64, last_ratio(estimate));
+        line.points.push(end);
     }
-    let ratio = Chart {
+    let case = case_heading(estimate.model);
+    Chart {
         title: String::from("Largest by smallest relative deviation"),
         description: format!("{case}: ratio of relative deviations after each cancelled parameter"),
-        x: x(),
+        x: cancelled(),
         y: Axis::logarithmic(""),
-        lines: vec![ratio.with_dots()],
+        lines: vec![line.with_dots()],
         rules: vec![Rule {
             value: r_sigma,
             label: format!("r_σ = {}", significant(r_sigma, 3)),
         }],
-    };
-    let mut entries = vec![("first", "runs identified from")];
-    if held_out {
-        entries.push(("second", "held-out parts"));
     }
-    let caption = "Left: the error hardly changes while needless parameters go, and jumps when one goes that is needed. Right: the rule of the stop; the way ends below the dashed line, or earlier where the second opinion refuses a step.";
-    figure(
-        &format!("figure-elimination-{}", estimate.model),
-        &[errors.svg(), ratio.svg()],
-        &key(&entries),
-        &escape(caption),
-    )
 }
 
 /// An error before the first and after each step.

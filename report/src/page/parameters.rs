@@ -219,20 +219,8 @@ fn error_bars(estimates: &[&Estimate]) -> String {
             continue;
         };
         to_truth |= truth.is_some();
-        let percent = |value: f64| 100.0 * value / reference.abs();
         let bars: Vec<Bar> = found()
-            .map(|(estimate, one)| Bar {
-                look: look(estimate.model),
-                value: percent(one.value - reference),
-                inner: percent(2.0 * one.standard_deviation),
-                outer: percent(2.0 * one.correlated_standard_deviation),
-                label: format!(
-                    "{name}, {}: {} {}",
-                    estimate.model.case(),
-                    with_deviation(one.value, one.correlated_standard_deviation),
-                    one.unit
-                ),
-            })
+            .map(|(estimate, one)| bar(estimate, one, reference))
             .collect();
         if bars
             .iter()
@@ -260,6 +248,39 @@ fn error_bars(estimates: &[&Estimate]) -> String {
         x: Axis::linear(format!("deviation from {reference} (%)")).including(&[0.0]),
         rows,
     };
+    let caption = bars_caption(to_truth, &left_out);
+    let entries: Vec<(&str, &str)> = estimates
+        .iter()
+        .map(|one| (look(one.model).class(), case_heading(one.model)))
+        .collect();
+    figure(
+        "figure-parameters",
+        &[plot.svg()],
+        &key(&entries),
+        &escape(&caption),
+    )
+}
+
+/// The error bar of a parameter, relative to a reference.
+fn bar(estimate: &Estimate, one: &ParameterEstimate, reference: f64) -> Bar {
+    let percent = |value: f64| 100.0 * value / reference.abs();
+    Bar {
+        look: look(estimate.model),
+        value: percent(one.value - reference),
+        inner: percent(2.0 * one.standard_deviation),
+        outer: percent(2.0 * one.correlated_standard_deviation),
+        label: format!(
+            "{}, {}: {} {}",
+            one.name,
+            estimate.model.case(),
+            with_deviation(one.value, one.correlated_standard_deviation),
+            one.unit
+        ),
+    }
+}
+
+/// What the error bars mean, and which parameters have none.
+fn bars_caption(to_truth: bool, left_out: &[&str]) -> String {
     let mut caption = format!(
         "Estimates with error bars of two standard deviations: bold for white residuals, thin for correlated ones. {}",
         if to_truth {
@@ -275,16 +296,7 @@ fn error_bars(estimates: &[&Estimate]) -> String {
             left_out.join(", ")
         );
     }
-    let entries: Vec<(&str, &str)> = estimates
-        .iter()
-        .map(|one| (look(one.model).class(), case_heading(one.model)))
-        .collect();
-    figure(
-        "figure-parameters",
-        &[plot.svg()],
-        &key(&entries),
-        &escape(&caption),
-    )
+    caption
 }
 
 /// What is regrouped into each base parameter.
