@@ -5,7 +5,8 @@ use overact::Model;
 use super::{
     prepare::Prepared,
     progress::Progress,
-    result::{CrossValidation, Estimate, Stage},
+    result::{CrossValidation, Estimate},
+    stage::Stage,
 };
 use crate::{
     assessment,

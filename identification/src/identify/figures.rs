@@ -11,7 +11,7 @@
 
 use serde::Serialize;
 
-use super::result::Stage;
+use super::stage::Stage;
 use crate::{
     regression::projection::ModelKind,
     series::{LineResidual, RunFigures, Series},

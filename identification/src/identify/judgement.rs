@@ -8,7 +8,8 @@ use overact::{Model, Symbol};
 use super::{
     dataset::Dataset,
     prepare::Prepared,
-    result::{CrossValidation, Estimate, Stage},
+    result::{CrossValidation, Estimate},
+    stage::Stage,
     verdict::Verdict,
 };
 use crate::{

@@ -7,31 +7,33 @@
 
 mod cross_validation;
 mod dataset;
+mod estimates;
 pub(crate) mod figures;
 mod judgement;
 mod plots;
 mod prepare;
 mod progress;
 mod result;
-mod stages;
+mod stage;
 mod study;
 pub(crate) mod verdict;
 
 use overact::Model;
 
 pub use dataset::Dataset;
+pub use estimates::{Outcome, estimate_projection};
 pub use prepare::{Prepared, prepare};
 pub use progress::Progress;
 pub use result::{
     BaseParameter, CrossValidation, Estimate, Identification, ParameterEstimate, Regrouping,
-    RunSummary, Stage,
+    RunSummary,
 };
-pub use stages::{Outcome, estimate_projection};
+pub use stage::Stage;
 pub use study::{RankedProjection, Study, study};
 
 use cross_validation::cross_validate;
+use estimates::estimate_all;
 use prepare::{check_runs, prepared_warnings};
-use stages::estimate_all;
 
 use crate::{
     error::Error,

@@ -26,6 +26,7 @@ use crate::{
 
 use super::{
     figures::Figures,
+    stage::Stage,
     verdict::{TrackingError, Verdict},
 };
 
@@ -152,27 +153,6 @@ impl BaseParameter {
                 true_value,
             })
             .collect()
-    }
-}
-
-/// Which parameters an estimate has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stage {
-    /// All base parameters.
-    Base,
-    /// Only parameters that the data determine.
-    Essential,
-}
-
-impl Stage {
-    /// `base` or `essential`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Base => "base",
-            Self::Essential => "essential",
-        }
     }
 }
 

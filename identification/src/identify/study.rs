@@ -12,10 +12,11 @@ use serde::Serialize;
 use super::{
     cross_validation::cross_validate,
     dataset::Dataset,
+    estimates::{Outcome, estimate_all},
     prepare::{Prepared, prepare},
     progress::Progress,
-    result::{CrossValidation, Estimate, ParameterEstimate, Stage},
-    stages::{Outcome, estimate_all},
+    result::{CrossValidation, Estimate, ParameterEstimate},
+    stage::Stage,
 };
 use crate::{
     error::Error,

@@ -14,7 +14,7 @@ use overact::{
 use rayon::prelude::*;
 
 use super::conditioning::couples;
-use super::outside;
+use super::motion::outside;
 use crate::{data::Log, error::Error};
 
 /// Steps in which the first sample is approached from the home pose, should it be far from it.

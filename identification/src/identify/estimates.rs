@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::{
     prepare::Prepared,
     progress::Progress,
-    result::{Estimate, ParameterEstimate, Stage},
+    result::{Estimate, ParameterEstimate},
+    stage::Stage,
 };
 use crate::{
     error::{Error, Problem},

@@ -1,0 +1,24 @@
+//! Which parameters an estimate has.
+
+use serde::Serialize;
+
+/// The stages of an identification, by the parameters that are estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// All base parameters.
+    Base,
+    /// Only parameters that the data determine.
+    Essential,
+}
+
+impl Stage {
+    /// `base` or `essential`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Essential => "essential",
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The motion of the platform over some samples.
+
+use crate::error::Problem;
+
+/// The motion of the platform in some successive samples of a run and the torques that belong to
+/// them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Motion {
+    /// Name of the run.
+    pub run: String,
+    /// Whether the platform carried the payload.
+    pub payload: bool,
+    /// f_m, Hz.
+    pub sampling_frequency: f64,
+    /// Number of the first sample in the log.
+    pub first_sample: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Poses x, samples x pose coordinates (m, rad).
+    pub pose: Vec<f64>,
+    /// Twist coordinates v, samples x r (m/s, rad/s).
+    pub twist: Vec<f64>,
+    /// Their derivatives, samples x r (m/s², rad/s²).
+    pub acceleration: Vec<f64>,
+    /// Torques, samples x n (N, N m), unfiltered.
+    pub torques: Vec<f64>,
+    /// Largest distance of a filtered actuator position from the one that the pose asks for (m,
+    /// rad): zero without redundancy, else the quality of the geometry and the encoders' offsets.
+    pub closure_residual: f64,
+}
+
+impl Motion {
+    /// Time of a sample of the motion, s from the start of the log.
+    #[must_use]
+    pub fn time(&self, sample: usize) -> f64 {
+        (self.first_sample + sample) as f64 / self.sampling_frequency
+    }
+
+    /// The problem of a model that has no value at a sample of the motion.
+    pub(crate) fn outside(&self, sample: usize, error: overact::Error) -> Problem {
+        outside(
+            &self.run,
+            self.first_sample + sample,
+            self.sampling_frequency,
+            error,
+        )
+    }
+
+    /// Appends the samples that follow.
+    pub(super) fn append(&mut self, next: Self) {
+        self.samples += next.samples;
+        self.pose.extend(next.pose);
+        self.twist.extend(next.twist);
+        self.acceleration.extend(next.acceleration);
+        self.torques.extend(next.torques);
+        self.closure_residual = self.closure_residual.max(next.closure_residual);
+    }
+}
+
+/// A sample of a log at which the model has no value.
+pub(super) fn outside(run: &str, sample: usize, frequency: f64, error: overact::Error) -> Problem {
+    Problem::new(format!(
+        "sample {sample} (t = {:.4} s) is outside the workspace: {error}",
+        sample as f64 / frequency
+    ))
+    .file(run)
+    .help("check the units, signs and offsets of the positions, the geometry and the home pose")
+}
