@@ -1,5 +1,6 @@
 //! Why a command has no result, as text for people or as JSON for machines.
 
+use overact_codegen::diagnostic::InternalError;
 use overact_robot::Error;
 use std::io::{self, IsTerminal, Write};
 
@@ -12,15 +13,20 @@ pub enum Failure {
     Usage(String),
     /// Something that the arguments name is wrong.
     Input(Error),
+    /// Something is wrong with this program.
+    Internal(InternalError),
 }
 
 impl Failure {
-    /// The exit code: 2 for arguments that do not go together, 1 for all else.
+    /// The exit code: 1 for bad input, 2 for arguments that do not go together, 4 for an error of this
+    /// program.
     #[must_use]
-    pub const fn exit_code(&self) -> u8 {
+    pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) => 2,
+            Self::Input(error) if error.internal().is_some() => 4,
             Self::Input(_) => 1,
+            Self::Usage(_) => 2,
+            Self::Internal(_) => 4,
         }
     }
 
@@ -30,6 +36,7 @@ impl Failure {
         match self {
             Self::Usage(message) => vec![Problem::new(message)],
             Self::Input(error) => error.problems(),
+            Self::Internal(error) => vec![Problem::from(error)],
         }
     }
 
@@ -39,6 +46,7 @@ impl Failure {
         match self {
             Self::Usage(message) => Problem::new(message).to_string(),
             Self::Input(error) => error.render(styled),
+            Self::Internal(error) => Problem::from(error).to_string(),
         }
     }
 
@@ -90,12 +98,39 @@ impl From<overact_identification::Error> for Failure {
 
 #[cfg(test)]
 mod tests {
-    use super::{Failure, Problem};
+    use super::{Error, Failure, InternalError, Problem};
+    use overact_codegen::diagnostic::{Diagnostics, Source};
 
     #[test]
     fn only_arguments_that_do_not_go_together_are_a_usage_error() {
         assert_eq!(Failure::from(Problem::new("no column")).exit_code(), 1);
         assert_eq!(Failure::Usage("no".into()).exit_code(), 2);
         assert_eq!(Failure::Usage("no".into()).render(false), "error: no");
+    }
+
+    #[test]
+    fn an_internal_error_has_a_code_of_its_own_wherever_it_comes_from() {
+        let error = || InternalError::new("lowering", "step 3 reads step 7").of_robot("DualV");
+        let direct = Failure::Internal(error());
+        let source = Source::new("dualv.toml", "");
+        let diagnostics = Diagnostics::from(error());
+        let compiled = Failure::Input(Error::Several(vec![Error::Description {
+            source,
+            diagnostics,
+        }]));
+        for failure in [direct, compiled] {
+            assert_eq!(failure.exit_code(), 4);
+            let text = failure.render(false);
+            for part in [
+                "internal error",
+                env!("CARGO_PKG_VERSION"),
+                "robot `DualV`",
+                "`lowering`",
+                "step 3 reads step 7",
+                "please report",
+            ] {
+                assert!(text.contains(part), "{part} in {text}");
+            }
+        }
     }
 }

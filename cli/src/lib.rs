@@ -7,6 +7,7 @@
 //! - `output`: results go to stdout or, whole or not at all, to a file;
 //! - `progress`: long work shows a bar on a terminal and nothing in a pipe;
 //! - [`drawing`]: a robot as SVG;
+//! - `guarded`: a defect of the program is told as such;
 //! - `effort`: how hard the generator searches;
 //! - `names`: names of results in names of files;
 //! - `note`: what a description says that may not be meant;
@@ -17,6 +18,7 @@ mod commands;
 pub mod drawing;
 mod effort;
 pub mod failure;
+mod guarded;
 mod names;
 mod note;
 mod output;
@@ -32,7 +34,7 @@ use std::process::ExitCode;
 pub fn run() -> ExitCode {
     let arguments = commands::Arguments::parse();
     let json = arguments.json;
-    match arguments.command.run(json) {
+    match guarded::run(&arguments.command, json) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.report(json);

@@ -5,8 +5,13 @@ use std::io::{self, Write};
 
 /// Tells the note on stderr; never beside a JSON document, whose errors share stderr with it.
 pub(crate) fn tell_note(compiled: &CompiledFile, as_json: bool) {
-    if let (Some(note), false) = (compiled.note(), as_json) {
+    tell(&compiled.file, compiled.note().as_deref(), as_json);
+}
+
+/// Tells a note about a file.
+pub(crate) fn tell(file: &str, note: Option<&str>, as_json: bool) {
+    if let (Some(note), false) = (note, as_json) {
         // A closed stderr is no reason to stop.
-        let _ = writeln!(io::stderr(), "note: {}: {note}", compiled.file);
+        let _ = writeln!(io::stderr(), "note: {file}: {note}");
     }
 }

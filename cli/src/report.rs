@@ -41,6 +41,13 @@ enum Format {
 
 /// Reports that are asked for, all checked before the long work begins.
 #[derive(Debug)]
+pub(crate) struct Asked {
+    files: Vec<(PathBuf, Format)>,
+    published: Option<PathBuf>,
+}
+
+/// Reports with what they are compared with.
+#[derive(Debug)]
 pub(crate) struct Reports {
     files: Vec<(PathBuf, Format)>,
     published: Option<Published>,
@@ -55,29 +62,40 @@ struct Document<'a> {
 }
 
 impl Arguments {
-    /// Checks the arguments; `output` is where the terminal's tables go.
+    /// What the arguments ask for on a description.
     ///
     /// # Errors
-    /// A file of an unknown kind, one that is given twice, a folder that does not exist, published
-    /// results that can't be read.
-    pub(crate) fn check(&self, robot: &Robot, output: Option<&Path>) -> Result<Reports, Failure> {
-        let mut files: Vec<(PathBuf, Format)> = Vec::new();
-        for path in &self.reports {
-            let format = format(path)?;
-            if files.iter().any(|(other, _)| other == path) || output == Some(path.as_path()) {
-                let message = format!("two results would be written to `{}`", path.display());
-                return Err(Failure::Usage(message));
-            }
-            output::check_folder(Some(path))?;
-            files.push((path.clone(), format));
-        }
-        let published = match &self.published {
-            Some(path) => Some(published(path)?),
-            None => beside(robot.file())
-                .map(|path| published(&path))
-                .transpose()?,
-        };
-        Ok(Reports { files, published })
+    /// A file of an unknown kind.
+    pub(crate) fn check(&self, description: &Path) -> Result<Asked, Failure> {
+        let with_format = |path: &PathBuf| Ok((path.clone(), format(path)?));
+        let files = self.reports.iter().map(with_format);
+        Ok(Asked {
+            files: files.collect::<Result<_, Failure>>()?,
+            published: self.published.clone().or_else(|| beside(description)),
+        })
+    }
+}
+
+impl Asked {
+    /// Files that will be read.
+    pub(crate) fn inputs(&self) -> Vec<&Path> {
+        self.published.iter().map(PathBuf::as_path).collect()
+    }
+
+    /// Files that will be written.
+    pub(crate) fn outputs(&self) -> Vec<&Path> {
+        self.files.iter().map(|(path, _)| path.as_path()).collect()
+    }
+
+    /// Reads what the reports are compared with.
+    ///
+    /// # Errors
+    /// Published results that can't be read.
+    pub(crate) fn read(self) -> Result<Reports, Failure> {
+        Ok(Reports {
+            files: self.files,
+            published: self.published.as_deref().map(published).transpose()?,
+        })
     }
 }
 
@@ -171,8 +189,7 @@ fn html(
 }
 
 /// The file of published results that lies beside a description.
-fn beside(description: &str) -> Option<PathBuf> {
-    let description = Path::new(description);
+fn beside(description: &Path) -> Option<PathBuf> {
     let folder = description.parent()?.join("published");
     let file = folder.join(description.file_name()?);
     file.is_file().then_some(file)

@@ -23,6 +23,7 @@
 
 #[allow(unreachable_pub, reason = "public to the stages that stand above")]
 mod cas;
+mod checked;
 mod compile;
 pub mod derivation;
 pub mod description;
@@ -39,6 +40,7 @@ mod parallel;
 mod request;
 mod selection;
 
+pub use checked::{Checked, check};
 pub use compile::{Compiled, compile, compile_with, model_with};
 pub use diagnostic::{Diagnostics, Source};
 pub use effort::Effort;

@@ -3,6 +3,7 @@
 use crate::error::{Error, Problem};
 use overact_codegen::{
     Request, RobotModel, compile_with, description::Description, diagnostic::Source,
+    mechanism::Mechanism,
 };
 use std::{fs, path::Path};
 
@@ -12,6 +13,8 @@ use std::{fs, path::Path};
 pub struct CompiledFile {
     /// The path as the user gave it.
     pub file: String,
+    /// The text, in which errors that are found later have their places.
+    pub source: Source,
     /// What the file says.
     pub description: Description,
     /// The model.
@@ -34,7 +37,8 @@ impl CompiledFile {
     pub fn new(source: Source, request: &Request<'_>) -> Result<Self, Error> {
         match compile_with(&source, request) {
             Ok(compiled) => Ok(Self {
-                file: source.name,
+                file: source.name.clone(),
+                source,
                 description: compiled.description,
                 model: compiled.model,
             }),
@@ -45,34 +49,38 @@ impl CompiledFile {
         }
     }
 
-    /// What the description says that may not be meant: a motor marked by mistake looks like redundancy,
-    /// so redundancy that the description does not speak of is worth a word.
+    /// What the description says that may not be meant.
     #[must_use]
     pub fn note(&self) -> Option<String> {
-        let mechanism = &self.model.mechanism;
-        let (n, r) = (mechanism.actuated().len(), mechanism.dof());
-        let said = (self.description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
-        if n <= r || said {
-            return None;
-        }
-        Some(format!(
-            "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
-             take `actuated = true` from a joint",
-            mechanism.actuator_names().join(", "),
-            match r {
-                1 => "1 degree of freedom".to_owned(),
-                _ => format!("{r} degrees of freedom"),
-            },
-            n - r,
-        ))
+        note(&self.description, &self.model.mechanism)
     }
+}
+
+/// What a description says that may not be meant: a motor marked by mistake looks like redundancy, so
+/// redundancy that the description does not speak of is worth a word.
+pub(crate) fn note(description: &Description, mechanism: &Mechanism) -> Option<String> {
+    let (n, r) = (mechanism.actuated().len(), mechanism.dof());
+    let said = (description.platform.as_ref()).is_some_and(|p| p.redundancy.is_some());
+    if n <= r || said {
+        return None;
+    }
+    Some(format!(
+        "{n} actuators ({}) drive {}. If that is meant, write redundancy = {} in [platform]; else \
+         take `actuated = true` from a joint",
+        mechanism.actuator_names().join(", "),
+        match r {
+            1 => "1 degree of freedom".to_owned(),
+            _ => format!("{r} degrees of freedom"),
+        },
+        n - r,
+    ))
 }
 
 /// Reads a description's text.
 ///
 /// # Errors
 /// A file that can't be read or is not UTF-8.
-fn read(path: &Path) -> Result<Source, Error> {
+pub(crate) fn read(path: &Path) -> Result<Source, Error> {
     let name = path.display().to_string();
     match fs::read_to_string(path) {
         Ok(text) => Ok(Source::new(name, text)),

@@ -1,6 +1,6 @@
 //! What is wrong, all of it at once, each at its place and with a way out.
 
-use overact_codegen::diagnostic::{Diagnostics, Located, Source};
+use overact_codegen::diagnostic::{Diagnostics, InternalError, Located, Source};
 use serde::Serialize;
 use std::fmt;
 
@@ -123,6 +123,16 @@ impl Error {
         }
     }
 
+    /// The first broken invariant of the program itself, if it is not the input that is wrong.
+    #[must_use]
+    pub fn internal(&self) -> Option<&InternalError> {
+        match self {
+            Self::Description { diagnostics, .. } => diagnostics.internal(),
+            Self::Problems(_) => None,
+            Self::Several(all) => all.iter().find_map(Self::internal),
+        }
+    }
+
     /// All problems as text, with a terminal's colours or without.
     #[must_use]
     pub fn render(&self, styled: bool) -> String {
@@ -154,6 +164,13 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// An error of the program as a problem without a place.
+impl From<&InternalError> for Problem {
+    fn from(error: &InternalError) -> Self {
+        Self::new(error.to_string()).help(InternalError::HELP)
+    }
+}
 
 impl From<Problem> for Error {
     fn from(problem: Problem) -> Self {

@@ -1,5 +1,7 @@
 //! A description's table `[experiment]` as a virtual experiment of the simulation.
 
+pub(crate) mod errors;
+
 use crate::{
     error::{Error, Problem},
     robot::Robot,
@@ -124,7 +126,7 @@ impl VirtualExperiment<'_> {
 }
 
 /// The plan of an experiment.
-fn plan(table: &description::Experiment, info: &Info<'_>) -> Experiment {
+pub(crate) fn plan(table: &description::Experiment, info: &Info<'_>) -> Experiment {
     let truth = true_values(table);
     let all = info.parameters.iter().chain(info.payload_parameters);
     let value = |name: &str| truth.get(name).copied().unwrap_or(0.0);
@@ -194,13 +196,12 @@ fn converted(run: &description::Run, info: &Info<'_>) -> Run {
     }
 }
 
-/// The simulation's errors, each at the description.
+/// The simulation's errors, each at its place in the description.
 fn located(robot: &Robot, error: &overact_simulation::Error) -> Error {
-    use overact_simulation::Error as Simulation;
-    let problem = |message: String| Problem::new(message).file(robot.file());
-    Error::Problems(match error {
-        Simulation::Experiment(all) => all.iter().map(|p| problem(p.to_string())).collect(),
-        Simulation::Runs(all) => all.iter().map(|p| problem(p.to_string())).collect(),
-        other => vec![problem(other.to_string())],
-    })
+    let source = robot.source().clone();
+    let diagnostics = errors::diagnostics(&source, robot.description(), error);
+    Error::Description {
+        source,
+        diagnostics,
+    }
 }

@@ -25,9 +25,11 @@
 //! - `compiled_file`: a description read and compiled with what is asked for;
 //! - `robot`: the running robot; `settings`, `experiment`: its tables as inputs of identification and
 //!   simulation; `runs`: logs and virtual runs;
+//! - `check`: everything that is wrong with a description, found without its model;
 //! - `tracking`: identified parameters tried in the virtual robot's controller;
 //! - `partitions`, `identifier`: the identification, and case 2 for every choice of kept actuators.
 
+mod check;
 mod compiled_file;
 mod error;
 mod experiment;
@@ -39,6 +41,7 @@ mod runs;
 mod settings;
 mod tracking;
 
+pub use check::{CheckedFile, check};
 pub use compiled_file::CompiledFile;
 pub use error::{Column, Error, Problem};
 pub use experiment::VirtualExperiment;

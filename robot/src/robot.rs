@@ -7,7 +7,7 @@ use std::path::Path;
 /// A robot that runs: its description, and its model served as [`overact::Model`].
 #[derive(Debug)]
 pub struct Robot {
-    file: String,
+    source: Source,
     description: Description,
     model: InterpretedRobot,
 }
@@ -43,7 +43,7 @@ impl Robot {
     #[must_use]
     pub fn new(compiled: CompiledFile) -> Self {
         Self {
-            file: compiled.file,
+            source: compiled.source,
             description: compiled.description,
             model: InterpretedRobot::new(compiled.model),
         }
@@ -52,7 +52,13 @@ impl Robot {
     /// The path or name by which errors call the description.
     #[must_use]
     pub fn file(&self) -> &str {
-        &self.file
+        &self.source.name
+    }
+
+    /// The text of the description with its name.
+    #[must_use]
+    pub const fn source(&self) -> &Source {
+        &self.source
     }
 
     /// What the description says.

@@ -35,7 +35,7 @@ impl Robot {
         files: &[(&Path, bool)],
         progress: &(dyn Fn(f64) + Sync),
     ) -> Result<Vec<Log>, Error> {
-        let mapping = self.mapping()?;
+        let mapping = self.mapping();
         let (mut logs, mut errors) = (Vec::new(), Vec::new());
         for log in data::read_all(files, &mapping, progress) {
             match log {

@@ -30,6 +30,7 @@ const HOUSES: [House; 6] = [
             "selection",
             "model",
             "request",
+            "checked",
             "compile",
             "emission",
             "internals",
@@ -96,6 +97,7 @@ const HOUSES: [House; 6] = [
             "robot",
             "settings",
             "experiment",
+            "check",
             "runs",
             "tracking",
             "partitions",
@@ -106,7 +108,7 @@ const HOUSES: [House; 6] = [
         folder: "cli",
         order: &[
             "failure", "names", "output", "note", "effort", "progress", "states", "drawing",
-            "report", "commands",
+            "report", "commands", "guarded",
         ],
     },
 ];

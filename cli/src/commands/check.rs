@@ -2,11 +2,10 @@
 
 use crate::{
     failure::Failure,
-    note::tell_note,
+    note::tell,
     output::{counted, json, print},
 };
-use overact_codegen::{Effort, Request};
-use overact_robot::CompiledFile;
+use overact_robot::{CheckedFile, check};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -15,7 +14,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Descriptions
     #[arg(required = true, value_name = "TOML")]
-    files: Vec<PathBuf>,
+    pub(super) files: Vec<PathBuf>,
 }
 
 /// A description without errors.
@@ -38,11 +37,10 @@ struct Checked {
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     let (mut good, mut bad) = (Vec::new(), Vec::new());
     for file in &arguments.files {
-        // Whether there is a model does not depend on how few operations it takes.
-        match CompiledFile::read(file, &Request::with_effort(Effort::None)) {
-            Ok(robot) => {
-                tell_note(&robot, as_json);
-                good.push(Checked::new(robot));
+        match check(file) {
+            Ok(found) => {
+                tell(&found.file, found.note.as_deref(), as_json);
+                good.push(Checked::new(found));
             }
             Err(failure) => bad.push(failure),
         }
@@ -63,17 +61,16 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
 }
 
 impl Checked {
-    fn new(robot: CompiledFile) -> Self {
-        let note = robot.note();
-        let mechanism = &robot.model.mechanism;
+    fn new(found: CheckedFile) -> Self {
+        let mechanism = &found.mechanism;
         Self {
-            note,
+            note: found.note,
             robot: mechanism.name.clone(),
             legs: mechanism.legs.len(),
             joints: mechanism.joints().len(),
             actuators: mechanism.actuated().len(),
             dof: mechanism.dof(),
-            file: robot.file,
+            file: found.file,
         }
     }
 

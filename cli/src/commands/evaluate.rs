@@ -26,7 +26,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// A function, such as `idm_red_platform`, or the full name of a Rust function
     function: String,
     /// States: a JSON array of objects keyed by input name, or CSV with a header such as
@@ -101,6 +101,8 @@ struct Document {
 /// A function that the robot does not have, states that do not hold what it needs, or a state at
 /// which it has no value.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let inputs = [arguments.file.as_path(), arguments.states.as_path()];
+    output::check(&inputs, arguments.output.as_deref().as_slice())?;
     let name = arguments.function.as_str();
     let wanted = |mechanism: &Mechanism, family: Family, from: MotionInput| {
         let full = || family.function_name(from, mechanism.platform.is_none());

@@ -4,7 +4,7 @@ use crate::{
     effort,
     failure::{Failure, Problem},
     note::tell_note,
-    output::{json, print, write},
+    output::{self, json, print, write},
     progress::Progress,
 };
 use overact_codegen::emission;
@@ -21,7 +21,7 @@ use std::{
 pub(crate) struct Arguments {
     /// Descriptions
     #[arg(required = true, value_name = "TOML")]
-    files: Vec<PathBuf>,
+    pub(super) files: Vec<PathBuf>,
     /// A file for one robot, or a folder for `<description>.rs` of each
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: Option<PathBuf>,
@@ -54,6 +54,13 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let message = "several descriptions need a folder to write to: add `-o FOLDER`";
         return Err(Failure::Usage(message.to_owned()));
     }
+    let inputs: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+    if !arguments.check {
+        let mut outputs = inputs
+            .iter()
+            .filter_map(|file| module_file(file, arguments));
+        outputs.try_for_each(|output| output::check_distinct(&inputs, &[&output]))?;
+    }
     let robots = load_all(arguments, as_json)?;
     let mut modules: Vec<Module> = robots
         .iter()
@@ -76,6 +83,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
     };
     if !arguments.check {
         let file = |m: &Module| Some((m.file.clone()?, m.code.clone().into_bytes()));
+        let outputs: Vec<&Path> = modules.iter().filter_map(|m| m.file.as_deref()).collect();
+        output::check_distinct(&inputs, &outputs)?;
         make_folder(arguments)?;
         write(modules.iter().filter_map(file).collect())?;
     }
@@ -118,18 +127,20 @@ fn load_all(arguments: &Arguments, as_json: bool) -> Result<Vec<CompiledFile>, F
     }
 }
 
+/// The file of a description's module, where there is one.
+fn module_file(description: &Path, arguments: &Arguments) -> Option<PathBuf> {
+    let output = arguments.output.as_ref()?;
+    Some(match is_folder(output, arguments) {
+        true => output.join(format!("{}.rs", module_name(description))),
+        false => output.clone(),
+    })
+}
+
 fn module(robot: &CompiledFile, path: &Path, arguments: &Arguments) -> Module {
-    let file = arguments
-        .output
-        .as_ref()
-        .map(|output| match is_folder(output, arguments) {
-            true => output.join(format!("{}.rs", module_name(path))),
-            false => output.clone(),
-        });
     Module {
         robot: robot.model.mechanism.name.clone(),
         description: robot.file.clone(),
-        file,
+        file: module_file(path, arguments),
         source: None,
         code: emission::file(&robot.model, &label(path)),
     }

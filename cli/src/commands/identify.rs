@@ -15,7 +15,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     #[command(flatten)]
     runs: runs::Arguments,
     /// Kept actuators of case 2 [default: those of the description]
@@ -37,11 +37,15 @@ pub(crate) struct Arguments {
 /// # Errors
 /// Logs that can't be used, a virtual experiment that can't be made, or data that determine nothing.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    output::check_folder(arguments.output.as_deref())?;
+    let reports = arguments.reports.check(&arguments.file)?;
+    let inputs = [arguments.runs.inputs(&arguments.file), reports.inputs()].concat();
+    let output = arguments.output.as_deref();
+    output::check(
+        &inputs,
+        &[reports.outputs(), output.into_iter().collect()].concat(),
+    )?;
     let robot = Robot::from_toml(&arguments.file)?;
-    let reports = arguments
-        .reports
-        .check(&robot, arguments.output.as_deref())?;
+    let reports = reports.read()?;
     let kept = match &arguments.kept {
         Some(names) => Some(super::kept_actuators(robot.model().model(), names)?),
         None => None,
@@ -61,17 +65,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         let beside = reports.published();
         overact_report::report(&result) + &overact_report::beside(&result, beside)
     };
-    // All files are written together, so that none is there without the others.
-    let mut written = reports.written(&robot, &robot.model().info(), &result)?;
-    if let Some(path) = &arguments.output {
-        let newline = if text.ends_with('\n') { "" } else { "\n" };
-        written.push((path.clone(), format!("{text}{newline}").into_bytes()));
-    }
-    output::write(written)?;
-    match arguments.output {
-        Some(_) => Ok(()),
-        None => output::print(&text),
-    }
+    let written = reports.written(&robot, &robot.model().info(), &result)?;
+    output::emit_with(&text, output, written)
 }
 
 /// The identification, with a bar on a terminal.

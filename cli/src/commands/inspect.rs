@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// Write to a file instead of stdout
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -30,17 +30,24 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A description with errors.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
+    let outputs = [&arguments.svg, &arguments.output];
+    let outputs = outputs.into_iter().flatten().map(PathBuf::as_path);
+    output::check(&[&arguments.file], &outputs.collect::<Vec<_>>())?;
     let robot = CompiledFile::read(&arguments.file, &arguments.effort.request())?;
     tell_note(&robot, as_json);
-    if let Some(svg) = &arguments.svg {
+    let drawing = arguments.svg.clone().map(|file| {
         let text = drawing::svg(&robot.model.mechanism);
-        output::write(vec![(svg.clone(), text.into_bytes())])?;
-    }
+        (file, text.into_bytes())
+    });
     let document = Document::new(robot);
     let text = if as_json {
         output::json(&document)?
     } else {
         table::text(&document)
     };
-    output::emit(&text, arguments.output.as_deref())
+    output::emit_with(
+        &text,
+        arguments.output.as_deref(),
+        drawing.into_iter().collect(),
+    )
 }

@@ -12,7 +12,8 @@ mod simulate;
 
 use crate::failure::{Failure, Problem};
 use clap::{Parser, Subcommand};
-use overact_codegen::{RobotModel, diagnostic::did_you_mean};
+use overact_codegen::RobotModel;
+use std::{path::PathBuf, slice};
 
 /// Dynamic models and parameter identification of overactuated parallel robots.
 #[derive(Debug, Parser)]
@@ -63,6 +64,36 @@ impl Command {
             Self::Partitions(arguments) => partitions::run(arguments, json),
         }
     }
+
+    /// Its name.
+    pub(crate) const fn name(&self) -> &'static str {
+        match self {
+            Self::New(_) => "new",
+            Self::Check(_) => "check",
+            Self::Inspect(_) => "inspect",
+            Self::Generate(_) => "generate",
+            Self::Evaluate(_) => "evaluate",
+            Self::Simulate(_) => "simulate",
+            Self::Identify(_) => "identify",
+            Self::Partitions(_) => "partitions",
+        }
+    }
+
+    /// The descriptions that it is about, for a report of a defect.
+    pub(crate) fn descriptions(&self) -> String {
+        let files: &[PathBuf] = match self {
+            Self::New(_) => &[],
+            Self::Check(arguments) => arguments.files.as_slice(),
+            Self::Generate(arguments) => arguments.files.as_slice(),
+            Self::Inspect(arguments) => slice::from_ref(&arguments.file),
+            Self::Evaluate(arguments) => slice::from_ref(&arguments.file),
+            Self::Simulate(arguments) => slice::from_ref(&arguments.file),
+            Self::Identify(arguments) => slice::from_ref(&arguments.file),
+            Self::Partitions(arguments) => slice::from_ref(&arguments.file),
+        };
+        let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
+        names.join(", ")
+    }
 }
 
 /// Indices of kept actuators that are given by name: as many different ones as there are degrees of
@@ -71,11 +102,11 @@ impl Command {
 /// # Errors
 /// Every name that no actuator has, names that are given twice, or a wrong number of them.
 fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Failure> {
-    let known = model.mechanism.actuator_names();
+    let known = model.mechanism.named_actuators();
     let mut kept = Vec::new();
     let mut problems = Vec::new();
     for name in names {
-        match known.iter().position(|actuator| actuator == name) {
+        match known.find(name) {
             Some(index) if kept.contains(&index) => {
                 problems.push(Problem::new(format!(
                     "the actuator `{name}` is listed twice"
@@ -83,10 +114,8 @@ fn kept_actuators(model: &RobotModel, names: &[String]) -> Result<Vec<usize>, Fa
             }
             Some(index) => kept.push(index),
             None => {
-                let help = did_you_mean(name, known.iter().map(String::as_str));
-                let help =
-                    help.unwrap_or_else(|| format!("the actuators are {}", known.join(", ")));
-                problems.push(Problem::new(format!("there is no actuator `{name}`")).help(help));
+                let message = format!("there is no actuator `{name}`");
+                problems.push(Problem::new(message).help(known.help(name)));
             }
         }
     }

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     #[command(flatten)]
     runs: runs::Arguments,
     /// Write to a file instead of stdout
@@ -29,7 +29,8 @@ pub(crate) struct Arguments {
 /// # Errors
 /// A robot without redundancy, or as `overact identify`.
 pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
-    output::check_folder(arguments.output.as_deref())?;
+    let inputs = arguments.runs.inputs(&arguments.file);
+    output::check(&inputs, arguments.output.as_deref().as_slice())?;
     let robot = Robot::from_toml(&arguments.file)?;
     let sizes = robot.model().info().sizes;
     if sizes.actuators == sizes.dof {

@@ -47,6 +47,18 @@ impl Arguments {
         self.data.is_empty() && self.payload_data.is_empty()
     }
 
+    /// The files that are read: the description and the logs. Of a virtual experiment, held-out runs
+    /// are named and not read.
+    pub(super) fn inputs<'a>(&'a self, description: &'a Path) -> Vec<&'a Path> {
+        let logs = [&self.data, &self.payload_data];
+        let held_out = [&self.cross_validate, &self.cross_validate_payload];
+        let held_out = held_out.into_iter().filter(|_| !self.are_virtual());
+        let all = logs.into_iter().chain(held_out).flatten();
+        std::iter::once(description)
+            .chain(all.map(PathBuf::as_path))
+            .collect()
+    }
+
     /// Reads the logs, or makes the virtual experiment.
     ///
     /// # Errors

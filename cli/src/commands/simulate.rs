@@ -22,7 +22,7 @@ use std::{
 pub(crate) struct Arguments {
     /// Description
     #[arg(value_name = "TOML")]
-    file: PathBuf,
+    pub(super) file: PathBuf,
     /// The log; several runs get `log_RUN.csv` each, or `RUN.csv` in a folder. Without it, a single
     /// run goes to stdout
     #[arg(short, long, value_name = "FILE|FOLDER")]
@@ -59,6 +59,8 @@ pub(super) fn run(arguments: &Arguments, as_json: bool) -> Result<(), Failure> {
         experiment.plan_mut().seed = seed;
     }
     let files = files(experiment.plan(), arguments.output.as_deref(), as_json)?;
+    let outputs: Vec<&Path> = files.iter().flatten().map(PathBuf::as_path).collect();
+    output::check_distinct(&[&arguments.file], &outputs)?;
     warn(experiment.without_effect(), as_json);
     let bar = Progress::new("simulating", as_json);
     let records = experiment.records(&|fraction, run| bar.at(fraction, run))?;
@@ -148,7 +150,7 @@ fn files(
         }
     }
     if !is_folder {
-        output::check_folder(Some(output))?;
+        output::check(&[], &[output])?;
     }
     Ok(files.into_iter().map(Some).collect())
 }

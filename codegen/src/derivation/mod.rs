@@ -17,6 +17,7 @@ mod centres;
 #[cfg(test)]
 mod closed_forms;
 mod configuration;
+mod derivable;
 mod elimination;
 mod family;
 mod forward_kinematics;
@@ -36,6 +37,7 @@ mod robot;
 mod selection;
 mod underivable;
 
+pub(crate) use derivable::derivable;
 pub use family::{Columns, Family};
 pub use functions::{Derived, derive};
 pub(crate) use guard::GuardKind;

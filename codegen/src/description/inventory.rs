@@ -1,6 +1,7 @@
 //! What the tables after the legs need to know of the robot: its actuators, coordinates and
 //! parameters by name.
 
+use super::actuator_names::ActuatorNames;
 use super::dimension::Dimension;
 use super::experiment::Body;
 use super::joint;
@@ -82,24 +83,17 @@ impl Inventory<'_> {
         all
     }
 
-    /// The names of each actuator, the usual one first: `leg1` where the leg has one actuator, the
-    /// joint's where there is one leg, and `leg1.1` always.
-    pub(super) fn actuator_names(&self) -> Vec<Vec<String>> {
-        let all = actuators(self.legs);
-        let names = |&(leg_index, joint): &(usize, usize)| {
-            let leg = self.legs.get(leg_index)?;
-            let joint = &leg.joints.get(joint)?.name.value;
-            let mut names = Vec::new();
-            if self.platform.is_none() && self.legs.len() == 1 {
-                names.push(joint.clone());
-            }
-            if all.iter().filter(|(l, _)| *l == leg_index).count() == 1 {
-                names.push(leg.name.value.clone());
-            }
-            names.push(format!("{}.{joint}", leg.name.value));
-            Some(names)
+    /// What the actuators are called.
+    pub(super) fn actuator_names(&self) -> ActuatorNames {
+        let name = |(leg, joint): (usize, usize)| {
+            let leg = self.legs.get(leg)?;
+            Some((
+                leg.name.value.as_str(),
+                leg.joints.get(joint)?.name.value.as_str(),
+            ))
         };
-        all.iter().filter_map(names).collect()
+        let single = self.platform.is_none() && self.legs.len() == 1;
+        ActuatorNames::new(single, actuators(self.legs).into_iter().filter_map(name))
     }
 }
 

@@ -8,6 +8,7 @@
 //!
 //! Numbers are exact: decimals are fractions, angles are multiples of π and fractions of a radian.
 
+mod actuator_names;
 mod dimension;
 mod drives;
 mod experiment;
@@ -20,6 +21,7 @@ mod leg;
 mod model;
 mod parameter;
 mod parameters;
+mod place;
 mod platform;
 mod reader;
 mod robot;
@@ -32,6 +34,7 @@ mod tests;
 mod token;
 mod value;
 
+pub use actuator_names::ActuatorNames;
 pub use drives::Drives;
 pub use experiment::{Body, Experiment, Run, Term, TrueParameter};
 pub use model::{
@@ -39,6 +42,7 @@ pub use model::{
     PlatformHome, Spanned,
 };
 pub use parameter::StandardParameter;
+pub use place::place;
 pub use settings::{Data, Factor, Friction, Identification, Normalisation, Reversals};
 
 use crate::diagnostic::{Diagnostics, Source};

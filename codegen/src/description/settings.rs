@@ -4,7 +4,7 @@ use super::dimension::Dimension;
 use super::inventory::Inventory;
 use super::model::{Spanned, actuators};
 use super::reader::{Item, Table};
-use crate::diagnostic::{Span, did_you_mean};
+use crate::diagnostic::Span;
 
 /// How a measured log maps on the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Data {
     /// Columns of the actuators' torques, forces or drive signals.
     pub torques: Vec<String>,
     /// Factors from columns to rad or m, one for each actuator.
-    pub position_scale: Vec<Factor>,
+    pub position_scale: Vec<f64>,
     /// Factors from columns to N m or N, one for each actuator.
     pub torque_gain: Vec<Factor>,
     /// Place of the table.
@@ -123,6 +123,7 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         .and_then(|i| i.string());
     let (positions, torques) = (columns("positions"), columns("torques"));
     let (position_scale, torque_gain) = (factors("position_scale"), factors("torque_gain"));
+    let position_scale = position_scale.and_then(|scales| numbers(&table, &scales));
     table.finish();
     Some(Data {
         time: time?.value,
@@ -132,6 +133,25 @@ pub(super) fn data(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Data> {
         torque_gain: torque_gain?,
         span: table.span.clone(),
     })
+}
+
+/// Factors that are numbers: of positions no log says how they are scaled.
+fn numbers(table: &Table<'_, '_>, scales: &[Factor]) -> Option<Vec<f64>> {
+    let number = |scale: &Factor| match scale {
+        Factor::Value(value) => Some(*value),
+        Factor::Variable(name) => {
+            let message = format!("`position_scale`: `{name}` is neither a number nor a constant");
+            let span = table.get("position_scale").map(|item| item.span);
+            let span = span.unwrap_or(table.span.clone());
+            table
+                .context
+                .report(crate::diagnostic::Diagnostic::new(message, span));
+            None
+        }
+    };
+    // Every one is looked at, so that every wrong one is reported.
+    let numbers: Vec<Option<f64>> = scales.iter().map(number).collect();
+    numbers.into_iter().collect()
 }
 
 fn check_count(item: &Item<'_, '_>, found: usize, expected: usize) -> Option<()> {
@@ -253,31 +273,17 @@ fn kept_actuators(item: &Item<'_, '_>, robot: &Inventory<'_>) -> Option<Vec<usiz
     let names = robot.actuator_names();
     let given = item.strings()?;
     // Of a robot without actuators that alone is said.
-    if names.is_empty() {
-        return None;
-    }
+    names.usual().next()?;
     let mut kept: Vec<usize> = Vec::new();
     for name in &given {
-        match names.iter().position(|known| known.contains(&name.value)) {
+        match names.find(&name.value) {
             Some(index) if kept.contains(&index) => {
                 let message = format!("the actuator `{}` is listed twice", name.value);
                 item.context.report(error_at(name, message));
             }
             Some(index) => kept.push(index),
             None => {
-                let known = || {
-                    names
-                        .iter()
-                        .filter_map(|known| known.first())
-                        .map(String::as_str)
-                };
-                let list = || {
-                    format!(
-                        "the actuators are {}",
-                        known().collect::<Vec<_>>().join(", ")
-                    )
-                };
-                let help = did_you_mean(&name.value, known()).unwrap_or_else(list);
+                let help = names.help(&name.value);
                 let message = format!("there is no actuator `{}`", name.value);
                 item.context.report(error_at(name, message).help(help));
             }

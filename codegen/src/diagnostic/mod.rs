@@ -4,9 +4,11 @@
 //! error of a description. Nothing here prints: rendering gives a string, plain for `compile_error!` and
 //! styled for a terminal, or plain data for machines.
 
+mod internal;
 mod render;
 mod suggestion;
 
+pub use internal::InternalError;
 pub use render::Located;
 pub use suggestion::{did_you_mean, nearest};
 
@@ -142,6 +144,7 @@ impl Diagnostic {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
+    internal: Option<Box<InternalError>>,
 }
 
 impl Diagnostics {
@@ -165,6 +168,7 @@ impl Diagnostics {
 
     /// Adds all errors of another collection.
     pub fn append(&mut self, other: Self) {
+        self.internal = self.internal.take().or(other.internal);
         for diagnostic in other.list {
             self.push(diagnostic);
         }
@@ -218,6 +222,7 @@ impl From<Diagnostic> for Diagnostics {
     fn from(diagnostic: Diagnostic) -> Self {
         Self {
             list: vec![diagnostic],
+            internal: None,
         }
     }
 }

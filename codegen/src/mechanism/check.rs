@@ -16,7 +16,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     let mut mechanism = plain(description);
     let mut errors = Diagnostics::new();
     check_actuators(description, &mechanism, &mut errors);
-    check_leg_sizes(description, &mut errors);
+    check_sizes(description, &mut errors);
     check_structure(description, &mechanism, &mut errors);
     errors.into_result(())?;
     let rough = rough_home(description);
@@ -55,7 +55,6 @@ fn keep_actuators(description: &Description, mechanism: &mut Mechanism) -> Resul
     Ok(())
 }
 
-/// The mechanism as the description says it, with an empty home configuration.
 /// Legs that are alike shall have the same parameters; a robot without legs side by side has nothing to
 /// be symmetric about.
 fn base_columns(description: &Description) -> BaseColumns {
@@ -66,6 +65,7 @@ fn base_columns(description: &Description) -> BaseColumns {
     description.base_columns.unwrap_or(by_kind)
 }
 
+/// The mechanism as the description says it, with an empty home configuration.
 fn plain(description: &Description) -> Mechanism {
     let joint = |j: &crate::description::Joint| Joint {
         name: j.name.value.clone(),
@@ -148,8 +148,17 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
     }
 }
 
-/// A leg with more joints than its end has motions moves on its own.
-fn check_leg_sizes(description: &Description, errors: &mut Diagnostics) {
+/// Most joints of a robot. A check of so many takes seconds, a model of them more than anybody waits for.
+const JOINTS: usize = 200;
+
+/// Legs without a joint, and robots with more than can be worked on.
+fn check_sizes(description: &Description, errors: &mut Diagnostics) {
+    let joints: usize = description.legs.iter().map(|leg| leg.joints.len()).sum();
+    if joints > JOINTS {
+        let message = format!("the robot has {joints} joints, more than {JOINTS}");
+        let help = "describe it in parts, each as a robot of its own";
+        errors.push(Diagnostic::new(message, description.name.span.clone()).help(help));
+    }
     for leg in &description.legs {
         if leg.joints.is_empty() {
             errors.push(Diagnostic::new(

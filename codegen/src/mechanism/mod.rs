@@ -13,7 +13,7 @@ pub mod home;
 pub mod motion;
 pub mod numeric;
 mod reach;
-pub mod singular_values;
+mod singular_values;
 pub mod states;
 mod structure;
 #[cfg(test)]
@@ -24,7 +24,9 @@ pub use home::Home;
 pub use motion::TwistCoordinate;
 
 pub use crate::cas::{Angle, Number, Ratio};
-pub use crate::description::{BaseColumns, End, JointKind, Motion, Placement, StandardParameter};
+pub use crate::description::{
+    ActuatorNames, BaseColumns, End, JointKind, Motion, Placement, StandardParameter,
+};
 
 /// A joint and the body behind it.
 #[derive(Debug, Clone)]
@@ -186,21 +188,23 @@ impl Mechanism {
         format!("{}.{joint}", self.legs[index.leg].name)
     }
 
-    /// Names of the actuators: the leg's name where the leg has one actuator, else leg and joint.
+    /// What the actuators are called, in every spelling.
     #[must_use]
-    pub fn actuator_names(&self) -> Vec<String> {
+    pub fn named_actuators(&self) -> ActuatorNames {
         let joints = self.joints();
         let name = |&at: &usize| {
             let index = joints[at];
-            let leg = &self.legs[index.leg];
-            let several = leg.joints.iter().filter(|j| j.actuated).count() > 1;
-            match (self.platform.is_none(), several) {
-                (false, false) => leg.name.clone(),
-                (true, _) if self.legs.len() == 1 => self.joint(index).name.clone(),
-                _ => format!("{}_{}", leg.name, self.joint(index).name),
-            }
+            let leg = self.legs[index.leg].name.as_str();
+            (leg, self.joint(index).name.as_str())
         };
-        self.actuated().iter().map(name).collect()
+        let single = self.platform.is_none() && self.legs.len() == 1;
+        ActuatorNames::new(single, self.actuated().iter().map(name))
+    }
+
+    /// The usual names of the actuators.
+    #[must_use]
+    pub fn actuator_names(&self) -> Vec<String> {
+        self.named_actuators().usual().map(str::to_owned).collect()
     }
 
     /// Name of a leg's standard parameter: `zz_2_leg3`, or `zz_2` in a robot of one leg without a

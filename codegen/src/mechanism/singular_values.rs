@@ -11,9 +11,9 @@ use nalgebra::DMatrix;
 
 /// A = U Σ Vᵀ, in descending order of the singular values.
 #[derive(Debug, Clone)]
-pub struct SingularValues {
+pub(super) struct SingularValues {
     /// As many as the matrix has columns; those beyond its rows are zero.
-    pub values: Vec<f64>,
+    values: Vec<f64>,
     /// V: a column for each singular value, also where that is zero.
     right: DMatrix<f64>,
     /// A V = U Σ.
@@ -33,7 +33,7 @@ impl SingularValues {
     /// The singular values of a matrix; `None` for entries that are not finite, and if the iteration
     /// does not end.
     #[must_use]
-    pub fn new(matrix: &DMatrix<f64>) -> Option<Self> {
+    pub(super) fn new(matrix: &DMatrix<f64>) -> Option<Self> {
         if matrix.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
@@ -64,20 +64,20 @@ impl SingularValues {
 
     /// The largest singular value; zero of an empty matrix.
     #[must_use]
-    pub fn largest(&self) -> f64 {
+    pub(super) fn largest(&self) -> f64 {
         self.values.first().copied().unwrap_or(0.0)
     }
 
     /// Number of singular values above `least`.
     #[must_use]
-    pub fn rank(&self, least: f64) -> usize {
+    pub(super) fn rank(&self, least: f64) -> usize {
         self.values.iter().filter(|value| **value > least).count()
     }
 
     /// Ratio of the largest and the smallest of the min(rows, columns) singular values; infinite for a
     /// matrix of zeros.
     #[must_use]
-    pub fn condition(&self) -> f64 {
+    pub(super) fn condition(&self) -> f64 {
         let count = self.scaled_left.nrows().min(self.values.len());
         match self.values[..count].last() {
             Some(smallest) if *smallest > 0.0 => self.largest() / smallest,
@@ -87,14 +87,14 @@ impl SingularValues {
 
     /// Orthonormal directions that the matrix maps to less than `least` times their length, as columns.
     #[must_use]
-    pub fn null_space(&self, least: f64) -> DMatrix<f64> {
+    pub(super) fn null_space(&self, least: f64) -> DMatrix<f64> {
         let rank = self.rank(least);
         self.right.columns_range(rank..).into_owned()
     }
 
     /// The pseudo-inverse, in which singular values up to `least` count as zero.
     #[must_use]
-    pub fn pseudo_inverse(&self, least: f64) -> DMatrix<f64> {
+    pub(super) fn pseudo_inverse(&self, least: f64) -> DMatrix<f64> {
         let rank = self.rank(least);
         let mut left = self.scaled_left.columns_range(..rank).into_owned();
         for (mut column, value) in left.column_iter_mut().zip(&self.values) {
@@ -107,7 +107,7 @@ impl SingularValues {
 
 /// Number of singular values above `least`; zero for a matrix that is not finite.
 #[must_use]
-pub fn rank(matrix: &DMatrix<f64>, least: f64) -> usize {
+pub(super) fn rank(matrix: &DMatrix<f64>, least: f64) -> usize {
     SingularValues::new(matrix).map_or(0, |found| found.rank(least))
 }
 

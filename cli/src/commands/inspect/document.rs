@@ -38,6 +38,8 @@ pub(super) struct Body {
     pub(super) name: String,
     pub(super) joint: &'static str,
     pub(super) actuated: bool,
+    /// The name of its motor, if it has one.
+    pub(super) actuator: Option<String>,
     /// Parameters whose columns are not identically zero.
     pub(super) parameters: Vec<String>,
 }
@@ -146,6 +148,8 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
             .map(|&p| model.parameter_name(p))
             .collect()
     };
+    // Legs and joints are gone through in the order of the actuators.
+    let mut actuators = mechanism.actuator_names().into_iter();
     let mut bodies = Vec::new();
     for (leg, l) in mechanism.legs.iter().enumerate() {
         for (joint, j) in l.joints.iter().enumerate() {
@@ -159,6 +163,10 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
                 name: mechanism.joint_name(overact_codegen::mechanism::JointIndex { leg, joint }),
                 joint: kind,
                 actuated: j.actuated,
+                actuator: match j.actuated {
+                    true => actuators.next(),
+                    false => None,
+                },
                 parameters: named(&is_own),
             });
         }
@@ -168,6 +176,7 @@ fn bodies(model: &RobotModel) -> Vec<Body> {
             name: name.to_owned(),
             joint: "free",
             actuated: false,
+            actuator: None,
             parameters,
         };
         bodies.push(free(

@@ -57,17 +57,15 @@ fn heading(document: &Document) -> String {
 
 fn bodies(document: &Document) -> String {
     let row = |body: &super::document::Body| {
-        let motor = if body.actuated { "motor" } else { "" };
+        let motor = match &body.actuator {
+            Some(name) => format!("motor {name}"),
+            None => String::new(),
+        };
         let parameters = match body.parameters.is_empty() {
             true => "-".to_owned(),
             false => body.parameters.join(" "),
         };
-        vec![
-            body.name.clone(),
-            body.joint.to_owned(),
-            motor.to_owned(),
-            parameters,
-        ]
+        vec![body.name.clone(), body.joint.to_owned(), motor, parameters]
     };
     let rows: Vec<Vec<String>> = document.bodies.iter().map(row).collect();
     table(&rows, &[true; 4])

@@ -86,7 +86,7 @@ fn factors_are_numbers_expressions_or_variables() {
     let tables = "[constants]\nk = \"2 N m/A\"\n[data]\ntime = \"t\"\npositions = [\"q\"]\n\
                   torques = [\"i\"]\nposition_scale = \"1 deg\"\ntorque_gain = [\"k\"]";
     let data = good(&single(tables, "")).data.unwrap();
-    assert_eq!(data.position_scale, [Factor::Value(1_f64.to_radians())]);
+    assert_eq!(data.position_scale, [1_f64.to_radians()]);
     assert_eq!(data.torque_gain, [Factor::Value(2.0)]);
     let variable = tables.replace("[\"k\"]", "\"gtau\"");
     let data = good(&single(&variable, "")).data.unwrap();

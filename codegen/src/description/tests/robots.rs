@@ -108,7 +108,7 @@ fn the_emps_slides_horizontally() {
     assert_eq!(joint.parameters, [M, Ia, Fv, Fs, Off]);
     let data = robot.data.unwrap();
     assert_eq!(data.torque_gain, [Factor::Variable("gtau".to_owned())]);
-    assert_eq!(data.position_scale, [Factor::Value(1.0)]);
+    assert_eq!(data.position_scale, [1.0]);
     let settings = robot.identification;
     assert_eq!(
         (settings.decimation, settings.skip_start),

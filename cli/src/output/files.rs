@@ -1,0 +1,310 @@
+//! Files that a command writes: before any work it is seen that none of them would destroy what the
+//! command reads or another result; then all are written, whole, or none.
+
+use crate::failure::{Failure, Problem};
+use std::{
+    fs, io,
+    io::Write,
+    path::{Path, PathBuf},
+};
+use tempfile::NamedTempFile;
+
+/// Links that are followed before a path counts as leading nowhere, as many as Linux follows.
+const LINKS: usize = 40;
+
+/// [`check_distinct`], and the folder of every output must exist.
+///
+/// # Errors
+/// As [`check_distinct`], or a folder that does not exist.
+pub(crate) fn check<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
+    check_distinct(inputs, outputs)?;
+    for output in outputs {
+        let folder = output.parent().filter(|f| !f.as_os_str().is_empty());
+        if folder.is_some_and(|folder| !folder.is_dir()) {
+            let error = io::Error::from(io::ErrorKind::NotFound);
+            return Err(unwritable(output, &error));
+        }
+    }
+    Ok(())
+}
+
+/// Fails early, before any work, if an output is a file that the command reads, two outputs are one
+/// file, whatever links lead there, or a file may not be written. Devices and pipes lose nothing.
+///
+/// # Errors
+/// Arguments that do not go together, or files that may not be written.
+pub(crate) fn check_distinct<'a>(inputs: &[&'a Path], outputs: &[&'a Path]) -> Result<(), Failure> {
+    let replaced = |path: &&&Path| fs::metadata(path).map_or(true, |existing| existing.is_file());
+    let outputs: Vec<&Path> = outputs.iter().filter(replaced).copied().collect();
+    for (at, output) in outputs.iter().enumerate() {
+        let identity = identity(output);
+        if let Some(input) = inputs
+            .iter()
+            .find(|input| self::identity(input) == identity)
+        {
+            return Err(Failure::Usage(format!(
+                "the output `{}` would replace `{}`, which the command reads: choose another name",
+                output.display(),
+                input.display()
+            )));
+        }
+        let earlier = outputs[..at].iter();
+        if earlier
+            .clone()
+            .any(|other| self::identity(other) == identity)
+        {
+            let message = format!("two results would be written to `{}`", output.display());
+            return Err(Failure::Usage(message));
+        }
+    }
+    let problems: Vec<Problem> = outputs
+        .iter()
+        .filter_map(|output| may_be_replaced(output).err().map(|e| (output, e)))
+        .map(|(output, error)| unwritable_problem(output, &error))
+        .collect();
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(problems.into())
+    }
+}
+
+/// What makes two paths the same file.
+#[derive(Debug, PartialEq, Eq)]
+enum Identity {
+    /// Number of device and file: links lead to one, hard links have the same.
+    #[cfg(unix)]
+    Numbers(u64, u64),
+    /// The path without links, of a file that is not there yet.
+    Path(PathBuf),
+}
+
+fn identity(path: &Path) -> Identity {
+    // `-` is stdin, which the shell may have opened as one of the files.
+    let path = match path.as_os_str() == "-" {
+        true => Path::new("/dev/stdin"),
+        false => path,
+    };
+    #[cfg(unix)]
+    if let Ok(existing) = fs::metadata(path) {
+        use std::os::unix::fs::MetadataExt;
+        return Identity::Numbers(existing.dev(), existing.ino());
+    }
+    Identity::Path(resolved(path))
+}
+
+/// A path without links; its last part may not exist.
+fn resolved(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    for _ in 0..LINKS {
+        let Ok(target) = fs::read_link(&path) else {
+            break;
+        };
+        path = folder(&path).join(target);
+    }
+    if let Ok(canonical) = fs::canonicalize(&path) {
+        return canonical;
+    }
+    match (fs::canonicalize(folder(&path)), path.file_name()) {
+        (Ok(folder), Some(name)) => folder.join(name),
+        _ => path,
+    }
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Whether a file may be replaced: renaming another over it asks only for the folder's permission, so
+/// that of the file itself is asked for here.
+fn may_be_replaced(path: &Path) -> io::Result<()> {
+    let Ok(existing) = fs::metadata(path) else {
+        return Ok(());
+    };
+    if existing.is_file() {
+        // Who may do everything is not stopped by the open, and respects the mark all the same.
+        if existing.permissions().readonly() {
+            return Err(io::Error::from(io::ErrorKind::ReadOnlyFilesystem));
+        }
+        fs::OpenOptions::new().write(true).open(path)?;
+    }
+    Ok(())
+}
+
+/// Writes files: each goes to a temporary file in its folder first, and when all of them are
+/// complete, they are renamed. So an error leaves the old files as they were.
+///
+/// # Errors
+/// A folder that can't be written, or a file that may not be replaced.
+pub(crate) fn write(files: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
+    let mut staged = Vec::new();
+    for (path, bytes) in files {
+        let staging = stage(&path, &bytes).map_err(|error| unwritable(&path, &error))?;
+        staged.push((path, staging, bytes));
+    }
+    for (path, staging, bytes) in staged {
+        let done = match staging {
+            Staged::Temporary(file, target) => {
+                file.persist(target).map(drop).map_err(|error| error.error)
+            }
+            Staged::Device => fs::write(&path, bytes),
+        };
+        done.map_err(|error| unwritable(&path, &error))?;
+    }
+    Ok(())
+}
+
+/// A file that waits for its name.
+enum Staged {
+    /// The file and its name.
+    Temporary(NamedTempFile, PathBuf),
+    /// Devices and pipes, `/dev/stdout` for instance, are written to and never replaced.
+    Device,
+}
+
+fn stage(path: &Path, bytes: &[u8]) -> io::Result<Staged> {
+    let existing = fs::metadata(path).ok();
+    if let Some(existing) = &existing {
+        if existing.is_dir() {
+            return Err(io::Error::from(io::ErrorKind::IsADirectory));
+        }
+        if !existing.is_file() {
+            return Ok(Staged::Device);
+        }
+    }
+    may_be_replaced(path)?;
+    // A link stays a link: what it points to is replaced.
+    let target = resolved(path);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".overact-");
+    let permissions = existing
+        .as_ref()
+        .map(fs::Metadata::permissions)
+        .or_else(usual_permissions);
+    let folder = folder(&target);
+    let mut file = match permissions {
+        Some(permissions) => builder.permissions(permissions).tempfile_in(folder)?,
+        None => builder.tempfile_in(folder)?,
+    };
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    Ok(Staged::Temporary(file, target))
+}
+
+/// Those of any new file; the default of a temporary file is to be private.
+#[cfg(unix)]
+fn usual_permissions() -> Option<fs::Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(fs::Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn usual_permissions() -> Option<fs::Permissions> {
+    None
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    unwritable_problem(path, error).into()
+}
+
+/// The error's own text may name the temporary file, which is nobody's business.
+fn unwritable_problem(path: &Path, error: &io::Error) -> Problem {
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "its folder does not exist".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        io::ErrorKind::ReadOnlyFilesystem => "it is read-only".to_owned(),
+        io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        kind => kind.to_string(),
+    };
+    let problem = Problem::new(format!("the file can't be written: {reason}"));
+    problem.file(path.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check, check_distinct, write};
+    use crate::failure::Failure;
+    use std::fs;
+
+    #[test]
+    fn an_error_leaves_all_files_as_they_were() -> std::io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let (good, bad) = (
+            folder.path().join("a.csv"),
+            folder.path().join("none/b.csv"),
+        );
+        fs::write(&good, "old")?;
+        assert!(write(vec![(good.clone(), b"new".to_vec()), (bad, Vec::new())]).is_err());
+        assert_eq!(fs::read_to_string(&good)?, "old");
+        assert!(write(vec![(good.clone(), b"new".to_vec())]).is_ok());
+        assert_eq!(fs::read_to_string(&good)?, "new");
+        assert_eq!(fs::read_dir(folder.path())?.count(), 1);
+        Ok(())
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn one_file_by_whatever_path_is_one_file() -> std::io::Result<()> {
+        use std::os::unix::fs::symlink;
+        let folder = tempfile::tempdir()?;
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("log.csv"), "measured")?;
+        fs::create_dir(at("sub"))?;
+        symlink(at("log.csv"), at("link.csv"))?;
+        symlink("../log.csv", at("sub/link.csv"))?;
+        symlink("nothing.csv", at("dangling.csv"))?;
+        fs::hard_link(at("log.csv"), at("hard.csv"))?;
+        let log = at("log.csv");
+        for name in [
+            "log.csv",
+            "sub/../log.csv",
+            "link.csv",
+            "sub/link.csv",
+            "hard.csv",
+        ] {
+            let found = check(&[&log], &[&at(name)]);
+            assert!(matches!(found, Err(Failure::Usage(_))), "{name}");
+            // The other way round: the input is the link.
+            let found = check(&[&at(name)], &[&log]);
+            assert!(matches!(found, Err(Failure::Usage(_))), "{name}");
+        }
+        assert!(check(&[&log], &[&at("new.csv"), &at("sub/new.csv")]).is_ok());
+        for other in ["nothing.csv", "sub/../nothing.csv", "dangling.csv"] {
+            let found = check(&[], &[&at("dangling.csv"), &at(other)]);
+            assert!(matches!(found, Err(Failure::Usage(_))), "{other}");
+        }
+        assert!(check(&[], &[&at("none/new.csv")]).is_err());
+        assert!(check_distinct(&[], &[&at("none/new.csv")]).is_ok());
+        let nowhere = std::path::Path::new("/dev/null");
+        assert!(check(&[], &[nowhere, nowhere]).is_ok());
+        // What a link leads to is written, and the link stays.
+        assert!(write(vec![(at("dangling.csv"), b"new".to_vec())]).is_ok());
+        assert_eq!(fs::read_to_string(at("nothing.csv"))?, "new");
+        assert!(fs::symlink_metadata(at("dangling.csv"))?.is_symlink());
+        Ok(())
+    }
+
+    #[test]
+    fn a_read_only_file_is_not_replaced() -> std::io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let path = folder.path().join("kept.csv");
+        fs::write(&path, "kept")?;
+        let mut permissions = fs::metadata(&path)?.permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions)?;
+        for failure in [
+            check(&[], &[&path]),
+            write(vec![(path.clone(), Vec::new())]),
+        ] {
+            let text = failure.expect_err("a refusal").render(false);
+            assert!(text.contains("it is read-only"), "{text}");
+        }
+        assert_eq!(fs::read_to_string(&path)?, "kept");
+        Ok(())
+    }
+}

@@ -1,0 +1,123 @@
+//! `check` finds what simulation and identification would refuse, each at its line and in the words of
+//! the description, and takes chains of many joints.
+
+mod common;
+
+use common::Bench;
+use std::{fmt::Write, time::Instant};
+
+/// A template with changes to its lines; each must have an effect.
+fn changed(template: &str, changes: &[(&str, &str)]) -> Bench {
+    Bench::with(template, |text| {
+        changes.iter().fold(text.to_owned(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        })
+    })
+}
+
+/// The line of a text, counted from 1.
+fn line(bench: &Bench, part: &str) -> usize {
+    let text = bench.read("my.toml");
+    let before = text.split(part).next().expect("a part");
+    assert!(before.len() < text.len(), "{part}");
+    before.matches('\n').count() + 1
+}
+
+/// `check` and `simulate` must say the same of a description.
+fn said(bench: &Bench) -> String {
+    let said = bench.bad(&["check", "my.toml"]);
+    let run = [
+        "simulate",
+        "my.toml",
+        "--run",
+        "identification",
+        "-o",
+        "log.csv",
+    ];
+    assert_eq!(bench.bad(&run), said);
+    assert_eq!(bench.files(), ["my.toml"]);
+    said
+}
+
+#[test]
+fn what_simulation_refuses_is_found_by_the_check() {
+    let bench = changed(
+        "serial-2r",
+        &[
+            ("bandwidth = ", "bandwidth = \"900 Hz\" # "),
+            (
+                "encoder = ",
+                "encoder_delay = \"1 s\"\ntorque_limit = \"0 N m\"\nencoder = ",
+            ),
+            ("harmonic = 1,", "harmonic = 100000,"),
+        ],
+    );
+    let said = said(&bench);
+    let expected = [
+        (
+            "`bandwidth` the controlled robot would be unstable; lower `bandwidth`, or raise `sampling`, `derivative_cutoff` or `damping`",
+            "bandwidth = \"900",
+        ),
+        (
+            "`encoder_delay` is 1; give 0 to 0.1 seconds",
+            "encoder_delay",
+        ),
+        (
+            "`torque_limit[0]` is 0; give a positive number",
+            "torque_limit = \"0",
+        ),
+        ("stay below half of `sampling`", "harmonic = 100000"),
+    ];
+    for (message, key) in expected {
+        assert!(said.contains(message), "{message}\nin\n{said}");
+        let place = format!("my.toml:{}:", line(&bench, key));
+        assert!(said.contains(&place), "{place} in\n{said}");
+    }
+    for name in ["_hz", "_s`", "runs[", "trajectory"] {
+        assert!(!said.contains(name), "{name} is no key:\n{said}");
+    }
+}
+
+#[test]
+fn runs_that_no_identification_takes_are_found() {
+    let bench = changed(
+        "serial-2r",
+        &[("[identification]", "[identification]\nskip_start = 1000000")],
+    );
+    let said = bench.bad(&["check", "my.toml"]);
+    assert!(said.contains("the run `identification` has"), "{said}");
+    assert!(
+        said.contains("the skipped samples of the identification need at least"),
+        "{said}"
+    );
+}
+
+/// A chain of revolute joints with all parameters.
+fn chain(joints: usize) -> String {
+    let mut text = String::from("name = \"Chain\"\nsummary = \"a chain\"\n\n[leg.arm]\n");
+    for joint in 0..joints {
+        let alpha = ["90 deg", "-90 deg", "0 deg"][joint % 3];
+        let _ = writeln!(
+            text,
+            "\n[[leg.arm.joint]]\ntype = \"revolute\"\nalpha = \"{alpha}\"\nd = \"0.1 m\"\nactuated = true\nparameters = \"all\""
+        );
+    }
+    text + "\n[[place]]\nname = \"arm\"\nshape = \"arm\"\nhome = {}\n"
+}
+
+#[test]
+fn chains_of_many_joints_are_checked_in_seconds_up_to_a_stated_limit() {
+    let bench = Bench::new();
+    bench.write("my.toml", &chain(80));
+    let start = Instant::now();
+    assert!(bench.good(&["check", "my.toml"]).contains("80 joints"));
+    // It takes less than a second of one core; deriving its model takes many minutes.
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    bench.write("my.toml", &chain(201));
+    let said = bench.bad(&["check", "my.toml"]);
+    assert!(
+        said.contains("the robot has 201 joints, more than 200"),
+        "{said}"
+    );
+}

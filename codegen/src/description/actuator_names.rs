@@ -1,0 +1,113 @@
+//! What actuators are called: one name, which is printed everywhere and stands in logs and generated
+//! code, and other spellings that are understood wherever a name is given.
+
+use crate::diagnostic::did_you_mean;
+
+/// The names of a robot's actuators, in the order of q and τ.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ActuatorNames {
+    all: Vec<Names>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Names {
+    /// The one that is printed.
+    usual: String,
+    /// Others that are understood.
+    others: Vec<String>,
+}
+
+impl ActuatorNames {
+    /// Names from those of legs and actuated joints. The usual one is the leg's where the leg has one
+    /// actuator, the joint's in a robot of one leg without a platform (`single`), else `leg_joint`, or
+    /// `leg.joint` where two actuators would be called alike.
+    #[must_use]
+    pub fn new<'a>(single: bool, actuators: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
+        let actuators: Vec<(&str, &str)> = actuators.into_iter().collect();
+        let alone = |leg: &str| actuators.iter().filter(|(other, _)| *other == leg).count() == 1;
+        let short = |&(leg, joint): &(&str, &str)| match (single, alone(leg)) {
+            (true, _) => joint.to_owned(),
+            (false, true) => leg.to_owned(),
+            (false, false) => format!("{leg}_{joint}"),
+        };
+        let names = |actuator: &(&str, &str)| {
+            let (leg, joint) = *actuator;
+            let short_name = short(actuator);
+            let like = actuators.iter().filter(|other| short(other) == short_name);
+            let dotted = format!("{leg}.{joint}");
+            let usual = match like.count() {
+                1 => short_name,
+                _ => dotted.clone(),
+            };
+            let mut others = vec![dotted, format!("{leg}_{joint}")];
+            if alone(leg) {
+                others.push(leg.to_owned());
+            }
+            others.retain(|other| *other != usual);
+            Names { usual, others }
+        };
+        Self {
+            all: actuators.iter().map(names).collect(),
+        }
+    }
+
+    /// The usual names.
+    pub fn usual(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(|names| names.usual.as_str())
+    }
+
+    /// The actuator that a name means: its usual one, or another spelling that means no other actuator.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<usize> {
+        let usual = self.usual().position(|usual| usual == name);
+        let spelt = |at: &usize| self.all[*at].others.iter().any(|other| other == name);
+        usual.or_else(|| {
+            let mut meant = (0..self.all.len()).filter(spelt);
+            meant.next().filter(|_| meant.next().is_none())
+        })
+    }
+
+    /// A way out for a name that means no actuator, or several.
+    #[must_use]
+    pub fn help(&self, name: &str) -> String {
+        did_you_mean(name, self.usual()).unwrap_or_else(|| {
+            let all: Vec<&str> = self.usual().collect();
+            format!("the actuators are {}", all.join(", "))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ActuatorNames;
+
+    #[test]
+    fn every_spelling_means_the_actuator_with_the_usual_name() {
+        let names = ActuatorNames::new(false, [("A", "1"), ("B", "1"), ("B", "2")]);
+        assert_eq!(names.usual().collect::<Vec<_>>(), ["A", "B_1", "B_2"]);
+        for (name, index) in [("A", 0), ("A.1", 0), ("A_1", 0), ("B.2", 2), ("B_2", 2)] {
+            assert_eq!(names.find(name), Some(index), "{name}");
+        }
+        assert_eq!(names.find("B"), None, "which of two?");
+        assert_eq!(names.find("B_3"), None);
+        assert!(names.help("C7").contains("the actuators are A, B_1, B_2"));
+        let arm = ActuatorNames::new(true, [("arm", "1"), ("arm", "2")]);
+        assert_eq!(arm.usual().collect::<Vec<_>>(), ["1", "2"]);
+        assert_eq!((arm.find("arm.2"), arm.find("arm_1")), (Some(1), Some(0)));
+    }
+
+    #[test]
+    fn a_spelling_that_means_two_actuators_means_none() {
+        let actuators = [("a", "b_c"), ("a", "d"), ("a_b", "c"), ("a_b", "d")];
+        let names = ActuatorNames::new(false, actuators);
+        let usual: Vec<&str> = names.usual().collect();
+        assert_eq!(usual, ["a.b_c", "a_d", "a_b.c", "a_b_d"]);
+        assert_eq!(names.find("a_b_c"), None);
+        for (index, name) in usual.iter().enumerate() {
+            assert_eq!(names.find(name), Some(index));
+        }
+        // A leg's name is its actuator's, also where it could be spelt from another leg and its joint.
+        let names = ActuatorNames::new(false, [("a", "1"), ("a", "2"), ("a_1", "x")]);
+        assert_eq!(names.usual().collect::<Vec<_>>(), ["a.1", "a_2", "a_1.x"]);
+    }
+}

@@ -1,0 +1,164 @@
+//! A description checked as a whole: what has no model, and what the virtual experiment and the
+//! identification would refuse, all of it at once and without simulating.
+
+use crate::{
+    compiled_file::{note, read},
+    error::Error,
+    experiment,
+    settings::settings,
+};
+use overact::{Info, Sizes};
+use overact_codegen::{
+    Checked,
+    description::{self, Description},
+    diagnostic::{Diagnostic, Diagnostics, Source},
+    mechanism::{JointKind, Mechanism},
+};
+use overact_simulation::Experiment;
+use std::path::Path;
+
+/// A description without errors.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct CheckedFile {
+    /// The path as the user gave it.
+    pub file: String,
+    /// The mechanism with its home configuration.
+    pub mechanism: Mechanism,
+    /// What the description says that may not be meant.
+    pub note: Option<String>,
+}
+
+/// Reads and checks a description.
+///
+/// # Errors
+/// A file that can't be read, or everything that is wrong with the description.
+pub fn check(path: &Path) -> Result<CheckedFile, Error> {
+    let source = read(path)?;
+    match checked(&source) {
+        Ok(checked) => Ok(CheckedFile {
+            file: source.name,
+            note: note(&checked.description, &checked.mechanism),
+            mechanism: checked.mechanism,
+        }),
+        Err(diagnostics) => Err(Error::Description {
+            source,
+            diagnostics,
+        }),
+    }
+}
+
+fn checked(source: &Source) -> Result<Checked, Diagnostics> {
+    let checked = overact_codegen::check(source)?;
+    let mut errors = Diagnostics::new();
+    with_info(&checked.mechanism, |info| {
+        check_experiment(source, &checked.description, info, &mut errors);
+    });
+    errors.into_result(checked)
+}
+
+/// What simulation and identification of the virtual experiment would refuse.
+fn check_experiment(
+    source: &Source,
+    description: &Description,
+    info: &Info<'_>,
+    errors: &mut Diagnostics,
+) {
+    let Some(table) = description
+        .experiment
+        .as_ref()
+        .filter(|t| !t.runs.is_empty())
+    else {
+        return;
+    };
+    let experiment = experiment::plan(table, info);
+    let problems = experiment.problems(info);
+    if problems.is_empty() {
+        check_filters(source, description, &experiment, info, errors);
+    } else {
+        let refused = overact_simulation::Error::Experiment(problems);
+        errors.append(experiment::errors::diagnostics(
+            source,
+            description,
+            &refused,
+        ));
+    }
+}
+
+/// Runs of the virtual experiment that are too short, or sampled too slowly, for the filters of the
+/// identification.
+fn check_filters(
+    source: &Source,
+    description: &Description,
+    experiment: &Experiment,
+    info: &Info<'_>,
+    errors: &mut Diagnostics,
+) {
+    let frequency = experiment.sampling_hz;
+    let settings = settings(description, info, frequency);
+    let at = |path: &str, message: String, help: &str| Diagnostic {
+        span: description::place(source, path),
+        ..Diagnostic::global(message).help(help)
+    };
+    let (cutoff, nyquist) = (settings.filter_cutoff_hz, frequency / 2.0);
+    if cutoff >= nyquist {
+        let message = format!(
+            "the cutoff frequency of {cutoff} Hz is not below half the sampling frequency of the virtual experiment, {nyquist} Hz"
+        );
+        let help = "choose about ten times the bandwidth of the motion";
+        errors.push(at("identification.filter_cutoff", message, help));
+    }
+    let needed = settings.samples_needed();
+    for (index, run) in experiment.runs.iter().enumerate() {
+        let samples = experiment.samples(run);
+        if samples < needed {
+            let message = format!(
+                "the run `{}` has {samples} samples; the filters, the decimation and the skipped samples of the identification need at least {needed}",
+                run.name
+            );
+            let help = "make the run longer, or skip fewer samples";
+            errors.push(at(
+                &format!("experiment.run[{index}].duration"),
+                message,
+                help,
+            ));
+        }
+    }
+}
+
+/// Calls with what an experiment is checked against: all but the parameters, whose number follows from the
+/// model and is right by construction.
+fn with_info<T>(mechanism: &Mechanism, then: impl FnOnce(&Info<'_>) -> T) -> T {
+    let joints = mechanism.joints();
+    let actuated_joints = mechanism.actuated();
+    let is_revolute = |&at: &usize| mechanism.joint(joints[at]).kind == JointKind::Revolute;
+    let actuator_is_revolute: Vec<bool> = actuated_joints.iter().map(is_revolute).collect();
+    let actuators = mechanism.actuator_names();
+    let actuators: Vec<&str> = actuators.iter().map(String::as_str).collect();
+    let joint_names: Vec<String> = joints.iter().map(|&j| mechanism.joint_name(j)).collect();
+    let coordinates: Vec<&str> = match &mechanism.platform {
+        Some(platform) => platform.motion.coordinates(),
+        None => joint_names.iter().map(String::as_str).collect(),
+    };
+    then(&Info {
+        name: &mechanism.name,
+        sizes: Sizes {
+            pose: mechanism.pose_len(),
+            dof: mechanism.dof(),
+            actuators: actuators.len(),
+            joints: joints.len(),
+            parameters: 0,
+            payload_parameters: 0,
+        },
+        legs: &[],
+        actuators: &actuators,
+        actuated_joints: &actuated_joints,
+        actuator_is_revolute: &actuator_is_revolute,
+        coordinates: &coordinates,
+        parameters: &[],
+        payload_parameters: &[],
+        home_pose: &mechanism.home.pose,
+        home_joints: &mechanism.home.joints,
+        kept_actuators: &mechanism.kept_actuators,
+    })
+}
