@@ -100,7 +100,7 @@ fn redundancy_that_is_not_spoken_of_is_worth_a_note() {
     assert_eq!(checked.code, Some(1));
     for words in [
         "a redundancy of 1 means 4 actuators for 3 coordinates, but the robot has 6",
-        "leg1.1, leg1.2, leg2.1",
+        "leg1_1, leg1_2, leg2_1",
         "redundancy = 3",
     ] {
         assert!(checked.err.contains(words), "{words} in {}", checked.err);

@@ -230,8 +230,7 @@ fn check_ends(table: &Table<'_, '_>, shapes: &[Shape<'_, '_>], platform: bool, l
     }
 }
 
-/// Without actuators there is nothing to identify from; a platform with more freedoms than the
-/// robot has actuators cannot be controlled.
+/// Without actuators there is nothing to identify from.
 fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[Leg]) {
     let count = actuators(legs).len();
     let Some(platform) = platform else {
@@ -247,44 +246,21 @@ fn check_actuators(table: &Table<'_, '_>, platform: Option<&Platform>, legs: &[L
         return;
     };
     let dof = platform.motion.value.coordinates().len();
-    // After another error nobody knows which joints were meant to be actuated.
-    if !legs.is_empty() && count < dof && table.context.is_clean() {
-        let actuators = if count == 1 { "actuator" } else { "actuators" };
-        let message = format!(
-            "the platform has {dof} degrees of freedom, but the robot has {count} {actuators}"
-        );
-        let diagnostic = Diagnostic::new(message, platform.motion.span.clone())
-            .label(legs_without_actuator(legs));
-        table
-            .context
-            .report(diagnostic.help("mark more joints with actuated = true"));
-    } else {
+    // Of missing actuators the mechanism tells, which knows what motions the legs leave.
+    if count >= dof {
         check_redundancy(table, platform, legs);
-    }
-}
-
-/// The legs whose joints are all passive, where the missing actuator may have its place.
-fn legs_without_actuator(legs: &[Leg]) -> String {
-    let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
-    let names = legs
-        .iter()
-        .filter(passive)
-        .map(|leg| leg.name.value.as_str());
-    let names: Vec<&str> = names.collect();
-    if names.is_empty() {
-        "every leg has an actuator".to_owned()
-    } else {
-        format!("without an actuator: {}", names.join(", "))
     }
 }
 
 /// The robot has as many actuators beyond its coordinates as it is said to have.
 fn check_redundancy(table: &Table<'_, '_>, platform: &Platform, legs: &[Leg]) {
-    let name = |(leg, joint): (usize, usize)| {
-        let leg: &Leg = &legs[leg];
-        format!("{}.{}", leg.name.value, leg.joints[joint].name.value)
+    let robot = Inventory {
+        platform: Some(platform),
+        legs,
+        scope: &Scope::default(),
     };
-    let names: Vec<String> = actuators(legs).into_iter().map(name).collect();
+    let names = robot.actuator_names();
+    let names: Vec<&str> = names.usual().collect();
     let dof = platform.motion.value.coordinates().len();
     let Some(wanted) = &platform.redundancy else {
         return;

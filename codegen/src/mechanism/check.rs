@@ -3,6 +3,8 @@
 use super::actuation::{rates_per_velocity, shared_velocities};
 use super::explain;
 use super::home::Home;
+use super::mobility::Mobility;
+use super::states::random_states;
 use super::structure::defects;
 use super::{BaseColumns, Joint, Leg, Mechanism, Platform};
 use crate::description::Description;
@@ -36,6 +38,7 @@ pub fn check(description: &Description) -> Result<Mechanism, Diagnostics> {
     }
     errors.into_result(())?;
     keep_actuators(description, &mut mechanism)?;
+    check_held(description, &mechanism)?;
     Ok(mechanism)
 }
 
@@ -122,10 +125,7 @@ fn on_axis(description: &Description, mut legs: Vec<Leg>) -> Vec<Leg> {
 
 fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mut Diagnostics) {
     let (n, r) = (mechanism.actuated().len(), mechanism.dof());
-    let span = match &description.platform {
-        Some(platform) => platform.span.clone(),
-        None => description.name.span.clone(),
-    };
+    let span = description.name.span.clone();
     if mechanism.platform.is_none() && n < r {
         let passive = mechanism
             .joints()
@@ -140,11 +140,43 @@ fn check_actuators(description: &Description, mechanism: &Mechanism, errors: &mu
                 .help("write `actuated = true` at this joint, or describe the platform that closes the loop"),
         );
     } else if n < r {
-        errors.push(
-            Diagnostic::new("the robot has fewer actuators than degrees of freedom", span)
-                .label(format!("{r} independent coordinates, {n} actuated joints"))
-                .help("mark the motors with `actuated = true`, or choose a platform motion with fewer coordinates"),
-        );
+        let mobility = Home::refine(mechanism, &rough_home(description)).ok();
+        let mobility = mobility.and_then(|home| {
+            let closed = Mechanism {
+                home,
+                ..mechanism.clone()
+            };
+            Mobility::at_home(&closed)
+        });
+        errors.push(explain::too_few_actuators(description, mechanism, mobility));
+    }
+}
+
+/// Legs that block some motions, but not all that the description leaves out, while the actuators drive
+/// what is left: then the platform moves in ways of which the model knows nothing. Legs that block
+/// nothing at all are rods that stand for parallelograms, which hold the platform in ways that are not
+/// described.
+fn check_held(description: &Description, mechanism: &Mechanism) -> Result<(), Diagnostics> {
+    let beside = random_states(mechanism, 3, 5).into_iter().map(|state| {
+        let home = Home::new(mechanism, state.pose, state.joints);
+        Mechanism {
+            home,
+            ..mechanism.clone()
+        }
+    });
+    // One configuration alone may be singular.
+    let loose = |at: &Mechanism| {
+        Mobility::at_home(at).filter(|mobility| {
+            let left = mobility.count();
+            mobility.blocked > 0 && left > at.dof() && mobility.driven(at) >= left
+        })
+    };
+    let Some(mobility) = loose(mechanism) else {
+        return Ok(());
+    };
+    match beside.into_iter().all(|at| loose(&at).is_some()) {
+        true => Err(Diagnostics::from(explain::not_held(description, &mobility))),
+        false => Ok(()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Errors of mechanisms in words: what is wrong, where it is written, and a way out.
 
 use super::home::HomeError;
+use super::mobility::Mobility;
 use super::numeric::{platform_frame, target};
 use super::reach::{Reach, look, wrapped};
 use super::singular_values::SingularValues;
@@ -173,6 +174,56 @@ pub(super) fn blocked(
     .help("add a passive joint, choose a platform motion without it, or an end that leaves it free (`type`, `along`)")
 }
 
+/// Fewer actuators than coordinates, with what the legs leave where they close.
+pub(super) fn too_few_actuators(
+    description: &Description,
+    mechanism: &Mechanism,
+    mobility: Option<Mobility>,
+) -> Diagnostic {
+    let (dof, count) = (mechanism.dof(), mechanism.actuated().len());
+    let motion = description.platform.as_ref().map(|p| &p.motion);
+    let span = motion.map_or(description.name.span.clone(), |m| m.span.clone());
+    let actuators = if count == 1 { "actuator" } else { "actuators" };
+    let message =
+        format!("the platform has {dof} degrees of freedom, but the robot has {count} {actuators}");
+    let left = mobility.and_then(|m| Some((m.of(motion?.value), m.parts())));
+    let help = match left {
+        Some((left, parts)) if left < dof => format!(
+            "the legs leave the platform only {left} of these {dof} motions ({}), so more actuators are no way out: choose a `motion` that the legs allow, or give the legs more passive joints",
+            Motions::of_directions(&parts).words("along", "about")
+        ),
+        _ => "mark more joints with actuated = true".to_owned(),
+    };
+    Diagnostic::new(message, span)
+        .label(legs_without_actuator(mechanism))
+        .help(help)
+}
+
+/// The legs whose joints are all passive, where the missing actuator may have its place.
+fn legs_without_actuator(mechanism: &Mechanism) -> String {
+    let passive = |leg: &&Leg| leg.joints.iter().all(|joint| !joint.actuated);
+    let names = mechanism.legs.iter().filter(passive);
+    let names: Vec<&str> = names.map(|leg| leg.name.as_str()).collect();
+    if names.is_empty() {
+        "every leg has an actuator".to_owned()
+    } else {
+        format!("without an actuator: {}", names.join(", "))
+    }
+}
+
+/// Legs that leave the platform motions which are not described, and actuators that drive them.
+pub(super) fn not_held(description: &Description, mobility: &Mobility) -> Diagnostic {
+    let span = description.platform.as_ref().map(|p| p.motion.span.clone());
+    let span = span.unwrap_or(description.name.span.clone());
+    let words = Motions::of_directions(&mobility.parts()).words("along", "about");
+    Diagnostic::new("the legs do not hold the platform to this motion", span)
+        .label(format!(
+            "they leave it {} motions, {words}, and the actuators drive all of them",
+            mobility.count()
+        ))
+        .help("choose a `motion` with all of these coordinates; a platform that moves aside while it turns, as that of a 3-RPS, has no word here: its legs need another passive joint to be described")
+}
+
 /// Actuators that do not determine the platform's motion.
 pub(super) fn underactuated(description: &Description, mechanism: &Mechanism) -> Diagnostic {
     let span = description.platform.as_ref().map(|p| p.motion.span.clone());
@@ -263,6 +314,19 @@ impl Motions {
             }
         }
         Self { along, about }
+    }
+
+    /// Those of six directions, three along and three about the axes, of which a part is there.
+    fn of_directions(parts: &[f64; 6]) -> Self {
+        let there = |parts: &[f64]| -> Vec<String> {
+            let axes = ["x", "y", "z"].iter().zip(parts);
+            let there = axes.filter(|(_, part)| **part > 1e-3);
+            there.map(|(axis, _)| (*axis).to_owned()).collect()
+        };
+        Self {
+            along: there(&parts[..3]),
+            about: there(&parts[3..]),
+        }
     }
 
     fn count(&self) -> usize {

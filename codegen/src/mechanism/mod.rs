@@ -10,6 +10,7 @@ pub mod actuation;
 pub mod check;
 mod explain;
 pub mod home;
+mod mobility;
 pub mod motion;
 pub mod numeric;
 mod reach;

@@ -1,6 +1,7 @@
 //! Robots that are no robots: what is said of them, and that it names the culprit and a way out.
 
 mod homes;
+mod mobility;
 
 use super::check;
 use crate::description::parse;
@@ -349,7 +350,7 @@ fn actuators_beside_the_redundancy_that_is_said() {
         "19:14",
         &[
             "a redundancy of 0 means 3 actuators for 3 coordinates, but the robot has 6",
-            "the actuators are leg1.1, leg1.2, leg2.1, leg2.2, leg3.1, leg3.2",
+            "the actuators are leg1_1, leg1_2, leg2_1, leg2_2, leg3_1, leg3_2",
             "take `actuated = true` from a joint, or write redundancy = 3",
         ],
     );

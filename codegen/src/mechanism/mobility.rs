@@ -1,0 +1,157 @@
+//! Which motions the legs leave to the platform, whatever motion the description gives it.
+//!
+//! The platform is taken as a free body with the twist t of six components. A leg's joints give its end
+//! the velocities J q̇ in the components that it shares with the platform; E t are the platform's there.
+//! What no joint gives is blocked: Nᵀ E t = 0 with N the left null space of J. The legs together leave the
+//! null space of all these rows. Motions that none of the shared components feel, such as the rotation
+//! of a platform that is a point, are nobody's and count neither here nor there.
+
+use super::numeric::{platform_frame, target};
+use super::singular_values::{SingularValues, rank};
+use super::{End, JointKind, Leg, Mechanism, Motion, TwistCoordinate};
+use nalgebra::{DMatrix, Matrix3};
+
+/// The motions that the legs leave to the platform at a configuration.
+#[derive(Debug)]
+pub(super) struct Mobility {
+    /// Twists that the legs leave, as columns.
+    allowed: DMatrix<f64>,
+    /// The shared velocities of all legs per twist.
+    felt: DMatrix<f64>,
+    /// Rank of what the legs block.
+    pub(super) blocked: usize,
+}
+
+/// Singular values, of matrices with entries of about one, up to which they count as zero.
+const ROUNDING: f64 = 1e-7;
+
+impl Mobility {
+    /// At the home configuration, which closes the legs, lengths in units of the robot's own; `None` for a
+    /// robot without a platform and for values that are not finite.
+    pub(super) fn at_home(mechanism: &Mechanism) -> Option<Self> {
+        let platform = mechanism.platform.as_ref()?;
+        let home = &mechanism.home;
+        let size = mechanism.length_scale();
+        let mut constraints = DMatrix::zeros(0, 6);
+        let mut felt = DMatrix::zeros(0, 6);
+        for (index, leg) in mechanism.legs.iter().enumerate() {
+            let end = leg.end.as_ref()?;
+            let arms = end_velocities(platform.motion, &home.pose, end, size);
+            let jacobian = scaled_jacobian(leg, &home.joints[mechanism.leg_range(index)], size);
+            // The left null space is the null space of the transpose.
+            let free = SingularValues::new(&jacobian.transpose())?;
+            let null = free.null_space(ROUNDING * free.largest());
+            constraints = stacked(&constraints, &(null.transpose() * &arms));
+            felt = stacked(&felt, &arms);
+        }
+        let found = SingularValues::new(&constraints)?;
+        Some(Self {
+            allowed: found.null_space(ROUNDING),
+            blocked: found.rank(ROUNDING),
+            felt,
+        })
+    }
+
+    /// Number of independent motions that the legs leave.
+    pub(super) fn count(&self) -> usize {
+        rank(&(&self.felt * &self.allowed), ROUNDING)
+    }
+
+    /// The part of each of the six directions, three along and three about axes, that the legs leave.
+    pub(super) fn parts(&self) -> [f64; 6] {
+        let felt = &self.felt * &self.allowed;
+        let Some(found) = SingularValues::new(&felt) else {
+            return [0.0; 6];
+        };
+        // What is not felt is left out.
+        let none = found.null_space(ROUNDING);
+        let kept = &self.allowed - (&self.allowed * &none) * none.transpose();
+        std::array::from_fn(|row| kept.row(row).norm())
+    }
+
+    /// Number of the given platform motion's coordinates that the legs leave.
+    pub(super) fn of(&self, motion: Motion) -> usize {
+        let wanted = directions(motion);
+        // Both within what is left and within the motion: dim A + dim B - dim (A + B).
+        let both =
+            DMatrix::from_fn(
+                6,
+                self.allowed.ncols() + wanted.ncols(),
+                |row, column| match column.checked_sub(self.allowed.ncols()) {
+                    None => self.allowed[(row, column)],
+                    Some(column) => wanted[(row, column)],
+                },
+            );
+        self.allowed.ncols() + wanted.ncols() - rank(&both, ROUNDING)
+    }
+
+    /// How many of the motions that the legs leave are determined by the actuators.
+    pub(super) fn driven(&self, mechanism: &Mechanism) -> usize {
+        let home = &mechanism.home;
+        let size = mechanism.length_scale();
+        let rates = |(index, leg): (usize, &Leg)| -> Option<DMatrix<f64>> {
+            let range = mechanism.leg_range(index);
+            let jacobian = scaled_jacobian(leg, &home.joints[range], size);
+            let found = SingularValues::new(&jacobian)?;
+            let platform = mechanism.platform.as_ref()?;
+            let arms = end_velocities(platform.motion, &home.pose, leg.end.as_ref()?, size);
+            Some(found.pseudo_inverse(ROUNDING * found.largest()) * arms * &self.allowed)
+        };
+        let mut all = DMatrix::zeros(0, self.allowed.ncols());
+        for leg in mechanism.legs.iter().enumerate() {
+            let Some(rates) = rates(leg) else { return 0 };
+            all = stacked(&all, &rates);
+        }
+        rank(&all.select_rows(&mechanism.actuated()), ROUNDING)
+    }
+}
+
+/// The shared velocities of a leg's end per twist of the platform as a free body.
+fn end_velocities(motion: Motion, pose: &[f64], end: &End, size: f64) -> DMatrix<f64> {
+    let frame = platform_frame(motion, pose);
+    let arm = (target(end, &frame).translation.vector - frame.translation.vector) / size;
+    let mut all = DMatrix::identity(6, 6);
+    // v + ω × arm.
+    let turned: Matrix3<f64> = -arm.cross_matrix();
+    all.view_mut((0, 3), (3, 3)).copy_from(&turned);
+    all.select_rows(&end.shared_components())
+}
+
+/// A leg's closure Jacobian with lengths in units of `size`.
+fn scaled_jacobian(leg: &Leg, joints: &[f64], size: f64) -> DMatrix<f64> {
+    let mut jacobian = leg.closure_jacobian(joints);
+    for (mut row, component) in jacobian.row_iter_mut().zip(leg.shared_components()) {
+        if component < 3 {
+            row /= size;
+        }
+    }
+    for (mut column, joint) in jacobian.column_iter_mut().zip(leg.independent()) {
+        if leg.joints[joint].kind == JointKind::Prismatic {
+            column *= size;
+        }
+    }
+    jacobian
+}
+
+/// The twists of a motion as columns.
+fn directions(motion: Motion) -> DMatrix<f64> {
+    let twist = motion.twist();
+    let row = |coordinate: &TwistCoordinate| match coordinate {
+        TwistCoordinate::Linear(axis) => *axis,
+        TwistCoordinate::Angular(axis) => 3 + axis,
+    };
+    DMatrix::from_fn(6, twist.len(), |r, c| {
+        f64::from(u8::from(row(&twist[c]) == r))
+    })
+}
+
+fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(
+        above.nrows() + below.nrows(),
+        above.ncols(),
+        |row, column| match row.checked_sub(above.nrows()) {
+            None => above[(row, column)],
+            Some(row) => below[(row, column)],
+        },
+    )
+}

@@ -1,0 +1,74 @@
+//! What is said where the legs leave other motions than those that are described.
+
+use super::{assert_said, said};
+
+/// Three legs of a revolute joint with a horizontal axis, a linear motor and a ball joint. They leave
+/// the platform the motion along z and the rotations about x and y.
+fn three_rps(motion: &str) -> String {
+    let mut text = format!(
+        r#"name = "Tripod"
+[constants]
+r = "0.3 m"
+[platform]
+motion = "{motion}"
+home = {{ z = "0.5 m" }}
+[leg.rps]
+variables = ["psi"]
+base = {{ at = ["r * cos(psi)", "r * sin(psi)", 0], rotation = [0, 0, "psi"] }}
+[[leg.rps.joint]]
+type = "revolute"
+alpha = "90 deg"
+[[leg.rps.joint]]
+type = "prismatic"
+alpha = "-90 deg"
+actuated = true
+[leg.rps.end]
+type = "point"
+at = ["r * cos(psi)", "r * sin(psi)", 0]
+"#
+    );
+    for (leg, psi) in ["0 deg", "120 deg", "240 deg"].iter().enumerate() {
+        text += &format!(
+            "[[place]]\nname = \"leg{}\"\nshape = \"rps\"\npsi = \"{psi}\"\nhome = {{ 2 = \"0.5 m\" }}\n",
+            leg + 1
+        );
+    }
+    text
+}
+
+#[test]
+fn more_actuators_are_no_way_out_where_the_legs_leave_fewer_motions() {
+    let text = three_rps("spatial");
+    assert_said(
+        &text,
+        "5:10",
+        &[
+            "the platform has 6 degrees of freedom, but the robot has 3 actuators",
+            "the legs leave the platform only 3 of these 6 motions (along z, and about x and y)",
+            "choose a `motion` that the legs allow",
+            "leg `rps` has too few joints to follow the platform's motion",
+        ],
+    );
+    assert!(!said(&text).contains("mark more joints"));
+}
+
+#[test]
+fn a_motion_that_the_legs_do_not_enforce_is_refused() {
+    assert_said(
+        &three_rps("fixed axis"),
+        "5:10",
+        &[
+            "the legs do not hold the platform to this motion",
+            "they leave it 3 motions, along z, and about x and y, and the actuators drive all of them",
+        ],
+    );
+}
+
+#[test]
+fn rods_that_stand_for_parallelograms_are_no_defect() {
+    let rods = include_str!("../../../../robots/delta_4.toml");
+    assert_eq!(
+        said(rods.split("\n[identification]").next().unwrap_or(rods)),
+        "a robot"
+    );
+}
