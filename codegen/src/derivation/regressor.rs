@@ -22,7 +22,7 @@ pub struct Projection<'a> {
     legs: Vec<Rows<'a>>,
     /// Whether the projected coordinates are the platform's.
     on_platform: bool,
-    /// The same of the platform's twist coordinates.
+    /// ∂v/∂(projected coordinates).
     platform: Rows<'a>,
     /// The determinants that were divided by.
     pub determinants: Vec<Expr<'a>>,

@@ -110,7 +110,8 @@ impl Evaluator {
     /// Evaluates the program at `samples` samples, as [`Program::evaluate`] does.
     ///
     /// # Errors
-    /// The same.
+    /// The first sample at which a guard fails. Inputs and outputs of a wrong length are the caller's
+    /// error and give an incomplete output.
     pub fn evaluate(
         &mut self,
         samples: usize,

@@ -22,8 +22,8 @@ pub struct State {
 /// How states spread around home: in units of the robot's length scale, and in radians.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spread {
-    /// At first.
-    most: f64,
+    /// The distance from home that is tried first.
+    first: f64,
     /// What it is multiplied by for a state that no leg's Newton iteration follows.
     shrink: f64,
 }
@@ -31,12 +31,12 @@ pub(crate) struct Spread {
 impl Spread {
     /// Around home.
     pub(crate) const NEAR: Self = Self {
-        most: 0.4,
+        first: 0.4,
         shrink: 0.5,
     };
     /// As far as legs reach, but for a fifth of the way.
     pub(crate) const FAR: Self = Self {
-        most: 1.6,
+        first: 1.6,
         shrink: 0.8,
     };
 }
@@ -48,7 +48,7 @@ pub fn random_states(mechanism: &Mechanism, count: usize, seed: u64) -> Vec<Stat
     spread_states(mechanism, count, seed, Spread::NEAR)
 }
 
-/// The same, spread as `by` says.
+/// `count` random states, spread around home as `by` says.
 pub(crate) fn spread_states(
     mechanism: &Mechanism,
     count: usize,
@@ -60,7 +60,7 @@ pub(crate) fn spread_states(
     let mut states = Vec::with_capacity(count);
     for _ in 0..count {
         let direction: Vec<f64> = (0..mechanism.pose_len()).map(|_| stream.number()).collect();
-        let mut spread = by.most;
+        let mut spread = by.first;
         let (pose, joints) = loop {
             match displaced(mechanism, &direction, spread) {
                 Some(found) => break found,
