@@ -12,9 +12,11 @@ use overact_tests::support::expected::{Expected, with_joints_of_model};
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Agreement, Backend, Evaluated, Failure, Sample, dualv};
 use overact_tests::{compiled, redundant_backend};
+use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-10;
-const STATES: usize = 200;
+/// States in the default tier and in the full one.
+const STATES: [usize; 2] = [20, 200];
 
 redundant_backend!(Generated, "generated", overact_robots::DualV);
 redundant_backend!(Kept123, "compiled 123", compiled::kept_123::DualV);
@@ -47,7 +49,13 @@ fn agree(
     let model = model_with(robot, &Request::default()).map_err(|e| format!("{e:?}"))?;
     let evaluated = Evaluated(&model);
     let expected = Expected::new(&model, mechanism.clone())?;
-    let all = samples(mechanism, &expected.parameters(), STATES, 41, partitions)?;
+    let all = samples(
+        mechanism,
+        &expected.parameters(),
+        by_tier(STATES),
+        41,
+        partitions,
+    )?;
     let mut backends: Vec<&dyn Backend> = vec![&evaluated];
     backends.extend(backend);
     let mut failures = Vec::new();
@@ -179,7 +187,13 @@ fn all_functions_are_compared() -> Result<(), Failure> {
 fn joints_of_the_model_close_the_reference() -> Result<(), Failure> {
     let mechanism = robots::dualv();
     let expected = Expected::new(dualv()?, mechanism.clone())?;
-    for sample in samples(&mechanism, &expected.parameters(), STATES, 43, false)? {
+    for sample in samples(
+        &mechanism,
+        &expected.parameters(),
+        by_tier(STATES),
+        43,
+        false,
+    )? {
         let joints = Generated.call("joints", &sample)?;
         let state = with_joints_of_model(&mechanism, &sample.state, joints.as_slice(), TOLERANCE)?;
         let gap = (&state.q - joints.column(0)).amax();

@@ -11,16 +11,19 @@ use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
 use overact_tests::support::served::{FUNCTIONS, partitions};
 use overact_tests::support::{Comparison, Evaluated, Failure, Served};
+use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
-const STATES: usize = 200;
+/// States of each robot in the default tier and in the full one.
+const STATES: [usize; 2] = [20, 200];
 
 overact_tests::library!(compare);
 
 fn compare(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let (model, expected) = described(stem)?;
     let parameters = expected.parameters();
-    let all = samples(&expected.mechanism, &parameters, STATES, 7, false)?;
+    let states = by_tier(STATES);
+    let all = samples(&expected.mechanism, &parameters, states, 7, false)?;
     let truths = all.iter().map(|sample| expected.at(sample));
     let truths = truths.collect::<Result<Vec<_>, Failure>>()?;
     let mut comparison = Comparison::new(TOLERANCE);

@@ -14,9 +14,11 @@ use overact_tests::support::expected::Expected;
 use overact_tests::support::library::described;
 use overact_tests::support::sample::samples;
 use overact_tests::support::{Backend, Evaluated, Failure, Sample, Served};
+use overact_tier::by_tier;
 
 const TOLERANCE: f64 = 1e-9;
-const STATES: usize = 200;
+/// States of each robot in the default tier and in the full one.
+const STATES: [usize; 2] = [10, 200];
 
 overact_tests::library!(balance);
 
@@ -25,7 +27,8 @@ fn balance(stem: &str, compiled: &dyn Model) -> Result<(), Failure> {
     let backends: [&dyn Backend; 2] = [&Served(compiled), &Evaluated(&model)];
     let mut worst = [0.0_f64; 2];
     let columns = expected.parameters();
-    for sample in samples(&expected.mechanism, &columns, STATES, 17, false)? {
+    let all = samples(&expected.mechanism, &columns, by_tier(STATES), 17, false)?;
+    for sample in all {
         let (sample, chi) = without_friction(&expected, &sample);
         let energy =
             |state: &_| DVector::from_element(1, total_energy(&expected.mechanism, state, &chi));

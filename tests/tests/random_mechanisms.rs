@@ -1,7 +1,7 @@
 //! Random mechanisms of every kind against the numeric reference, and damaged ones against diagnostics.
 //!
 //! Every mechanism comes from a seed of its own. `OVERACT_RANDOM_SEED=17` repeats one of them and shows
-//! its description and results; `OVERACT_RANDOM_COUNT=2000` raises their number. The functions that
+//! its description and results; `OVERACT_RANDOM_COUNT=2000` sets their number. The functions that
 //! issue from the platform's pose and the identification models are compared for every mechanism, of the
 //! others a sixth each time, in turn.
 
@@ -20,6 +20,7 @@ use overact_tests::support::random::{Defect, Sketch, features};
 use overact_tests::support::sample::samples;
 use overact_tests::support::served::{partitions, project};
 use overact_tests::support::{Backend, Comparison, Evaluated, Failure, Sample};
+use overact_tier::by_tier;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -27,7 +28,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 const TOLERANCE: f64 = 1e-9;
 const STATES: usize = 3;
-const COUNT: u64 = 208;
+/// Mechanisms in the default tier and in the full one, which has to meet every feature and defect.
+const COUNT: [u64; 2] = [32, 208];
 /// Largest condition number of the model's own partition for its functions to be compared plainly.
 const PLAIN: f64 = 1e3;
 /// Largest joint rate of the path that the power is differentiated along, rad/s and m/s.
@@ -44,7 +46,7 @@ fn seeds() -> std::ops::Range<u64> {
     let count = setting("OVERACT_RANDOM_COUNT");
     match setting("OVERACT_RANDOM_SEED") {
         Some(seed) => seed..seed + count.unwrap_or(1),
-        None => 0..count.unwrap_or(COUNT),
+        None => 0..count.unwrap_or(by_tier(COUNT)),
     }
 }
 
@@ -97,7 +99,7 @@ fn random_mechanisms_agree_with_the_reference() {
         results.len(),
         failures.join("\n")
     );
-    if results.len() as u64 >= COUNT {
+    if results.len() as u64 >= COUNT[1] {
         let missing: Vec<&str> = features::ALL
             .into_iter()
             .filter(|f| !met.contains(*f))
@@ -282,7 +284,7 @@ fn damaged_mechanisms_are_refused_with_a_reason() {
         results.len(),
         failures.join("\n")
     );
-    if results.len() as u64 >= COUNT {
+    if results.len() as u64 >= COUNT[1] {
         assert_eq!(met.len(), Defect::ALL.len(), "only {met:?}");
     }
 }
