@@ -1,6 +1,5 @@
-//! How many operations the identification models take, so that none grows unnoticed: those of
-//! `generated/`, and those of the works on which other generators have been counted, which ours stays
-//! below.
+//! How many operations the identification models take of the works on which other generators have been
+//! counted, which ours stays below. `generated/manifest.toml` has the counts of all robots' functions.
 //!
 //! An operation is an addition, a subtraction, a multiplication or a division; square roots and
 //! trigonometric pairs stand apart.
@@ -113,38 +112,6 @@ fn quick_search_is_within_five_percent_of_the_thorough_one() -> Result<(), Failu
         assert!(operations <= quick, "{line}");
         assert!(100 * quick <= 105 * operations, "quick {quick}; {line}");
         writeln!(table, "{line}")?;
-    }
-    insta::assert_snapshot!(table);
-    Ok(())
-}
-
-#[test]
-fn operations_of_the_generated_models() -> Result<(), Failure> {
-    let mut table = String::new();
-    let folder = fs::read_dir(repository("generated/src"))?;
-    let mut files = folder
-        .map(|entry| Ok(entry?.path()))
-        .collect::<Result<Vec<_>, Failure>>()?;
-    files.sort();
-    for file in files {
-        let name = file.file_stem().map(|s| s.to_string_lossy().into_owned());
-        let name = name.unwrap_or_default();
-        let text = fs::read_to_string(&file)?;
-        let mut count = None;
-        for line in text.lines().map(str::trim) {
-            if line.starts_with("///") && line.contains(" operations (") {
-                count = line.strip_prefix("/// ");
-            }
-            let function = line.strip_prefix("pub fn ").and_then(|l| l.split_once('('));
-            if let Some((function, _)) = function {
-                let count = count.take().unwrap_or_default();
-                let is_model = ["idm_red_platform", "idm_red_actuators", "mass_matrix"];
-                if is_model.iter().any(|model| function.starts_with(model)) {
-                    let operations = count.split(' ').next().unwrap_or_default();
-                    writeln!(table, "{name:16} {function:44} {operations:>6}")?;
-                }
-            }
-        }
     }
     insta::assert_snapshot!(table);
     Ok(())

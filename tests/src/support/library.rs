@@ -5,6 +5,8 @@ use super::expected::Expected;
 use super::{Failure, description, model_of, repository};
 use overact_codegen::RobotModel;
 use overact_codegen::mechanism::{JointKind, TwistCoordinate};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, OnceLock};
 
 /// One test per robot of the library, `check(stem, &Robot)`, and one that none is left out.
 #[macro_export]
@@ -36,7 +38,7 @@ macro_rules! library {
     ($check:path; $($stem:ident: $robot:ident,)*) => {
         $(#[test]
         fn $stem() -> Result<(), $crate::support::Failure> {
-            $check(stringify!($stem), &overact_robots::$robot)
+            $check(stringify!($stem), &overact_compiled::$robot)
         })*
 
         #[test]
@@ -65,12 +67,27 @@ pub fn stems() -> Result<Vec<String>, Failure> {
     Ok(stems)
 }
 
-/// Model and reference of a description of `robots/`.
+/// Model and reference of a robot of `robots/`.
+pub type Described = (RobotModel, Expected);
+
+/// Model and reference of a description of `robots/`, derived once for all tests of a binary.
 ///
 /// # Errors
 ///
 /// The description's errors as text.
-pub fn described(stem: &str) -> Result<(RobotModel, Expected), Failure> {
+pub fn described(stem: &str) -> Result<&'static Described, Failure> {
+    type Once = OnceLock<Result<Described, String>>;
+    static ALL: Mutex<BTreeMap<String, &'static Once>> = Mutex::new(BTreeMap::new());
+    let once: &'static Once = {
+        let mut all = ALL.lock().map_err(|error| error.to_string())?;
+        all.entry(stem.to_owned())
+            .or_insert_with(|| Box::leak(Box::default()))
+    };
+    let described = once.get_or_init(|| derived(stem).map_err(|error| error.to_string()));
+    described.as_ref().map_err(|error| error.as_str().into())
+}
+
+fn derived(stem: &str) -> Result<Described, Failure> {
     let model = model_of(&description(stem)?)?;
     let mechanism = reference(&model.mechanism, workspace(&model));
     let expected = Expected::by_position(&model, mechanism);

@@ -1,0 +1,33 @@
+//! All robots of `robots/` as compiled Rust, built once for all test binaries.
+//!
+//! Those whose text is kept come from `generated/`, the others from the build script.
+
+/// A module that the build script wrote, and its robot.
+macro_rules! robot {
+    ($stem:ident: $robot:ident) => {
+        mod $stem {
+            include!(concat!(env!("OUT_DIR"), "/", stringify!($stem), ".rs"));
+        }
+        pub use $stem::$robot;
+    };
+}
+
+pub use overact_robots::{DualV, Emps, FiveBar, Rx90, ThreeLegPoint};
+
+robot!(delta: Delta);
+robot!(delta_4: Delta4);
+robot!(hexapod: Hexapod);
+robot!(kuka_lwr: KukaLwr);
+robot!(octopod: Octopod);
+robot!(orthoglide: Orthoglide);
+robot!(planar_3prr: Planar3Prr);
+robot!(planar_3rrr: Planar3Rrr);
+robot!(planar_4prr: Planar4Prr);
+robot!(schoenflies_4: Schoenflies4);
+robot!(scotch_yoke: ScotchYoke);
+robot!(spherical_3rrr: Spherical3Rrr);
+robot!(spherical_4rrr: Spherical4Rrr);
+robot!(stanford: Stanford);
+robot!(two_motor_axis: TwoMotorAxis);
+
+pub mod partitions;

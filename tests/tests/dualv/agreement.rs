@@ -1,0 +1,204 @@
+//! Every function of the DualV agrees with the numeric reference, evaluated and compiled.
+//!
+//! The reference is exact to rounding times the condition numbers of its states, at most 60; 1e-10
+//! is that with some room.
+
+use overact_codegen::derivation::Family;
+use overact_codegen::{Request, model_with};
+use overact_compiled::partitions;
+use overact_tests::redundant_backend;
+use overact_tests::reference::Mechanism;
+use overact_tests::reference::robots;
+use overact_tests::support::agreement::unwound;
+use overact_tests::support::expected::{Expected, with_joints_of_model};
+use overact_tests::support::sample::samples;
+use overact_tests::support::{Agreement, Backend, Evaluated, Failure, Sample, dualv};
+use overact_tier::by_tier;
+
+const TOLERANCE: f64 = 1e-10;
+/// States in the default tier and in the full one.
+const STATES: [usize; 2] = [20, 200];
+
+redundant_backend!(Generated, "generated", overact_compiled::DualV);
+redundant_backend!(Kept123, "compiled 123", partitions::kept_123::DualV);
+redundant_backend!(Kept124, "compiled 124", partitions::kept_124::DualV);
+redundant_backend!(Kept134, "compiled 134", partitions::kept_134::DualV);
+redundant_backend!(Kept234, "compiled 234", partitions::kept_234::DualV);
+
+/// Whether a family depends on the partition of the actuators.
+fn is_partitioned(family: Family) -> bool {
+    matches!(
+        family,
+        Family::IdmRedActuators(_)
+            | Family::IdmRedPayloadActuators
+            | Family::ProjectActuators
+            | Family::InverseDynamicsPreloaded
+            | Family::NullSpace
+    )
+}
+
+/// Compares all functions of the families; joints are equal but for whole turns.
+fn agree(
+    mechanism: &Mechanism,
+    kept: &[usize],
+    backend: Option<&dyn Backend>,
+    partitions: bool,
+    is_chosen: impl Fn(Family) -> bool,
+) -> Result<(), Failure> {
+    let mut robot = dualv()?.mechanism.clone();
+    robot.kept_actuators = kept.to_vec();
+    let model = model_with(robot, &Request::default()).map_err(|e| format!("{e:?}"))?;
+    let evaluated = Evaluated(&model);
+    let expected = Expected::new(&model, mechanism.clone())?;
+    let all = samples(
+        mechanism,
+        &expected.parameters(),
+        by_tier(STATES),
+        41,
+        partitions,
+    )?;
+    let mut backends: Vec<&dyn Backend> = vec![&evaluated];
+    backends.extend(backend);
+    let mut failures = Vec::new();
+    for function in model.functions.iter().filter(|f| is_chosen(f.family)) {
+        let mut found = vec![Agreement::new(); backends.len()];
+        for sample in &all {
+            let wanted = expected.output(function.family, function.from, sample)?;
+            for (backend, agreement) in backends.iter().zip(&mut found) {
+                let mut output = backend.call(&function.name, sample)?;
+                if matches!(function.family, Family::Joints | Family::ActuatorPositions) {
+                    output.zip_apply(&wanted, |q, wanted| *q = unwound(*q, wanted));
+                }
+                agreement.compare(&output, &wanted);
+            }
+        }
+        for (backend, agreement) in backends.iter().zip(&found) {
+            let line = format!("{} ({}): {agreement}", function.name, backend.label());
+            println!("{line}");
+            if !agreement.within(TOLERANCE) {
+                failures.push(line);
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    Ok(())
+}
+
+fn case_1(is_chosen: impl Fn(Family) -> bool) -> Result<(), Failure> {
+    let chosen = |family| is_chosen(family) && !is_partitioned(family);
+    agree(
+        &robots::dualv(),
+        &[0, 1, 2],
+        Some(&Generated),
+        false,
+        chosen,
+    )
+}
+
+#[test]
+fn kinematics_and_jacobians_agree() -> Result<(), Failure> {
+    case_1(|family| {
+        matches!(
+            family,
+            Family::Joints
+                | Family::ActuatorPositions
+                | Family::InverseJacobian
+                | Family::Jacobian
+                | Family::ClosurePlatformJacobian
+                | Family::ClosureActuatorJacobian
+                | Family::LegsJacobian
+                | Family::LegsPlatformJacobian
+        )
+    })
+}
+
+#[test]
+fn rates_agree() -> Result<(), Failure> {
+    case_1(|family| {
+        matches!(
+            family,
+            Family::JointVelocities
+                | Family::JointAccelerations
+                | Family::TwistFromActuators
+                | Family::AccelerationFromActuators
+        )
+    })
+}
+
+#[test]
+fn case_1_regressors_agree() -> Result<(), Failure> {
+    case_1(|family| matches!(family, Family::IdmRedPlatform(_) | Family::IdmRedPayload))
+}
+
+#[test]
+fn dynamics_agree() -> Result<(), Failure> {
+    case_1(|family| {
+        matches!(
+            family,
+            Family::ProjectPlatform
+                | Family::InverseDynamics
+                | Family::MassMatrix
+                | Family::Bias
+                | Family::ProjectTorques
+        )
+    })
+}
+
+#[test]
+fn generated_partition_agrees() -> Result<(), Failure> {
+    agree(
+        &robots::dualv(),
+        &[0, 1, 2],
+        Some(&Generated),
+        true,
+        is_partitioned,
+    )
+}
+
+#[test]
+fn every_partition_agrees() -> Result<(), Failure> {
+    let partitions: [([usize; 3], &dyn Backend); 4] = [
+        ([0, 1, 2], &Kept123),
+        ([0, 1, 3], &Kept124),
+        ([0, 2, 3], &Kept134),
+        ([1, 2, 3], &Kept234),
+    ];
+    for (kept, backend) in partitions {
+        println!("kept {kept:?}");
+        agree(&robots::dualv(), &kept, Some(backend), true, is_partitioned)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn all_functions_are_compared() -> Result<(), Failure> {
+    let model = dualv()?;
+    let expected = Expected::new(model, robots::dualv())?;
+    let all: Vec<Sample> = samples(&robots::dualv(), &expected.parameters(), 1, 41, true)?;
+    for function in &model.functions {
+        for backend in [&Evaluated(model) as &dyn Backend, &Generated, &Kept123] {
+            backend.call(&function.name, &all[0])?;
+        }
+        expected.output(function.family, function.from, &all[0])?;
+    }
+    Ok(())
+}
+
+#[test]
+fn joints_of_the_model_close_the_reference() -> Result<(), Failure> {
+    let mechanism = robots::dualv();
+    let expected = Expected::new(dualv()?, mechanism.clone())?;
+    for sample in samples(
+        &mechanism,
+        &expected.parameters(),
+        by_tier(STATES),
+        43,
+        false,
+    )? {
+        let joints = Generated.call("joints", &sample)?;
+        let state = with_joints_of_model(&mechanism, &sample.state, joints.as_slice(), TOLERANCE)?;
+        let gap = (&state.q - joints.column(0)).amax();
+        assert!(gap < TOLERANCE, "{gap:e}");
+    }
+    Ok(())
+}

@@ -1,0 +1,9 @@
+//! The DualV, the paper's robot, in every way that there is to have it: against the numeric reference,
+//! against motion, in blocks, its base parameters, its four partitions.
+
+mod agreement;
+mod blocks;
+mod description;
+mod motion;
+mod ranks;
+mod three_ways;

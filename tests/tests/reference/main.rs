@@ -1,0 +1,8 @@
+//! The numeric reference itself, against the paper's formulas, finite differences and Lagrange's equations.
+
+mod dualv;
+mod dynamics;
+mod errors;
+mod kinematics;
+mod lagrange;
+mod ranks;

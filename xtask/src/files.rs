@@ -1,0 +1,53 @@
+//! Files and folders of the repository.
+
+use crate::Failure;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A file or folder by its path from the repository's root.
+pub(crate) fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// A file's text; errors name the file.
+pub(crate) fn read(path: &str) -> Result<String, Failure> {
+    fs::read_to_string(repository(path)).map_err(|error| format!("{path}: {error}").into())
+}
+
+/// Writes a file and the folders that it lies in.
+pub(crate) fn write(path: &str, text: &str) -> Result<(), Failure> {
+    let file = repository(path);
+    let folder = file.parent().map_or(Ok(()), fs::create_dir_all);
+    let written = folder.and_then(|()| fs::write(&file, text));
+    written.map_err(|error| format!("{path}: {error}"))?;
+    println!("{path}: written");
+    Ok(())
+}
+
+/// Stems of the files of a folder that have an extension, sorted.
+pub(crate) fn stems(folder: &str, extension: &str) -> Result<Vec<String>, Failure> {
+    let mut stems = Vec::new();
+    let entries = fs::read_dir(repository(folder)).map_err(|error| format!("{folder}: {error}"))?;
+    for entry in entries {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == extension) {
+            let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+            stems.extend(stem);
+        }
+    }
+    stems.sort();
+    Ok(stems)
+}
+
+/// Bytes of all files below a folder.
+pub(crate) fn size(folder: &Path) -> Result<u64, Failure> {
+    let mut bytes = 0;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        bytes += match entry.file_type()?.is_dir() {
+            true => size(&entry.path())?,
+            false => entry.metadata()?.len(),
+        };
+    }
+    Ok(bytes)
+}

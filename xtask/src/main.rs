@@ -1,0 +1,47 @@
+//! The chores of this repository: `cargo xtask TASK`.
+
+mod files;
+mod freshness;
+mod generated;
+mod licence;
+mod manifest;
+mod metadata;
+mod release;
+mod robots;
+mod times;
+
+use std::process::ExitCode;
+
+/// What a task may fail with.
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+const HELP: &str = "\
+cargo xtask generated           write generated/: five robots as text, all in the manifest
+cargo xtask generated ROBOT...  write robots/ROBOT.toml as target/generated/ROBOT.rs, to read
+cargo xtask freshness           fail unless generated/ is what the generator writes
+cargo xtask release             versions, licences and Rust versions of all packages
+cargo xtask times [SECONDS]     processor time of each test binary; fail if all take more";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments[..] {
+        ["generated"] => generated::write_all(),
+        ["generated", ref robots @ ..] => generated::write_to_read(robots),
+        ["freshness"] => freshness::check(),
+        ["release"] => release::check(),
+        ["times"] => times::table(None),
+        ["times", seconds] => times::table(Some(seconds)),
+        _ => {
+            eprintln!("{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! What cargo knows of the workspace's packages and of those that they depend on.
+
+use crate::Failure;
+use crate::files::repository;
+use serde_json::Value;
+use std::process::Command;
+
+/// A package of the workspace or below it.
+pub(crate) struct Package {
+    pub(crate) name: String,
+    pub(crate) version: String,
+    /// The licence expression of its manifest.
+    pub(crate) licence: Option<String>,
+    /// The oldest Rust that it says it builds with.
+    pub(crate) rust_version: Option<String>,
+    /// Whether it belongs to the workspace.
+    pub(crate) is_member: bool,
+    /// Whether it is meant for a registry.
+    pub(crate) is_published: bool,
+    pub(crate) description: Option<String>,
+    /// What it requires of packages of the workspace, by name; development alone left out.
+    pub(crate) siblings: Vec<(String, String)>,
+}
+
+/// Runs cargo and returns its standard output.
+pub(crate) fn cargo(arguments: &[&str]) -> Result<String, Failure> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(arguments).current_dir(repository(""));
+    let output = command.stderr(std::process::Stdio::inherit()).output()?;
+    if !output.status.success() {
+        return Err(format!("`cargo {}` failed", arguments.join(" ")).into());
+    }
+    Ok(String::from_utf8(output.stdout)?)
+}
+
+/// All packages, each once.
+pub(crate) fn packages() -> Result<Vec<Package>, Failure> {
+    let text = cargo(&["metadata", "--format-version", "1", "--locked"])?;
+    let document: Value = serde_json::from_str(&text)?;
+    let members = list(&document["workspace_members"]);
+    let packages = list(&document["packages"]).iter();
+    Ok(packages.map(|one| package(one, members)).collect())
+}
+
+fn package(one: &Value, members: &[Value]) -> Package {
+    let text = |key: &str| one[key].as_str().map(str::to_owned);
+    let siblings = list(&one["dependencies"]).iter().filter_map(|dependency| {
+        let is_kept = dependency["path"].is_string() && dependency["kind"] != "dev";
+        let name = dependency["name"].as_str()?.to_owned();
+        is_kept.then(|| {
+            (
+                name,
+                dependency["req"].as_str().unwrap_or_default().to_owned(),
+            )
+        })
+    });
+    Package {
+        name: text("name").unwrap_or_default(),
+        version: text("version").unwrap_or_default(),
+        licence: text("license"),
+        rust_version: text("rust_version"),
+        is_member: members.contains(&one["id"]),
+        is_published: one["publish"].is_null(),
+        description: text("description"),
+        siblings: siblings.collect(),
+    }
+}
+
+/// A list of a document, empty where there is none.
+pub(crate) fn list(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}

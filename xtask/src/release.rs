@@ -1,0 +1,168 @@
+//! What has to hold of the packages before they are published.
+
+use crate::Failure;
+use crate::files::read;
+use crate::licence::is_permitted;
+use crate::metadata::{Package, packages};
+
+/// Checks versions, licences and Rust versions; everything that is wrong is named.
+pub(crate) fn check() -> Result<(), Failure> {
+    let packages = packages()?;
+    let mut problems = versions(&packages, &read("CHANGELOG.md")?);
+    problems.extend(licences(&packages));
+    problems.extend(rust_versions(&packages));
+    if problems.is_empty() {
+        println!(
+            "{} packages: versions, licences and Rust versions are sound",
+            packages.len()
+        );
+        return Ok(());
+    }
+    Err(problems.join("\n").into())
+}
+
+/// Published packages have one version, which the changelog knows, and what a registry asks for; they
+/// depend on nothing that is not published.
+fn versions(packages: &[Package], changelog: &str) -> Vec<String> {
+    let published: Vec<&Package> = packages
+        .iter()
+        .filter(|p| p.is_member && p.is_published)
+        .collect();
+    let Some(first) = published.first() else {
+        return vec!["no package is published".to_owned()];
+    };
+    let mut problems = Vec::new();
+    let sections = ["## Unreleased".to_owned(), format!("## {}", first.version)];
+    if !changelog
+        .lines()
+        .any(|line| sections.contains(&line.trim_end().to_owned()))
+    {
+        problems.push(format!("CHANGELOG.md: no section `## {}`", first.version));
+    }
+    for package in &published {
+        let Package { name, version, .. } = package;
+        if *version != first.version {
+            problems.push(format!("{name}: version {version}, not {}", first.version));
+        }
+        if package.description.is_none() || package.licence.is_none() {
+            problems.push(format!("{name}: a description and a licence are needed"));
+        }
+        for (sibling, requirement) in &package.siblings {
+            if !published.iter().any(|p| p.name == *sibling) {
+                problems.push(format!(
+                    "{name}: depends on {sibling}, which is not published"
+                ));
+            }
+            if *requirement != format!("^{}", first.version) {
+                problems.push(format!("{name}: asks for {sibling} {requirement}"));
+            }
+        }
+    }
+    problems
+}
+
+/// Every dependency can be had under a licence that agrees with ours.
+fn licences(packages: &[Package]) -> Vec<String> {
+    let is_bad = |p: &&Package| !p.licence.as_deref().is_some_and(is_permitted);
+    let problem = |p: &Package| {
+        let licence = p.licence.as_deref().unwrap_or("none");
+        format!("{} {}: licence {licence}", p.name, p.version)
+    };
+    packages.iter().filter(is_bad).map(problem).collect()
+}
+
+/// No dependency asks for a newer Rust than the workspace promises to build with.
+fn rust_versions(packages: &[Package]) -> Vec<String> {
+    let own = packages.iter().find(|p| p.is_member);
+    let Some(promised) = own.and_then(|p| p.rust_version.as_deref()) else {
+        return vec!["the workspace has no rust-version".to_owned()];
+    };
+    let problem = |p: &Package| {
+        let asked = p.rust_version.as_deref()?;
+        (number(asked) > number(promised)).then(|| {
+            format!(
+                "{} {}: needs Rust {asked}, promised is {promised}",
+                p.name, p.version
+            )
+        })
+    };
+    packages.iter().filter_map(problem).collect()
+}
+
+/// A version's parts; missing ones are zero.
+fn number(version: &str) -> [u64; 3] {
+    let mut parts = version.split('.').map(|part| part.parse().unwrap_or(0));
+    std::array::from_fn(|_| parts.next().unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{licences, rust_versions, versions};
+    use crate::metadata::Package;
+
+    fn package(name: &str) -> Package {
+        Package {
+            name: name.to_owned(),
+            version: "1.2.0".to_owned(),
+            licence: Some("MIT".to_owned()),
+            rust_version: Some("1.89".to_owned()),
+            is_member: true,
+            is_published: true,
+            description: Some("a package".to_owned()),
+            siblings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn sound_packages_have_no_problem() {
+        let upper = Package {
+            siblings: vec![("lower".to_owned(), "^1.2.0".to_owned())],
+            ..package("upper")
+        };
+        let packages = [package("lower"), upper];
+        assert!(versions(&packages, "## 1.2.0\n").is_empty());
+        assert!(licences(&packages).is_empty());
+        assert!(rust_versions(&packages).is_empty());
+    }
+
+    #[test]
+    fn every_problem_is_named() {
+        let old = Package {
+            version: "1.1.0".to_owned(),
+            description: None,
+            ..package("old")
+        };
+        let private = Package {
+            is_published: false,
+            ..package("private")
+        };
+        let upper = Package {
+            siblings: vec![("private".to_owned(), "^1.1.0".to_owned())],
+            ..package("upper")
+        };
+        let found = versions(&[package("lower"), old, private, upper], "## 1.1.0\n");
+        assert_eq!(
+            found,
+            [
+                "CHANGELOG.md: no section `## 1.2.0`",
+                "old: version 1.1.0, not 1.2.0",
+                "old: a description and a licence are needed",
+                "upper: depends on private, which is not published",
+                "upper: asks for private ^1.1.0",
+            ]
+        );
+        let strange = Package {
+            licence: Some("GPL-3.0".to_owned()),
+            ..package("strange")
+        };
+        assert_eq!(licences(&[strange]), ["strange 1.2.0: licence GPL-3.0"]);
+        let newer = Package {
+            rust_version: Some("1.90.1".to_owned()),
+            ..package("newer")
+        };
+        assert_eq!(
+            rust_versions(&[package("own"), newer]),
+            ["newer 1.2.0: needs Rust 1.90.1, promised is 1.89"]
+        );
+    }
+}

@@ -1,0 +1,83 @@
+//! The robots of `robots/` as the generator writes them.
+
+use crate::Failure;
+use crate::files::{read, stems};
+use overact_codegen::{Effort, Request, Source, compile_with, emission};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The robots that `generated/` holds as text, because people read and compare them.
+pub(crate) const TEXT: [&str; 5] = ["dualv", "emps", "five_bar", "rx90", "three_leg_point"];
+
+/// A robot's module and what its functions cost.
+pub(crate) struct Module {
+    /// Name of the description without its extension, and of the module.
+    pub(crate) stem: String,
+    /// The source file.
+    pub(crate) text: String,
+    /// Name and cost of each function.
+    pub(crate) functions: Vec<(String, Cost)>,
+}
+
+/// What a function takes, as the manifest shows it.
+pub(crate) struct Cost {
+    pub(crate) operations: usize,
+    pub(crate) square_roots: usize,
+    pub(crate) trigonometric_pairs: usize,
+}
+
+/// All robots' modules in the order of their names, generated on all processors.
+pub(crate) fn all() -> Result<Vec<Module>, Failure> {
+    several(&stems("robots", "toml")?)
+}
+
+/// Modules of some robots, in the order asked for. Work is handed out from a queue; a module does not
+/// depend on which thread writes it.
+pub(crate) fn several(stems: &[String]) -> Result<Vec<Module>, Failure> {
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    let work = || {
+        while let Some(stem) = stems.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let module = module(stem).map_err(|failure| failure.to_string());
+            done.lock()
+                .unwrap_or_else(|e| e.into_inner())
+                .push((stem, module));
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(work);
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_else(|e| e.into_inner());
+    done.sort_by_key(|(stem, _)| stems.iter().position(|s| s == *stem));
+    done.into_iter().map(|(_, module)| Ok(module?)).collect()
+}
+
+/// The module of a robot, with all operations searched unless its description says otherwise.
+fn module(stem: &str) -> Result<Module, Failure> {
+    let name = format!("robots/{stem}.toml");
+    let source = Source::new(name.as_str(), read(&name)?);
+    let request = Request {
+        otherwise: Effort::Thorough,
+        ..Request::default()
+    };
+    let compiled =
+        compile_with(&source, &request).map_err(|errors| errors.render_plain(&source))?;
+    let model = compiled.model;
+    let functions = model.functions.iter().map(|function| {
+        let cost = function.program.cost();
+        let cost = Cost {
+            operations: cost.operations(),
+            square_roots: cost.square_roots,
+            trigonometric_pairs: cost.trigonometric_pairs,
+        };
+        (function.name.clone(), cost)
+    });
+    Ok(Module {
+        stem: stem.to_owned(),
+        functions: functions.collect(),
+        text: emission::file(&model, &name),
+    })
+}
