@@ -8,6 +8,7 @@ use overact_codegen::derivation::{Columns, Family, MotionInput};
 use overact_codegen::mechanism::{JointKind, Mechanism, StandardParameter};
 use overact_codegen::{Effort, Request, Source, description, mechanism, model_with};
 use overact_tests::support::{Failure, repository};
+use overact_tier::by_tier;
 use std::fmt::Write as _;
 use std::fs;
 
@@ -106,13 +107,17 @@ fn no_other_tool_takes_fewer_operations() -> Result<(), Failure> {
 #[test]
 fn quick_search_is_within_five_percent_of_the_thorough_one() -> Result<(), Failure> {
     let mut table = String::new();
-    for work in &WORKS {
+    // A thorough search of all takes most of a minute; the default tier searches four small works.
+    let works = by_tier([&WORKS[6..10], &WORKS[..]]);
+    for work in works {
         let (_, quick) = line(work, Effort::Quick)?;
         let (line, operations) = line(work, Effort::Thorough)?;
         assert!(operations <= quick, "{line}");
         assert!(100 * quick <= 105 * operations, "quick {quick}; {line}");
         writeln!(table, "{line}")?;
     }
-    insta::assert_snapshot!(table);
+    if works.len() == WORKS.len() {
+        insta::assert_snapshot!(table);
+    }
     Ok(())
 }
