@@ -31,6 +31,7 @@ const HOUSES: [House; 6] = [
             "model",
             "request",
             "checked",
+            "checked",
             "compile",
             "emission",
             "internals",
