@@ -2,10 +2,15 @@
 
 mod fingerprint;
 mod placeholders;
+mod symbols;
+
+pub(crate) use fingerprint::Fingerprint;
+pub use symbols::InputElement;
+use symbols::Symbol;
 
 use super::direction::{Direction, SymbolId};
 use super::expr::Expr;
-use super::field::{Element, mix, mix_name};
+use super::field::{Element, canonical};
 use super::number::Number;
 use super::ratio::Ratio;
 use super::sample::Sample;
@@ -65,13 +70,6 @@ pub enum Op {
 /// The two random points of the field and the real point at which every node is evaluated.
 const POINTS: usize = 2;
 
-/// What a node evaluates to at these points.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fingerprint {
-    pub(crate) image: [Element; POINTS],
-    pub(crate) sample: Sample,
-}
-
 #[derive(Debug)]
 struct Node {
     op: Op,
@@ -79,14 +77,6 @@ struct Node {
     scope: u32,
     /// The set of placeholders that it is written with.
     placeholders: u32,
-}
-
-#[derive(Debug)]
-struct Symbol {
-    name: String,
-    circle: [Element; POINTS],
-    sample: f64,
-    is_placeholder: bool,
 }
 
 #[derive(Debug, Default)]
@@ -157,13 +147,6 @@ impl Arena {
         tables.scope = at as u32;
     }
 
-    /// The heading of a node.
-    #[must_use]
-    pub fn scope(&self, index: usize) -> String {
-        let tables = self.tables.borrow();
-        tables.scopes[tables.nodes[index].scope as usize].clone()
-    }
-
     /// Gives a node a name, if it has none and is worth one (constants and inputs are not).
     pub fn name(&self, expr: Expr<'_>, name: &str) {
         let mut tables = self.tables.borrow_mut();
@@ -195,9 +178,19 @@ impl Arena {
         self.tables.borrow().nodes[index].scope
     }
 
-    /// The heading of that number.
-    pub(crate) fn scope_name(&self, scope: u32) -> String {
-        self.tables.borrow().scopes[scope as usize].clone()
+    /// Number of angles of the graph.
+    pub(crate) fn direction_count(&self) -> u32 {
+        self.tables.borrow().directions.len() as u32
+    }
+
+    /// What cosine and sine of an angle evaluate to.
+    pub(crate) fn turn_fingerprints(&self, id: u32) -> (Fingerprint, Fingerprint) {
+        self.tables.borrow().cosine_and_sine(id)
+    }
+
+    /// The names of all headings.
+    pub(crate) fn scope_names(&self) -> Vec<String> {
+        self.tables.borrow().scopes.clone()
     }
 
     /// A constant of the graph.
@@ -210,57 +203,6 @@ impl Arena {
     #[must_use]
     pub fn direction_at(&self, id: u32) -> Direction {
         self.tables.borrow().directions[id as usize].clone()
-    }
-
-    /// Name of a symbol.
-    #[must_use]
-    pub fn symbol_name(&self, id: SymbolId) -> String {
-        self.tables.borrow().symbols[id.0 as usize].name.clone()
-    }
-
-    /// All symbols.
-    pub fn symbols(&self) -> impl Iterator<Item = SymbolId> + use<> {
-        (0..self.tables.borrow().symbols.len() as u32).map(SymbolId)
-    }
-
-    /// The symbol of that name, made if it is new. It may stand for a number and, in a
-    /// [`Direction`], for an angle.
-    pub fn symbol(&self, name: &str) -> SymbolId {
-        self.symbol_of_kind(name, false)
-    }
-
-    fn symbol_of_kind(&self, name: &str, is_placeholder: bool) -> SymbolId {
-        let mut tables = self.tables.borrow_mut();
-        if let Some(&id) = tables.symbol_ids.get(name) {
-            return id;
-        }
-        let id = SymbolId(tables.symbols.len() as u32);
-        let seed = mix_name(name);
-        let circle = std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11))));
-        // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
-        let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
-        tables.symbols.push(Symbol {
-            name: name.to_owned(),
-            circle,
-            sample,
-            is_placeholder,
-        });
-        tables.symbol_ids.insert(name.to_owned(), id);
-        id
-    }
-
-    /// The value of a symbol as an expression.
-    pub fn variable(&self, name: &str) -> Expr<'_> {
-        let id = self.symbol(name);
-        self.expr(self.intern(Op::Symbol(id)))
-    }
-
-    /// The value of a symbol that stands for something unknown while equations are searched. Where it
-    /// cancels, the expression means the same as one without it, but is still written with it; such a
-    /// node is never taken for an expression that is written without it.
-    pub fn placeholder(&self, name: &str) -> Expr<'_> {
-        let id = self.symbol_of_kind(name, true);
-        self.expr(self.intern(Op::Symbol(id)))
     }
 
     /// A constant as an expression.
@@ -452,16 +394,6 @@ impl Arena {
             }
         }
         Handle::new(index, false)
-    }
-}
-
-/// The smaller of a value and its negative, and whether it is the negative.
-fn canonical(image: [Element; POINTS]) -> ([Element; POINTS], bool) {
-    let negative = image.map(|e| -e);
-    if negative < image {
-        (negative, true)
-    } else {
-        (image, false)
     }
 }
 

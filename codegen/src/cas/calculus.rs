@@ -200,7 +200,7 @@ impl<'b> Substitution<'b> {
             Op::Constant(id) => self.arena.number(from.constant_at(id)),
             Op::Symbol(id) => match self.values.get(&id) {
                 Some(&by) => by,
-                None => self.arena.variable(&from.symbol_name(id)),
+                None => self.arena.value_of(self.arena.symbol_like(from, id)),
             },
             Op::Cosine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).0,
             Op::Sine(id) => self.arena.cosine_and_sine(&self.turn(from, id)).1,
@@ -223,7 +223,7 @@ impl<'b> Substitution<'b> {
             .terms()
             .iter()
             .fold(start, |sum, &(symbol, factor)| {
-                let angle = self.arena.angle(&from.symbol_name(symbol));
+                let angle = Direction::symbol(self.arena.symbol_like(from, symbol));
                 let part = angle.times(factor).and_then(|angle| sum.plus(&angle));
                 part.unwrap_or(sum)
             })

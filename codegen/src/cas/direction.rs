@@ -7,6 +7,14 @@ use super::ratio::Ratio;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SymbolId(pub(crate) u32);
 
+impl SymbolId {
+    /// Its number, counted from zero.
+    #[must_use]
+    pub const fn number(self) -> usize {
+        self.0 as usize
+    }
+}
+
 /// The direction of an angle Σ factor × symbol + constant.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Direction {

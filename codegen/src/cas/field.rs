@@ -364,6 +364,18 @@ impl Mul for Element {
     }
 }
 
+/// The smaller of a value and its negative, and whether it is the negative; of the values at several
+/// points, which change their signs together, the first ones decide.
+#[must_use]
+pub fn canonical<const POINTS: usize>(value: [Element; POINTS]) -> ([Element; POINTS], bool) {
+    let negative = value.map(|element| -element);
+    if negative < value {
+        (negative, true)
+    } else {
+        (value, false)
+    }
+}
+
 /// Sixty-four well-mixed bits from a seed (SplitMix64's finaliser), the source of all random points.
 #[must_use]
 pub fn mix(seed: u64) -> u64 {

@@ -28,7 +28,7 @@ pub mod stream;
 pub mod vector;
 
 pub use angle::Angle;
-pub use arena::Arena;
+pub use arena::{Arena, InputElement};
 pub use calculus::Substitution;
 pub use direction::{Direction, SymbolId};
 pub use expr::Expr;

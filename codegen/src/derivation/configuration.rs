@@ -5,9 +5,12 @@
 //! of the leg follows by the addition theorem.
 
 use super::motion_input::MotionInput;
-use crate::cas::{Arena, Direction, Expr, Number, Ratio};
+use crate::cas::{Arena, Direction, Expr, Number, Ratio, SymbolId};
 use crate::mechanism::Mechanism;
 use std::cell::RefCell;
+
+/// The input array of all joints.
+const JOINTS: &str = "joints";
 
 /// Cosine and sine of an angle.
 pub type Unit<'a> = (Expr<'a>, Expr<'a>);
@@ -79,23 +82,17 @@ impl<'a> Configuration<'a> {
         Some(unknown)
     }
 
-    /// The input that holds joint `index` of q_t.
-    #[must_use]
-    pub fn joint_symbol(index: usize) -> String {
-        format!("joints[{index}]")
-    }
-
     /// The angle of a revolute joint.
     #[must_use]
     pub fn joint_angle(&self, index: usize) -> Direction {
-        self.arena.angle(&Self::joint_symbol(index))
+        self.arena.input_angle(JOINTS, index)
     }
 
     /// The position of a prismatic joint, m; `None` if it is not known from the pose.
     #[must_use]
     pub fn joint_position(&self, index: usize) -> Option<Expr<'a>> {
         match self.from {
-            MotionInput::Joints => Some(self.arena.variable(&Self::joint_symbol(index))),
+            MotionInput::Joints => Some(self.arena.input(JOINTS, index)),
             MotionInput::Pose | MotionInput::Actuators => {
                 let known = self.positions.iter().find(|(at, _)| *at == index);
                 let asked = || Some(self.ask(Unknown::Slide(index))?.slide(self.arena));
@@ -146,12 +143,18 @@ impl<'a> Configuration<'a> {
         Some((cosine, if is_negative { -sine } else { sine }))
     }
 
+    /// The joint of q_t that a symbol is the position of.
+    fn joint(&self, symbol: SymbolId) -> Option<usize> {
+        let element = self.arena.input_element(symbol)?;
+        (element.array == JOINTS).then_some(element.index)
+    }
+
     /// Whether the angle holds no joint.
     fn is_input(&self, angle: &Direction) -> bool {
         angle
             .terms()
             .iter()
-            .all(|(symbol, _)| !self.arena.symbol_name(*symbol).starts_with("joints["))
+            .all(|(symbol, _)| self.joint(*symbol).is_none())
     }
 
     /// The angle as a known one plus or minus another, plus a constant.
@@ -199,17 +202,10 @@ impl<'a> Configuration<'a> {
         let mut leg: Option<&str> = None;
         let mut label = String::new();
         for (symbol, factor) in angle.terms() {
-            let name = self.arena.symbol_name(*symbol);
             if *factor != Ratio::ONE {
                 return;
             }
-            let index = name
-                .strip_prefix("joints[")
-                .and_then(|n| n.strip_suffix(']'));
-            match index
-                .and_then(|i| i.parse::<usize>().ok())
-                .and_then(|i| self.names.get(i))
-            {
+            match self.joint(*symbol).and_then(|i| self.names.get(i)) {
                 Some((of, joint)) => {
                     leg = Some(of);
                     label += joint;

@@ -74,8 +74,7 @@ pub fn closed_form<'a>(arena: &'a Arena, mechanism: &'a Mechanism) -> Option<Clo
 }
 
 impl<'a> Work<'a> {
-    /// A platform point's coordinates as unknowns. Their name makes every equation that holds them
-    /// one that no joint is solved from.
+    /// A platform point's coordinates as unknowns: no joint is solved from an equation that holds them.
     fn unknown_point(self) -> Vector3<'a> {
         let coordinate = |axis: usize| {
             if self.free[axis] {
@@ -133,11 +132,12 @@ impl<'a> Work<'a> {
             if joints[index].leg != leg {
                 continue;
             }
-            let input = format!("actuators[{k}]");
             if self.mechanism.joint(joints[index]).kind == JointKind::Prismatic {
-                configuration.learn_position(index, self.arena.variable(&input));
+                configuration.learn_position(index, self.arena.input("actuators", k));
             } else {
-                let unit = self.arena.cosine_and_sine(&self.arena.angle(&input));
+                let unit = self
+                    .arena
+                    .cosine_and_sine(&self.arena.input_angle("actuators", k));
                 configuration.learn(configuration.joint_angle(index), unit);
             }
         }
@@ -170,8 +170,7 @@ impl<'a> Work<'a> {
         let point = self.unknown_point();
         let coordinates: Vec<Expr<'a>> = point.0.into_iter().filter(|x| !x.is_zero()).collect();
         let symbols: Vec<SymbolId> = coordinates.iter().flat_map(|x| x.symbols()).collect();
-        let is_own =
-            |id: &SymbolId| symbols.contains(id) || !arena.symbol_name(*id).contains("unknown");
+        let is_own = |id: &SymbolId| symbols.contains(id) || !arena.is_placeholder(*id);
         if !equation.symbols().iter().all(is_own) {
             return None;
         }

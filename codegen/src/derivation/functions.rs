@@ -255,7 +255,7 @@ impl<'a> Sheet<'a, '_> {
         let configuration = &self.robot.configuration;
         let position = |(index, of): (usize, &crate::mechanism::JointIndex)| {
             if mechanism.platform.is_none() || configuration.from() == MotionInput::Joints {
-                return arena.variable(&format!("joints[{index}]"));
+                return arena.input("joints", index);
             }
             if mechanism.joint(*of).kind == JointKind::Prismatic {
                 return configuration
@@ -476,9 +476,8 @@ impl<'a> Sheet<'a, '_> {
         let acceleration = self.robot.inputs("acceleration", dof);
         let twist = self.zeros();
         let forces = self.projected_dynamics(&twist, &acceleration);
-        let derivative = |force: &Expr<'a>, i: usize| {
-            force.derivative(arena.symbol(&format!("acceleration[{i}]")))
-        };
+        let derivative =
+            |force: &Expr<'a>, i: usize| force.derivative(arena.input_symbol("acceleration", i));
         forces
             .iter()
             .map(|f| (0..dof).map(|i| derivative(f, i)).collect())

@@ -36,7 +36,7 @@ impl<'a> PlatformPose<'a> {
     pub fn new(arena: &'a Arena, motion: Motion) -> Self {
         let zero = arena.zero();
         let count = motion.pose_coordinates().len();
-        let input = |i: usize| arena.variable(&format!("pose[{i}]"));
+        let input = |i: usize| arena.input("pose", i);
         let mut origin = [zero; 3];
         for (i, coordinate) in motion.twist().iter().enumerate() {
             if let TwistCoordinate::Linear(axis) = coordinate {
@@ -45,7 +45,7 @@ impl<'a> PlatformPose<'a> {
         }
         let mut rotation = Matrix3::identity(arena);
         if let Some(axis) = motion.rotation_axis() {
-            let phi = arena.angle(&format!("pose[{}]", count - 1));
+            let phi = arena.input_angle("pose", count - 1);
             let (cosine, sine) = arena.cosine_and_sine(&phi);
             rotation = Matrix3::rotation(axis, cosine.named("c_phi"), sine.named("s_phi"));
         } else if motion.has_quaternion() {

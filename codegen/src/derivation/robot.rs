@@ -201,10 +201,8 @@ impl<'a> Robot<'a> {
 
     /// Inputs `name[0]`, `name[1]`, … as expressions.
     #[must_use]
-    pub fn inputs(&self, name: &str, count: usize) -> Vec<Expr<'a>> {
-        (0..count)
-            .map(|i| self.arena.variable(&format!("{name}[{i}]")))
-            .collect()
+    pub fn inputs(&self, name: &'static str, count: usize) -> Vec<Expr<'a>> {
+        (0..count).map(|i| self.arena.input(name, i)).collect()
     }
 
     /// Velocities and accelerations of all legs and bodies.

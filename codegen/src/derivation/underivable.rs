@@ -1,7 +1,7 @@
 //! Why a function of a robot cannot be derived.
 
 use crate::description::Description;
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics, InternalError};
 
 /// Why a model cannot be derived in the wanted form.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,6 +21,14 @@ pub enum Underivable {
     },
     /// The Jacobian of the kept actuators has no structural inverse.
     SingularPartition,
+    /// A bug of the generator.
+    Internal(InternalError),
+}
+
+impl From<InternalError> for Underivable {
+    fn from(error: InternalError) -> Self {
+        Self::Internal(error)
+    }
 }
 
 impl Underivable {
@@ -51,7 +59,38 @@ impl Underivable {
                 description.name.span.clone(),
             )
             .help("choose other `kept_actuators`"),
+            Self::Internal(error) => {
+                return error.clone().of_robot(&description.name.value).into();
+            }
         };
         Diagnostics::from(diagnostic)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnostic::Source;
+
+    #[test]
+    fn an_internal_error_names_robot_version_and_pass_and_asks_for_a_report() {
+        let text = include_str!("../../../robots/emps.toml");
+        let source = Source::new("emps.toml", text);
+        let description = crate::description::parse(&source).expect("a robot");
+        let broken = "node 3 has lost its value".to_owned();
+        let errors = Underivable::from(InternalError::new("walk", broken)).locate(&description);
+        assert!(errors.internal().is_some());
+        let said = errors.render_plain(&source);
+        for part in [
+            &format!("internal error of overact {}", env!("CARGO_PKG_VERSION")),
+            &description.name.value,
+            "`walk`",
+            "node 3 has lost its value",
+            "please report it",
+        ] {
+            assert!(said.contains(part), "no {part} in\n{said}");
+        }
+        let other = Underivable::ForwardKinematics.locate(&description);
+        assert!(other.internal().is_none());
     }
 }

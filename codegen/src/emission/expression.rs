@@ -67,7 +67,7 @@ impl<'p> Body<'p> {
         let mut body = Self {
             program,
             names: vec![None; count],
-            uses: crate::lowering::peephole::uses(program),
+            uses: program.uses(),
             inlined: (0..count).map(|_| None).collect(),
             statements: TokenStream::new(),
             taken,

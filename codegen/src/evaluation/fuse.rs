@@ -1,7 +1,7 @@
 //! The steps of a program as passes over a block, two or three steps at once where a value is used once
 //! or where several steps share an operand.
 
-use crate::lowering::{Operand, Operation, Program, peephole};
+use crate::lowering::{Operand, Operation, Program};
 use std::collections::HashMap;
 
 /// What can be fused.
@@ -209,7 +209,7 @@ impl<'p> Fuse<'p> {
                 kept[at] = true;
             }
         }
-        let uses = peephole::uses(program);
+        let uses = program.uses();
         let mut fused = vec![false; count];
         // From the end, so that a step which is fused into another one takes none into itself.
         for at in (0..count).rev() {

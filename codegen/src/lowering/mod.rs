@@ -1,18 +1,76 @@
 //! From expressions to a straight-line [`Program`].
 //!
-//! The graph is walked from the outputs, so what nothing needs is never seen. Cheaper ways to write its
-//! nodes are searched ([`search`](mod@search)). Angles are planned so that few sines and cosines are
-//! evaluated; products with a sign become selections. The [`Cost`] of a program is counted by one rule,
-//! which the generated documentation and the snapshots quote.
+//! | stage | from | to |
+//! |---|---|---|
+//! | `dag/from_arena` | expressions in their arena | a graph of signed nodes, each with its fingerprint and origin |
+//! | `passes` | that graph | the same values in fewer operations; the list of passes stands there |
+//! | `schedule` | that graph | the [`Program`], operands first |
+//!
+//! What nothing needs is never seen. How far the passes go is said by [`SearchLimits`]. What must hold of a
+//! program is checked once at the end ([`Program::verify`]), and of the graph after every pass in builds
+//! for development: what does not hold is an [`InternalError`](crate::diagnostic::InternalError), a bug of the generator. The
+//! [`Cost`] of a program is counted by one rule, which the generated documentation and the snapshots quote.
+//!
+//! Three evaluators belong to the lowering, each for a reason of its own: fingerprints (in the field, to
+//! find what is equal), the values with random errors at some states (to compare digits), and none of the
+//! program, which [`evaluation`](crate::evaluation) evaluates.
 
-pub mod lower;
-pub mod peephole;
-pub mod program;
-pub mod search;
-pub mod trigonometry;
+mod dag;
+mod limits;
+mod passes;
+mod program;
+mod schedule;
+#[cfg(test)]
+mod tests;
 
-pub use lower::{GuardedExpr, lower};
+pub use dag::rays::States;
+pub use limits::SearchLimits;
 pub use program::{
     Array, Condition, Cost, Entry, Guard, Operand, Operation, Program, SINGULAR, Step,
 };
-pub use search::{Reach, States};
+
+use crate::cas::{Arena, Expr};
+use crate::diagnostic::InternalError;
+
+/// A condition on an expression.
+#[derive(Debug, Clone)]
+pub struct GuardedExpr<'a> {
+    /// The expression.
+    pub value: Expr<'a>,
+    /// The condition.
+    pub condition: Condition,
+}
+
+/// A function as expressions.
+#[derive(Debug)]
+pub struct Expressions<'a> {
+    /// The arrays whose elements the expressions are made of.
+    pub inputs: Vec<Array>,
+    /// The output.
+    pub output: Array,
+    /// The output's numbers, row-major.
+    pub entries: &'a [Expr<'a>],
+    /// Conditions; one is kept if the program divides by its value or takes its root.
+    pub guards: Vec<GuardedExpr<'a>>,
+}
+
+/// Lowers the expressions of one function. Forms are compared at the `states`.
+///
+/// # Errors
+/// A bug of the generator.
+pub fn lower<'a>(
+    arena: &'a Arena,
+    function: &Expressions<'a>,
+    limits: &SearchLimits,
+    states: &States<'_>,
+) -> Result<Program, InternalError> {
+    let mut dag = dag::from_arena::from_arena(arena, function.entries, &function.guards);
+    if limits.replaces {
+        dag.measure_digits(states);
+    }
+    passes::run(&mut dag, limits)?;
+    let program = schedule::schedule(&dag, &function.inputs, &function.output)?;
+    let broken = |broken| InternalError::new("schedule", broken);
+    program.verify().map_err(broken)?;
+    Ok(program)
+}

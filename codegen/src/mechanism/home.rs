@@ -3,7 +3,7 @@
 use super::numeric::{platform_frame, target};
 use super::singular_values::SingularValues;
 use super::{Leg, Mechanism};
-use crate::cas::{Arena, Expr};
+use crate::cas::{Arena, Expr, InputElement};
 use nalgebra::DMatrix;
 
 /// The home configuration.
@@ -29,22 +29,23 @@ impl Home {
         }
     }
 
-    /// The value of an input `pose[i]`, `joints[i]` or `actuators[i]`.
+    /// The value of an element of an input array; rates have none.
     #[must_use]
-    pub fn symbol(&self, name: &str) -> Option<f64> {
-        let index = |prefix: &str| -> Option<usize> {
-            name.strip_prefix(prefix)?.strip_suffix(']')?.parse().ok()
+    pub fn input(&self, element: InputElement) -> Option<f64> {
+        let values = match element.array {
+            "pose" => &self.pose,
+            "joints" => &self.joints,
+            "actuators" => &self.actuators,
+            _ => return None,
         };
-        let of = |prefix: &str, values: &[f64]| index(prefix).and_then(|i| values.get(i).copied());
-        of("joints[", &self.joints)
-            .or_else(|| of("pose[", &self.pose))
-            .or_else(|| of("actuators[", &self.actuators))
+        values.get(element.index).copied()
     }
 
     /// The value of an expression at home, with all rates set to small numbers.
     #[must_use]
     pub fn value<'a>(&self, arena: &'a Arena, expr: Expr<'a>) -> f64 {
-        expr.evaluate(&|symbol| self.symbol(&arena.symbol_name(symbol)).unwrap_or(0.1))
+        let known = |symbol| self.input(arena.input_element(symbol)?);
+        expr.evaluate(&|symbol| known(symbol).unwrap_or(0.1))
     }
 }
 

@@ -25,7 +25,10 @@ impl Assembler<'_> {
     pub fn program(&self, family: Family, from: MotionInput) -> Result<Program, Underivable> {
         let arena = Arena::new();
         let derived = derive(&arena, self.mechanism, self.selection, family, from)?;
-        Ok(self.search.lower(&arena, self.mechanism, family, &derived))
+        let program = self
+            .search
+            .lower(&arena, self.mechanism, family, &derived)?;
+        Ok(program)
     }
 
     /// The function with or without combined columns, whichever needs fewer operations.

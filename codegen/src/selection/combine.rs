@@ -24,7 +24,7 @@ pub(super) fn cheaper_columns(
     regressor: &Regressor,
     exact: &[Combination],
 ) -> Result<Vec<Combination>, Underivable> {
-    let operations = |combined: &[Combination]| {
+    let operations = |combined: &[Combination]| -> Result<usize, Underivable> {
         let trial = Assembler {
             mechanism,
             selection: &Selection {

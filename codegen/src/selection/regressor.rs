@@ -35,7 +35,7 @@ impl Regressor {
         let mut derived = derive(&arena, mechanism, selection, FAMILY, MotionInput::Joints)?;
         let present = derived.present_columns();
         derived.keep_columns(&present);
-        let program = Search::none().lower(&arena, mechanism, FAMILY, &derived);
+        let program = Search::none().lower(&arena, mechanism, FAMILY, &derived)?;
         let width = present.len();
         let column = |c: usize| {
             let entries = derived.entries.iter().skip(c).step_by(width);

@@ -1,13 +1,16 @@
 //! How far the operations of a robot's functions are searched, and the states at which the search compares
 //! the digits of their forms.
 
-use crate::derivation::{Derived, Family};
+use crate::cas::{Arena, InputElement};
+use crate::derivation::{Derived, Family, GuardKind};
+use crate::diagnostic::InternalError;
 use crate::effort::Effort;
-use crate::lowering::{Array, Condition, GuardedExpr, Program, Reach, States, lower};
+use crate::lowering::{
+    Array, Condition, Expressions, GuardedExpr, Program, SearchLimits, States, lower,
+};
 use crate::mechanism::Mechanism;
 use crate::mechanism::states::{Spread, State, spread_states};
 use crate::parallel;
-use crate::{cas::Arena, derivation::GuardKind};
 
 /// States of each kind by which the search compares the digits of forms.
 const STATES: usize = 16;
@@ -16,7 +19,7 @@ const STATES: usize = 16;
 #[derive(Debug, Clone, Default)]
 pub struct Search {
     /// How far cheaper ways to write the functions that matter most are searched.
-    reach: Reach,
+    limits: SearchLimits,
     /// Groups of states at which the digits of forms are compared.
     states: Vec<Vec<State>>,
 }
@@ -32,7 +35,7 @@ impl Search {
     #[must_use]
     pub const fn short() -> Self {
         Self {
-            reach: Reach::Singles,
+            limits: SearchLimits::SINGLE_REPLACEMENTS,
             states: Vec::new(),
         }
     }
@@ -40,55 +43,55 @@ impl Search {
     /// The search that an effort asks for.
     #[must_use]
     pub fn with(effort: Effort, mechanism: &Mechanism) -> Self {
-        let reach = effort.reach();
-        let spreads = match reach {
-            Reach::Nothing => &[][..],
-            _ => &[Spread::NEAR, Spread::FAR],
+        let limits = effort.limits();
+        let spreads = if limits.compares_regular_states {
+            &[Spread::NEAR, Spread::FAR][..]
+        } else {
+            &[]
         };
         let of = |&spread: &Spread| spread_states(mechanism, STATES, 7, spread);
         Self {
-            reach,
+            limits,
             states: parallel::map(spreads, of),
         }
     }
 
     /// The program of a derived function.
-    pub(super) fn lower(
+    pub(super) fn lower<'a>(
         &self,
-        arena: &Arena,
+        arena: &'a Arena,
         mechanism: &Mechanism,
         family: Family,
-        derived: &Derived<'_>,
-    ) -> Program {
-        let reach = self.reach_of(family);
-        // Of single replacements in functions that matter less, only those near singular states are looked at.
-        let compared = match reach {
-            Reach::Nothing | Reach::Singles => &[][..],
-            _ => &self.states,
+        derived: &Derived<'a>,
+    ) -> Result<Program, InternalError> {
+        let limits = self.limits_of(family);
+        let compared = if limits.compares_regular_states {
+            &self.states[..]
+        } else {
+            &[]
         };
-        lower(
-            arena,
-            &inputs(derived),
-            output(family, derived.shape),
-            &derived.entries,
-            &guards(derived),
-            reach,
-            &States {
-                home: &|symbol| at_home(mechanism, symbol),
-                groups: &compared.iter().map(Vec::len).collect::<Vec<_>>(),
-                regular: &|group, number, symbol| {
-                    at_state(mechanism, &compared[group][number], symbol)
-                },
+        let function = Expressions {
+            inputs: inputs(derived),
+            output: output(family, derived.shape),
+            entries: &derived.entries,
+            guards: guards(derived),
+        };
+        let states = States {
+            home: &|element| mechanism.home.input(element),
+            groups: &compared.iter().map(Vec::len).collect::<Vec<_>>(),
+            regular: &|group, number, element| {
+                at_state(mechanism, &compared[group][number], element)
             },
-        )
+        };
+        lower(arena, &function, &limits, &states)
     }
 
     /// How far the search of a function goes: the identification models, which run at every sample of
     /// every log, are searched as far as asked; of the others only the nodes one by one.
-    fn reach_of(&self, family: Family) -> Reach {
+    const fn limits_of(&self, family: Family) -> SearchLimits {
         match family {
-            Family::IdmRedPlatform(_) => self.reach,
-            _ => self.reach.min(Reach::Singles),
+            Family::IdmRedPlatform(_) => self.limits,
+            _ => self.limits.of_lesser_functions(),
         }
     }
 }
@@ -125,35 +128,18 @@ fn guards<'a>(derived: &Derived<'a>) -> Vec<GuardedExpr<'a>> {
     guards.collect()
 }
 
-/// The value of an input, by its symbol `name[index]`, in the home configuration; rates have none.
-fn at_home(mechanism: &Mechanism, symbol: &str) -> Option<f64> {
-    let (name, index) = indexed(symbol)?;
-    let home = &mechanism.home;
-    let values = match name {
-        "pose" => &home.pose,
-        "joints" => &home.joints,
-        "actuators" => &home.actuators,
-        _ => return None,
-    };
-    values.get(index).copied()
-}
-
-/// The value of an input, by its symbol `name[index]`, at a state.
-fn at_state(mechanism: &Mechanism, state: &State, symbol: &str) -> Option<f64> {
-    let (name, index) = indexed(symbol)?;
-    let values = match name {
+/// The value of an element of an input array at a state.
+fn at_state(mechanism: &Mechanism, state: &State, element: InputElement) -> Option<f64> {
+    let values = match element.array {
         "pose" => &state.pose,
         "joints" => &state.joints,
         "twist" | "joint_velocities" => &state.twist,
         "acceleration" | "joint_accelerations" => &state.acceleration,
-        "actuators" => return state.joints.get(*mechanism.actuated().get(index)?).copied(),
+        "actuators" => {
+            let joint = *mechanism.actuated().get(element.index)?;
+            return state.joints.get(joint).copied();
+        }
         _ => return None,
     };
-    values.get(index).copied()
-}
-
-/// Name and index of a symbol `name[index]`.
-fn indexed(symbol: &str) -> Option<(&str, usize)> {
-    let (name, index) = symbol.strip_suffix(']')?.split_once('[')?;
-    Some((name, index.parse().ok()?))
+    values.get(element.index).copied()
 }

@@ -1,23 +1,31 @@
-//! What a node means: its values at the random points of the field and at the real sample point.
+//! What a node means: its values at random points of the field and at a real sample point.
 
-use super::super::field::{CIRCLE, Element, mix, mix_name};
+use super::super::field::{CIRCLE, Element, canonical, mix};
+use super::super::number::Number;
 use super::super::sample::Sample;
-use super::{Fingerprint, Handle, Op, Tables, canonical};
+use super::{Handle, Op, POINTS, Tables};
 use std::ops::{Add, Mul, Neg};
 
+/// The values of an expression at the two random points of the field and at the real one, by which
+/// expressions are told apart.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fingerprint {
+    pub(crate) image: [Element; POINTS],
+    pub(crate) sample: Sample,
+}
+
 impl Tables {
-    fn image(&self, handle: Handle, point: usize) -> Element {
-        let image = self.nodes[handle.index()].fingerprint.image[point];
-        if handle.is_negative() { -image } else { image }
+    fn of(&self, handle: &Handle) -> Fingerprint {
+        let fingerprint = self.nodes[handle.index()].fingerprint;
+        if handle.is_negative() {
+            -fingerprint
+        } else {
+            fingerprint
+        }
     }
 
     pub(super) fn sample(&self, handle: Handle) -> Sample {
-        let sample = self.nodes[handle.index()].fingerprint.sample;
-        if handle.is_negative() {
-            -sample
-        } else {
-            sample
-        }
+        self.of(&handle).sample
     }
 
     /// The magnitude against which rounding of the node's sample is judged.
@@ -29,37 +37,35 @@ impl Tables {
     }
 
     pub(super) fn fingerprint(&self, op: &Op) -> Fingerprint {
-        Fingerprint {
-            image: std::array::from_fn(|point| self.image_of(op, point)),
-            sample: self.sample_of(op),
+        let of = |handle| self.of(handle);
+        match op {
+            Op::Constant(id) => Fingerprint::number(self.constants[*id as usize]),
+            Op::Symbol(id) => self.symbols[id.0 as usize].fingerprint,
+            Op::Cosine(id) => self.cosine_and_sine(*id).0,
+            Op::Sine(id) => self.cosine_and_sine(*id).1,
+            Op::Add(a, b) => of(a) + of(b),
+            Op::Sub(a, b) => of(a) + -of(b),
+            Op::Mul(a, b) => of(a) * of(b),
+            Op::Div(a, b) => of(a).over(of(b)),
+            Op::Sqrt(a) => of(a).square_root(),
+            Op::Sign(a) => of(a).sign(),
+            Op::Atan2(y, x) => of(y).arc_tangent(of(x)),
         }
     }
 
-    fn image_of(&self, op: &Op, point: usize) -> Element {
-        let image = |handle: &Handle| self.image(*handle, point);
-        match op {
-            Op::Constant(id) => self.constants[*id as usize].image(),
-            Op::Symbol(id) => {
-                let name = &self.symbols[id.0 as usize].name;
-                Element::from_bits(mix(mix_name(name) ^ (point as u64 + 101)))
-            }
-            Op::Cosine(id) => self.circle(*id, point).cosine_and_sine().0,
-            Op::Sine(id) => self.circle(*id, point).cosine_and_sine().1,
-            Op::Add(a, b) => image(a) + image(b),
-            Op::Sub(a, b) => image(a) - image(b),
-            Op::Mul(a, b) => image(a) * image(b),
-            Op::Div(a, b) => image(a) * image(b).inverse(),
-            Op::Sqrt(a) => image(a)
-                .square_root()
-                .unwrap_or_else(|| free(1, &[image(a)])),
-            // Odd in its argument: the canonical one of ±a is hashed, the sign put back.
-            Op::Sign(a) => {
-                let (key, negative) = canonical([image(a), Element::ZERO]);
-                let value = free(2, &key);
-                if negative { -value } else { value }
-            }
-            Op::Atan2(y, x) => free(3, &[image(y), image(x)]),
-        }
+    pub(super) fn cosine_and_sine(&self, direction: u32) -> (Fingerprint, Fingerprint) {
+        let points: [_; POINTS] =
+            std::array::from_fn(|point| self.circle(direction, point).cosine_and_sine());
+        let angle = self.angle_sample(direction);
+        let cosine = Fingerprint {
+            image: points.map(|(cosine, _)| cosine),
+            sample: Sample::real(angle.cos()),
+        };
+        let sine = Fingerprint {
+            image: points.map(|(_, sine)| sine),
+            sample: Sample::real(angle.sin()),
+        };
+        (cosine, sine)
     }
 
     fn circle(&self, direction: u32, point: usize) -> Element {
@@ -78,23 +84,6 @@ impl Tables {
                 };
         }
         result
-    }
-
-    fn sample_of(&self, op: &Op) -> Sample {
-        let sample = |handle: &Handle| self.sample(*handle);
-        match op {
-            Op::Constant(id) => Sample::real(self.constants[*id as usize].value()),
-            Op::Symbol(id) => Sample::real(self.symbols[id.0 as usize].sample),
-            Op::Cosine(id) => Sample::real(self.angle_sample(*id).cos()),
-            Op::Sine(id) => Sample::real(self.angle_sample(*id).sin()),
-            Op::Add(a, b) => sample(a) + sample(b),
-            Op::Sub(a, b) => sample(a) - sample(b),
-            Op::Mul(a, b) => sample(a) * sample(b),
-            Op::Div(a, b) => sample(a) / sample(b),
-            Op::Sqrt(a) => sample(a).sqrt(),
-            Op::Sign(a) => Sample::real(sample(a).re().signum()),
-            Op::Atan2(y, x) => Sample::real(sample(y).re().atan2(sample(x).re())),
-        }
     }
 
     fn angle_sample(&self, direction: u32) -> f64 {
@@ -118,15 +107,23 @@ fn free(tag: u64, arguments: &[Element]) -> Element {
 }
 
 impl Fingerprint {
-    /// Of what has none.
-    pub(crate) const NONE: Self = Self {
-        image: [Element::ZERO; super::POINTS],
-        sample: Sample::real(f64::NAN),
-    };
+    /// That of a constant.
+    pub(crate) fn number(number: Number) -> Self {
+        Self {
+            image: [number.image(); POINTS],
+            sample: Sample::real(number.value()),
+        }
+    }
 
     /// The value at the first point.
     pub(crate) const fn value(&self) -> Element {
         self.image[0]
+    }
+
+    /// Whether both may be the same function: the points of the field say so, or the real one does. It
+    /// finds what is wrong, where [`agrees`](Self::agrees) finds what is right.
+    pub(crate) fn resembles(&self, other: &Self) -> bool {
+        self.image == other.image || self.sample.agrees(other.sample)
     }
 
     /// Whether both are the same function, as far as all points tell.
@@ -136,11 +133,53 @@ impl Fingerprint {
 
     /// The quotient of two values.
     pub(crate) fn over(self, other: Self) -> Self {
-        let inverse = Self {
-            image: other.image.map(Element::inverse),
-            sample: Sample::real(1.0) / other.sample,
+        let image = |a: Element, b: Element| a * b.inverse();
+        self.with(other, image, self.sample / other.sample)
+    }
+
+    /// The square root.
+    pub(crate) fn square_root(self) -> Self {
+        let root = |a: Element| a.square_root().unwrap_or_else(|| free(1, &[a]));
+        Self {
+            image: self.image.map(root),
+            sample: self.sample.sqrt(),
+        }
+    }
+
+    /// The sign, an odd function: that of the smaller one of ±a is hashed, and the sign put back.
+    pub(crate) fn sign(self) -> Self {
+        let sign = |a: Element| {
+            let ([key], negative) = canonical([a]);
+            let value = free(2, &[key, Element::ZERO]);
+            if negative { -value } else { value }
         };
-        self * inverse
+        Self {
+            image: self.image.map(sign),
+            sample: Sample::real(self.sample.re().signum()),
+        }
+    }
+
+    /// The cosine of a value of which the field does not know how it turns; see
+    /// [`Arena::turn_fingerprints`](super::Arena::turn_fingerprints) for one of which it does.
+    pub(crate) fn cosine(self) -> Self {
+        Self {
+            image: self.image.map(|a| free(4, &[a])),
+            sample: Sample::real(self.sample.re().cos()),
+        }
+    }
+
+    /// The sine of such a value.
+    pub(crate) fn sine(self) -> Self {
+        Self {
+            image: self.image.map(|a| free(5, &[a])),
+            sample: Sample::real(self.sample.re().sin()),
+        }
+    }
+
+    /// The angle of the direction (`x`, self).
+    pub(crate) fn arc_tangent(self, x: Self) -> Self {
+        let angle = self.sample.re().atan2(x.sample.re());
+        self.with(x, |y, x| free(3, &[y, x]), Sample::real(angle))
     }
 
     fn with(

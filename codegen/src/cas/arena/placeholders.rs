@@ -60,7 +60,7 @@ impl Tables {
         let of = |handle: &Handle| self.nodes[handle.index()].placeholders;
         match op {
             Op::Constant(_) | Op::Cosine(_) | Op::Sine(_) => 0,
-            Op::Symbol(id) if self.symbols[id.0 as usize].is_placeholder => {
+            Op::Symbol(id) if self.symbols[id.0 as usize].is_placeholder() => {
                 self.sets.number(vec![*id])
             }
             Op::Symbol(_) => 0,

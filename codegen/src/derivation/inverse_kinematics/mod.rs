@@ -93,7 +93,7 @@ impl<'a, 'm> Task<'a, 'm> {
 
     /// The value at home of a sum of joint angles and a constant.
     fn turn_at_home(&self, turn: &Direction) -> f64 {
-        let joint = |symbol: SymbolId| self.home.symbol(&self.arena.symbol_name(symbol));
+        let joint = |symbol: SymbolId| self.home.input(self.arena.input_element(symbol)?);
         let terms = turn.terms().iter();
         terms.fold(turn.offset().value(), |sum, (symbol, factor)| {
             sum + joint(*symbol).unwrap_or(0.0) * factor.value()

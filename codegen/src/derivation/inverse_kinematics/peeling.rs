@@ -99,7 +99,7 @@ fn step<'a>(task: Task<'a, '_>, equations: &[Expr<'a>], unknown: &Unknown) -> Op
     };
     let own: Vec<_> = own.iter().flat_map(|e| e.symbols()).collect();
     let others_known = |e: &&Expr<'a>| {
-        let unknown = |id: &_| arena.symbol_name(*id).contains("unknown");
+        let unknown = |id: &_| arena.is_placeholder(*id);
         let symbols = e.symbols();
         symbols.iter().all(|id| own.contains(id) || !unknown(id))
             && symbols.iter().any(|id| own.contains(id))

@@ -1,0 +1,156 @@
+//! Symbols: elements of input arrays, placeholders of unknowns, and free names.
+
+use super::super::direction::{Direction, SymbolId};
+use super::super::expr::Expr;
+use super::super::field::{Element, mix, mix_name};
+use super::super::sample::Sample;
+use super::{Arena, Fingerprint, Op, POINTS};
+
+/// An element of an input array of a function, such as `pose[2]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct InputElement {
+    /// Name of the array.
+    pub array: &'static str,
+    /// Which element, counted from zero.
+    pub index: usize,
+}
+
+impl std::fmt::Display for InputElement {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}[{}]", self.array, self.index)
+    }
+}
+
+/// What a symbol stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// A number or an angle that a function is given.
+    Input(InputElement),
+    /// Something unknown while equations are searched.
+    Placeholder,
+    /// What its name says.
+    Free,
+}
+
+#[derive(Debug)]
+pub(super) struct Symbol {
+    pub(super) name: String,
+    /// The values of the symbol as a number.
+    pub(super) fingerprint: Fingerprint,
+    /// The points of the field's circle for the symbol as an angle.
+    pub(super) circle: [Element; POINTS],
+    /// The real sample of the number and of the angle.
+    pub(super) sample: f64,
+    kind: Kind,
+}
+
+impl Symbol {
+    fn new(name: &str, kind: Kind) -> Self {
+        let seed = mix_name(name);
+        // Samples lie in (0.2, 1.2), where sums, products and angles are all well-behaved.
+        let sample = 0.2 + (mix(seed ^ 5) >> 11) as f64 / (1_u64 << 53) as f64;
+        Self {
+            name: name.to_owned(),
+            fingerprint: Fingerprint {
+                image: std::array::from_fn(|k| Element::from_bits(mix(seed ^ (k as u64 + 101)))),
+                sample: Sample::real(sample),
+            },
+            circle: std::array::from_fn(|k| Element::circle_point(mix(seed ^ (k as u64 + 11)))),
+            sample,
+            kind,
+        }
+    }
+
+    pub(super) fn is_placeholder(&self) -> bool {
+        self.kind == Kind::Placeholder
+    }
+}
+
+impl Arena {
+    /// Name of a symbol.
+    #[must_use]
+    pub fn symbol_name(&self, id: SymbolId) -> String {
+        self.tables.borrow().symbols[id.0 as usize].name.clone()
+    }
+
+    /// The element of an input array that a symbol is, if it is one.
+    #[must_use]
+    pub fn input_element(&self, id: SymbolId) -> Option<InputElement> {
+        match self.tables.borrow().symbols[id.0 as usize].kind {
+            Kind::Input(element) => Some(element),
+            Kind::Placeholder | Kind::Free => None,
+        }
+    }
+
+    /// Whether a symbol stands for something unknown.
+    #[must_use]
+    pub fn is_placeholder(&self, id: SymbolId) -> bool {
+        self.tables.borrow().symbols[id.0 as usize].is_placeholder()
+    }
+
+    /// The values of a symbol as a number.
+    pub(crate) fn symbol_fingerprint(&self, id: SymbolId) -> Fingerprint {
+        self.tables.borrow().symbols[id.0 as usize].fingerprint
+    }
+
+    /// All symbols.
+    pub fn symbols(&self) -> impl Iterator<Item = SymbolId> + use<> {
+        (0..self.tables.borrow().symbols.len() as u32).map(SymbolId)
+    }
+
+    /// The symbol of that name, made if it is new. It may stand for a number and, in a
+    /// [`Direction`], for an angle.
+    pub fn symbol(&self, name: &str) -> SymbolId {
+        self.symbol_of_kind(name, Kind::Free)
+    }
+
+    /// The symbol of an element of an input array.
+    pub fn input_symbol(&self, array: &'static str, index: usize) -> SymbolId {
+        let element = InputElement { array, index };
+        self.symbol_of_kind(&element.to_string(), Kind::Input(element))
+    }
+
+    /// The symbol of another graph, made here if it is new.
+    pub(crate) fn symbol_like(&self, other: &Self, id: SymbolId) -> SymbolId {
+        let kind = other.tables.borrow().symbols[id.0 as usize].kind;
+        self.symbol_of_kind(&other.symbol_name(id), kind)
+    }
+
+    fn symbol_of_kind(&self, name: &str, kind: Kind) -> SymbolId {
+        let mut tables = self.tables.borrow_mut();
+        if let Some(&id) = tables.symbol_ids.get(name) {
+            return id;
+        }
+        let id = SymbolId(tables.symbols.len() as u32);
+        tables.symbols.push(Symbol::new(name, kind));
+        tables.symbol_ids.insert(name.to_owned(), id);
+        id
+    }
+
+    /// The value of a symbol as an expression.
+    pub fn value_of(&self, symbol: SymbolId) -> Expr<'_> {
+        self.expr(self.intern(Op::Symbol(symbol)))
+    }
+
+    /// The value of the symbol of that name as an expression.
+    pub fn variable(&self, name: &str) -> Expr<'_> {
+        self.value_of(self.symbol(name))
+    }
+
+    /// The value of an element of an input array as an expression.
+    pub fn input(&self, array: &'static str, index: usize) -> Expr<'_> {
+        self.value_of(self.input_symbol(array, index))
+    }
+
+    /// The direction of an angle that is an element of an input array.
+    pub fn input_angle(&self, array: &'static str, index: usize) -> Direction {
+        Direction::symbol(self.input_symbol(array, index))
+    }
+
+    /// The value of a symbol that stands for something unknown while equations are searched. Where it
+    /// cancels, the expression means the same as one without it, but is still written with it; such a
+    /// node is never taken for an expression that is written without it.
+    pub fn placeholder(&self, name: &str) -> Expr<'_> {
+        self.value_of(self.symbol_of_kind(name, Kind::Placeholder))
+    }
+}

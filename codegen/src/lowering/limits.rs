@@ -1,0 +1,94 @@
+//! How far the search of a function goes: all its limits stand here.
+
+use crate::effort::Effort;
+
+impl Effort {
+    /// What it allows in the functions that matter most.
+    #[must_use]
+    pub const fn limits(self) -> SearchLimits {
+        match self {
+            Self::None => SearchLimits::NONE,
+            Self::Quick => SearchLimits::QUICK,
+            Self::Thorough => SearchLimits::THOROUGH,
+        }
+    }
+}
+
+/// How far the search of one function goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SearchLimits {
+    /// Whether nodes that are one operation away from others are replaced.
+    pub replaces: bool,
+    /// Whether forms are compared at regular states, too, and not only near singular ones.
+    pub compares_regular_states: bool,
+    /// How often the nodes that are two operations away from others of their heading are searched at
+    /// most, and operations that serve several of these: a later round has only what the earlier ones
+    /// opened up.
+    pub pair_rounds: usize,
+    /// Up to so many nodes a function has such rounds.
+    pub pair_nodes: usize,
+    /// Up to so many nodes a function's pairs are searched as a whole, not heading by heading.
+    pub whole_nodes: usize,
+    /// How many steps a walk among forms of equal cost has at most.
+    pub walk_steps: usize,
+    /// Up to so many nodes a function has such a walk.
+    pub walk_nodes: usize,
+    /// How many steps of the walk in a row may bring nothing.
+    pub walk_patience: usize,
+    /// How often pairs are searched after a step of the walk.
+    pub walk_pair_rounds: usize,
+}
+
+impl SearchLimits {
+    /// No node is looked at.
+    pub const NONE: Self = Self {
+        replaces: false,
+        compares_regular_states: false,
+        pair_rounds: 0,
+        pair_nodes: 0,
+        whole_nodes: 0,
+        walk_steps: 0,
+        walk_nodes: 0,
+        walk_patience: 0,
+        walk_pair_rounds: 0,
+    };
+
+    /// Single replacements, one after the other.
+    pub const SINGLE_REPLACEMENTS: Self = Self {
+        replaces: true,
+        ..Self::NONE
+    };
+
+    /// Pairs once, in functions that are not too large, and a short walk in small ones.
+    pub const QUICK: Self = Self {
+        compares_regular_states: true,
+        pair_rounds: 1,
+        pair_nodes: 3000,
+        walk_steps: 10,
+        walk_nodes: 1000,
+        walk_patience: 1,
+        ..Self::SINGLE_REPLACEMENTS
+    };
+
+    /// Pairs until nothing is found, in small functions among the nodes of all headings, and a long walk.
+    pub const THOROUGH: Self = Self {
+        pair_rounds: 4,
+        pair_nodes: usize::MAX,
+        whole_nodes: 700,
+        walk_steps: 40,
+        walk_nodes: usize::MAX,
+        walk_patience: 3,
+        walk_pair_rounds: 1,
+        ..Self::QUICK
+    };
+
+    /// The limits of a function that matters less: of these no more than single replacements.
+    #[must_use]
+    pub const fn of_lesser_functions(self) -> Self {
+        if self.replaces {
+            Self::SINGLE_REPLACEMENTS
+        } else {
+            Self::NONE
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! How the sine and cosine of each angle are had: by evaluation, or from others by the addition theorem.
+
+mod plan;
+
+use crate::cas::arena::Fingerprint;
+use crate::cas::{Angle as ConstantAngle, Direction, Number};
+use crate::lowering::SearchLimits;
+use crate::lowering::dag::{Angle, Constant, Dag, Definition, Edge, Origin};
+use plan::{Plan, plan};
+use std::collections::HashMap;
+
+/// Writes all sines and cosines out.
+pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
+    dag.forget_digits();
+    let turns = needed_turns(dag);
+    let context = dag.context();
+    let directions: Vec<Direction> = turns
+        .iter()
+        .map(|&turn| context.turns[turn as usize].direction.clone())
+        .collect();
+    let mut work = Work::new(dag);
+    let mut units = Vec::new();
+    for (at, how) in plan(&directions) {
+        let (turn, direction) = (turns[at], &directions[at]);
+        let unit = match how {
+            Plan::Direct => work.direct(turn, direction),
+            Plan::Sum {
+                first,
+                second,
+                sign,
+                rest,
+            } => {
+                let mut angle: Unit = turned(units[first], sign < 0);
+                let mut products = Vec::new();
+                if let Some((second, sign)) = second {
+                    let second = turned(units[second], sign < 0);
+                    angle = work.sum(angle, second, &mut products);
+                }
+                if !rest.offset().is_zero() {
+                    let rest = work.constant(rest.offset());
+                    angle = work.sum(angle, rest, &mut products);
+                }
+                work.composed(turn, angle, products)
+            }
+        };
+        units.push(unit);
+    }
+    dag.measure_depths();
+}
+
+/// Cosine and sine.
+type Unit = (Edge, Edge);
+
+/// The sine changes its sign with the angle.
+const fn turned((cosine, sine): Unit, is_mirrored: bool) -> Unit {
+    (cosine, sine.times(is_mirrored))
+}
+
+/// The numbers of all angles whose sine or cosine the entries need, in the order of their first use.
+fn needed_turns(dag: &Dag) -> Vec<u32> {
+    let mut seen = vec![false; dag.len()];
+    let mut stack: Vec<usize> = dag.entries().iter().rev().map(|e| e.node()).collect();
+    let mut turns = Vec::new();
+    while let Some(node) = stack.pop() {
+        if std::mem::replace(&mut seen[node], true) {
+            continue;
+        }
+        let definition = dag.definition(node);
+        if let Definition::Cosine(Angle::Unplanned(turn)) | Definition::Sine(Angle::Unplanned(turn)) =
+            definition
+            && !turns.contains(&turn)
+        {
+            turns.push(turn);
+        }
+        let operands: Vec<usize> = definition.operands().collect();
+        stack.extend(operands.iter().rev());
+    }
+    turns
+}
+
+struct Work<'d> {
+    dag: &'d mut Dag,
+    /// The nodes of the sines and cosines, inputs, and what was added.
+    known: HashMap<Definition, usize>,
+}
+
+impl<'d> Work<'d> {
+    fn new(dag: &'d mut Dag) -> Self {
+        let is_wanted = |definition: &Definition| definition.is_leaf();
+        let definitions = (0..dag.len()).map(|node| (dag.definition(node), node));
+        let known = definitions.filter(|(definition, _)| is_wanted(definition));
+        Self {
+            known: known.collect(),
+            dag,
+        }
+    }
+
+    fn node(&mut self, definition: Definition) -> Edge {
+        Edge::to(self.dag.node_of(definition, &mut self.known))
+    }
+
+    fn number(&mut self, value: f64) -> Edge {
+        let node = self.node(Definition::Constant(Constant::new(value.abs())));
+        node.times(value < 0.0)
+    }
+
+    /// The nodes of an angle's cosine and sine, whoever needs them.
+    fn nodes(&mut self, turn: u32) -> (usize, usize) {
+        let cosine = self.node(Definition::Cosine(Angle::Unplanned(turn)));
+        let sine = self.node(Definition::Sine(Angle::Unplanned(turn)));
+        (cosine.node(), sine.node())
+    }
+
+    /// Cosine and sine of the angle's value.
+    fn direct(&mut self, turn: u32, direction: &Direction) -> Unit {
+        let angle = Angle::Value(self.value(direction));
+        let (cosine, sine) = self.nodes(turn);
+        self.dag.redefine(cosine, Definition::Cosine(angle));
+        self.dag.redefine(sine, Definition::Sine(angle));
+        self.dag.together.push(vec![cosine, sine]);
+        (Edge::to(cosine), Edge::to(sine))
+    }
+
+    /// The angle's cosine and sine are those of a sum.
+    fn composed(&mut self, turn: u32, (by_cosine, by_sine): Unit, products: Vec<usize>) -> Unit {
+        let (cosine, sine) = self.nodes(turn);
+        let mut together = products;
+        for (node, by) in [(cosine, by_cosine), (sine, by_sine)] {
+            // The sum's own node is not used: the angle's takes its definition.
+            self.dag.redefine(node, self.dag.definition(by.node()));
+            together.push(node);
+        }
+        self.dag.together.push(together);
+        (Edge::to(cosine), Edge::to(sine))
+    }
+
+    /// The value of an angle in radians.
+    fn value(&mut self, direction: &Direction) -> Edge {
+        let mut sum: Option<Edge> = None;
+        for (symbol, factor) in direction.terms() {
+            let input = self.node(Definition::Symbol(symbol.number() as u32));
+            let size = factor.value().abs();
+            let part = if size == 1.0 {
+                input
+            } else {
+                let size = self.number(size);
+                self.node(Definition::Product(size, input))
+            };
+            let part = part.times(factor.value() < 0.0);
+            sum = Some(match sum {
+                Some(sum) => self.node(Definition::Sum(sum, part)),
+                None => part,
+            });
+        }
+        match (sum, direction.offset()) {
+            (Some(sum), offset) if offset.is_zero() => sum,
+            (Some(sum), offset) => {
+                let offset = self.number(offset.value());
+                self.node(Definition::Sum(sum, offset))
+            }
+            (None, offset) => self.number(offset.value()),
+        }
+    }
+
+    fn constant(&mut self, angle: ConstantAngle) -> Unit {
+        let (cosine, sine) = angle.cosine_and_sine();
+        let mut node = |number: Number| {
+            let definition = Definition::Constant(Constant::new(number.value().abs()));
+            let is_negative = number.value() < 0.0;
+            let size = if is_negative { -number } else { number };
+            let edge = match self.known.get(&definition) {
+                Some(&node) => Edge::to(node),
+                None => {
+                    let node = self.dag.push(
+                        definition,
+                        Fingerprint::number(size),
+                        Origin {
+                            name: None,
+                            scope: 0,
+                        },
+                    );
+                    self.known.insert(definition, node);
+                    Edge::to(node)
+                }
+            };
+            edge.times(is_negative)
+        };
+        (node(cosine), node(sine))
+    }
+
+    /// The addition theorem; the products are noted.
+    fn sum(&mut self, (ca, sa): Unit, (cb, sb): Unit, products: &mut Vec<usize>) -> Unit {
+        let mut product = |a: Edge, b: Edge| {
+            let product = self.node(Definition::Product(a.positive(), b.positive()));
+            products.push(product.node());
+            product.times(a.is_negative() != b.is_negative())
+        };
+        let (cc, ss) = (product(ca, cb), product(sa, sb));
+        let (sc, cs) = (product(sa, cb), product(ca, sb));
+        let cosine = self.node(Definition::Sum(cc, ss.times(true)));
+        let sine = self.node(Definition::Sum(sc, cs));
+        products.extend([cosine.node(), sine.node()]);
+        (cosine, sine)
+    }
+}

@@ -1,0 +1,16 @@
+//! A condition matters where its value is divided by or has its root taken.
+
+use crate::lowering::SearchLimits;
+use crate::lowering::dag::{Dag, Definition};
+
+/// Lets the other guards go, with what only they need.
+pub(super) fn run(dag: &mut Dag, _: &SearchLimits) {
+    let needed = dag.needed(dag.entries().iter().map(|entry| entry.node()));
+    let mut matters = vec![false; dag.len()];
+    for node in (0..dag.len()).filter(|&node| needed[node]) {
+        if let Definition::Quotient(_, of) | Definition::Root(of) = dag.definition(node) {
+            matters[of.node()] = true;
+        }
+    }
+    dag.retain_guards(|guard| matters[guard.value.node()]);
+}

@@ -1,0 +1,287 @@
+//! Nodes that are two operations away from others, and operations that serve several nodes.
+//!
+//! A target t asks for every value m with which one more operation gives it: t = c + m, t = c m,
+//! t = m / c. All sums, differences and products of two nodes are then held against what was asked for.
+//! This is done heading by heading, each with the nodes that its own are made of, because a leg's nodes
+//! have little to do with another leg's; a small function is searched as a whole.
+
+use super::single_replacements::{LOSS, fits};
+use crate::cas::field::{Element, canonical};
+#[cfg(test)]
+use crate::lowering::SearchLimits;
+use crate::lowering::dag::{ByValue, Dag, Definition, Dominators, Edge};
+
+/// More nodes than this are searched without pairs: the table of pairs grows with the square.
+const MOST: usize = 2500;
+
+/// How a target is made of a node that is there and the value it asks for.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    Plus,
+    Times,
+    Over,
+}
+
+/// A target that asks for a value.
+#[derive(Debug, Clone, Copy)]
+struct Request {
+    target: u32,
+    with: Edge,
+    form: Form,
+    /// Whether the negative of the value is asked for.
+    negative: bool,
+    /// The request for the same value before this one.
+    next: Option<u32>,
+}
+
+/// A new node and the bound of what it can save.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Hit {
+    bound: i32,
+    definition: Definition,
+    head: u32,
+    negative: bool,
+}
+
+/// The pass on its own: one round.
+#[cfg(test)]
+pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
+    if limits.pair_rounds > 0 && dag.len() <= limits.pair_nodes {
+        improve(dag, limits.whole_nodes);
+    }
+}
+
+/// Replaces nodes group by group, or together if there are no more than `whole`; the operations saved.
+pub(super) fn improve(dag: &mut Dag, whole: usize) -> i32 {
+    let groups = groups(dag, whole);
+    let saved = groups.iter().map(|group| improve_group(dag, group)).sum();
+    if saved > 0 {
+        // There are new nodes.
+        dag.forget_forms();
+    }
+    saved
+}
+
+/// The nodes of each heading: first its own, then those they are made of.
+fn groups(dag: &Dag, whole: usize) -> Vec<(Vec<usize>, Vec<usize>)> {
+    let live: Vec<usize> = (0..dag.len()).filter(|&n| dag.is_live(n)).collect();
+    if live.len() <= whole {
+        return vec![(live.clone(), live)];
+    }
+    let mut scopes: Vec<u32> = live.iter().map(|&n| dag.scope(n)).collect();
+    scopes.sort_unstable();
+    scopes.dedup();
+    let group = |scope: &u32| {
+        let is_own = |n: &usize| dag.scope(*n) == *scope;
+        let own: Vec<usize> = live.iter().copied().filter(is_own).collect();
+        let mut all = own.clone();
+        all.extend(own.iter().flat_map(|&n| dag.definition(n).operands()));
+        all.sort_unstable();
+        all.dedup();
+        (own, all)
+    };
+    let groups = scopes.iter().map(group);
+    groups.filter(|(_, all)| all.len() <= MOST).collect()
+}
+
+fn improve_group(dag: &mut Dag, (own, all): &(Vec<usize>, Vec<usize>)) -> i32 {
+    let tree = Dominators::new(dag);
+    let is_target = |node: &usize| dag.is_open(*node) && tree.cone(*node) > 1;
+    let targets: Vec<usize> = own.iter().copied().filter(is_target).collect();
+    let (requests, heads) = requests(dag, &tree, &targets, all);
+    let mut hits = Vec::new();
+    for_each_pair(dag, all, |definition, value| {
+        let ([key], negative) = canonical([value]);
+        let Some(&head) = heads.get(&key) else { return };
+        let bound = bound(&requests, head, &tree, definition);
+        // What is there already is a matter of single operations.
+        if bound > 0 && dag.find(value).is_none() {
+            hits.push(Hit {
+                bound,
+                definition,
+                head,
+                negative,
+            });
+        }
+    });
+    hits.sort_by(|a, b| b.bound.cmp(&a.bound).then_with(|| a.cmp(b)));
+    hits.iter()
+        .map(|hit| apply(dag, &requests, hit).unwrap_or(0))
+        .sum()
+}
+
+/// What the targets ask for, but for what could save them nothing.
+fn requests(
+    dag: &Dag,
+    tree: &Dominators,
+    targets: &[usize],
+    all: &[usize],
+) -> (Vec<Request>, ByValue<u32>) {
+    let divisors = dag.divisors();
+    let inverse = |&node: &usize| dag.value(Edge::to(node)).inverse();
+    let inverses: Vec<Element> = all.iter().map(inverse).collect();
+    let mut requests: Vec<Request> = Vec::new();
+    let mut heads: ByValue<u32> = ByValue::default();
+    for &target in targets {
+        let value = dag.value(Edge::to(target));
+        let mut ask = |wanted, with, form| {
+            let ([key], negative) = canonical([wanted]);
+            let number = requests.len() as u32;
+            let next = heads.insert(key, number);
+            requests.push(Request {
+                target: target as u32,
+                with,
+                form,
+                negative,
+                next,
+            });
+        };
+        let others = all.iter().zip(&inverses);
+        for (&node, &inverse) in others.filter(|(n, _)| **n != target && dag.is_live(**n)) {
+            if tree.cone(target) - tree.shared(target, node) <= 1 {
+                continue;
+            }
+            let with = Edge::to(node);
+            let of = dag.value(with);
+            ask(value + -of, with, Form::Plus);
+            ask(value + of, with.times(true), Form::Plus);
+            ask(value * inverse, with, Form::Times);
+            if divisors.binary_search(&node).is_ok() {
+                ask(value * of, with, Form::Over);
+            }
+        }
+    }
+    (requests, heads)
+}
+
+/// What the value could save at most: of each target's cone what the new form does not need itself, but
+/// one operation, and the value's own.
+fn bound(requests: &[Request], head: u32, tree: &Dominators, definition: Definition) -> i32 {
+    let mut bound = -1;
+    // Requests of one target stand together.
+    let mut last = (u32::MAX, 0);
+    let mut at = Some(head);
+    while let Some(number) = at {
+        let request = requests[number as usize];
+        at = request.next;
+        let target = request.target as usize;
+        let needed = definition.operands().chain([request.with.node()]);
+        let shared = needed.map(|node| tree.shared(target, node)).max();
+        let saving = tree.cone(target) - 1 - shared.unwrap_or(0);
+        if request.target != last.0 {
+            last = (request.target, 0);
+        }
+        // Of several forms the best one counts.
+        bound += (saving - last.1).max(0);
+        last.1 = last.1.max(saving);
+    }
+    bound
+}
+
+/// All sums, differences and products of two nodes.
+fn for_each_pair(dag: &Dag, all: &[usize], mut visit: impl FnMut(Definition, Element)) {
+    let live: Vec<usize> = all.iter().copied().filter(|&n| dag.is_live(n)).collect();
+    for (i, &first) in live.iter().enumerate() {
+        let a = Edge::to(first);
+        let left = dag.value(a);
+        for &second in &live[i..] {
+            let b = Edge::to(second);
+            let right = dag.value(b);
+            visit(Definition::Sum(a, b), left + right);
+            visit(Definition::Product(a, b), left * right);
+            if first != second {
+                visit(Definition::Sum(a, b.times(true)), left + -right);
+            }
+        }
+    }
+}
+
+/// Adds the node of a hit and gives it to all targets for which it saves something; undone if it does
+/// not save anything in all.
+fn apply(dag: &mut Dag, requests: &[Request], hit: &Hit) -> Option<i32> {
+    let definition = hit.definition;
+    if definition.operands().any(|o| !dag.is_live(o)) {
+        return None;
+    }
+    let value = dag.fingerprint_of(definition).value();
+    if dag.find(value).is_some() {
+        return None;
+    }
+    let scope = dag.scope(requests[hit.head as usize].target as usize);
+    let node = dag.add(definition, scope);
+    let saved = give(dag, requests, hit, Edge::to(node));
+    if saved.is_none() {
+        dag.remove_last();
+    }
+    saved
+}
+
+/// Gives a new node to the targets of a hit.
+fn give(dag: &mut Dag, requests: &[Request], hit: &Hit, node: Edge) -> Option<i32> {
+    let wanted = wanted(dag, requests, hit, node);
+    // Each target's saving counts the new operation once; all together they need it once.
+    let hoped: i32 = wanted.iter().map(|(_, _, saving)| saving + 1).sum();
+    if hoped <= 1 {
+        return None;
+    }
+    let mut undo = Vec::new();
+    let mut total = 0;
+    for (target, by, _) in wanted {
+        if !dag.is_live(target) {
+            continue;
+        }
+        let saving = dag.saving(target, by);
+        if saving < i32::from(!undo.is_empty()) {
+            continue;
+        }
+        if !fits(dag, by, target, LOSS) {
+            continue;
+        }
+        undo.push((target, dag.definition(target)));
+        dag.replace(target, by);
+        total += saving;
+    }
+    if total > 0 {
+        return Some(total);
+    }
+    for (target, definition) in undo.into_iter().rev() {
+        dag.replace(target, definition);
+    }
+    None
+}
+
+/// The best replacement of each target by the new node, with what it saves on its own, where that is
+/// not less than nothing.
+fn wanted(
+    dag: &mut Dag,
+    requests: &[Request],
+    hit: &Hit,
+    node: Edge,
+) -> Vec<(usize, Definition, i32)> {
+    let mut wanted: Vec<(usize, Definition, i32)> = Vec::new();
+    let mut at = Some(hit.head);
+    while let Some(number) = at {
+        let request = requests[number as usize];
+        at = request.next;
+        let target = request.target as usize;
+        if !dag.is_live(target) || !dag.is_live(request.with.node()) {
+            continue;
+        }
+        let m = node.times(hit.negative != request.negative);
+        let by = match request.form {
+            Form::Plus => Definition::Sum(request.with, m),
+            Form::Times => Definition::Product(request.with, m),
+            Form::Over => Definition::Quotient(m, request.with),
+        };
+        let saving = dag.saving(target, by);
+        if saving < 0 {
+            continue;
+        }
+        match wanted.last_mut().filter(|(t, ..)| *t == target) {
+            Some(last) if last.2 < saving => *last = (target, by, saving),
+            Some(_) => {}
+            None => wanted.push((target, by, saving)),
+        }
+    }
+    wanted
+}

@@ -1,0 +1,50 @@
+//! Nodes that are one operation away from two others.
+
+#[cfg(test)]
+use crate::lowering::SearchLimits;
+use crate::lowering::dag::{Dag, Definition};
+
+/// How much larger than a node's own error that of a cheaper form may be.
+pub(super) const LOSS: f64 = 10.0;
+
+/// The pass on its own: until nothing is saved.
+#[cfg(test)]
+pub(super) fn run(dag: &mut Dag, limits: &SearchLimits) {
+    while limits.replaces && improve(dag) > 0 {}
+}
+
+/// Replaces every node for which that saves something; the operations saved.
+pub(super) fn improve(dag: &mut Dag) -> i32 {
+    let mut saved = 0;
+    let mut divisors = dag.divisors();
+    for node in 0..dag.len() {
+        dag.refresh(node);
+        if dag.is_open(node)
+            && dag.cone(node) > 1
+            && let Some((by, saving)) = best(dag, node, &divisors)
+        {
+            dag.replace(node, by);
+            divisors = dag.divisors();
+            saved += saving;
+        }
+    }
+    saved
+}
+
+/// The replacement of a node that saves most, if one saves anything.
+fn best(dag: &mut Dag, node: usize, divisors: &[usize]) -> Option<(Definition, i32)> {
+    let mut best: Option<(Definition, i32)> = None;
+    for by in dag.forms(node, divisors) {
+        let saving = dag.saving(node, by);
+        if saving > best.map_or(0, |(_, saving)| saving) && fits(dag, by, node, LOSS) {
+            best = Some((by, saving));
+        }
+    }
+    best
+}
+
+/// Whether a form can stand for a node: it is not computed from it, has its value indeed, and an error no
+/// larger than `loss` times its own.
+pub(super) fn fits(dag: &Dag, by: Definition, node: usize, loss: f64) -> bool {
+    !dag.depend(by.operands(), node) && dag.means(by, node) && dag.loss(by, node) <= loss
+}

@@ -1,0 +1,215 @@
+//! The straight-line program: the one form that both backends take.
+
+mod cost;
+mod verify;
+
+pub use cost::Cost;
+
+/// Where an operand comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Operand {
+    /// A constant.
+    Constant(f64),
+    /// Element of an input array.
+    Input {
+        /// Which input.
+        array: usize,
+        /// Which element.
+        index: usize,
+    },
+    /// The result of an earlier step.
+    Step(usize),
+}
+
+/// What a step computes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(missing_docs, reason = "the variants say it")]
+pub enum Operation {
+    Add(Operand, Operand),
+    Sub(Operand, Operand),
+    Mul(Operand, Operand),
+    Div(Operand, Operand),
+    Neg(Operand),
+    Sqrt(Operand),
+    /// Sine of an angle in radians; the cosine of the same angle follows or precedes it.
+    Sine(Operand),
+    Cosine(Operand),
+    /// -1, 0 or 1.
+    Sign(Operand),
+    /// The first operand with the sign of the second: a × sign(b), as a selection.
+    Signed(Operand, Operand),
+    Atan2(Operand, Operand),
+}
+
+impl Operation {
+    /// Whether the operation counts as one.
+    #[must_use]
+    pub const fn is_counted(&self) -> bool {
+        matches!(
+            self,
+            Self::Add(..) | Self::Sub(..) | Self::Mul(..) | Self::Div(..)
+        )
+    }
+
+    /// The operands.
+    #[must_use]
+    pub fn operands(&self) -> Vec<Operand> {
+        match *self {
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Signed(a, b)
+            | Self::Atan2(a, b) => vec![a, b],
+            Self::Neg(a) | Self::Sqrt(a) | Self::Sine(a) | Self::Cosine(a) | Self::Sign(a) => {
+                vec![a]
+            }
+        }
+    }
+}
+
+/// One assignment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// What is computed.
+    pub operation: Operation,
+    /// The name that the derivation gave the value.
+    pub name: Option<String>,
+    /// The heading under which it stands, for instance a leg's name.
+    pub scope: String,
+}
+
+/// A number of an output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// The value.
+    pub operand: Operand,
+    /// Whether its negative is meant.
+    pub negative: bool,
+}
+
+impl Entry {
+    /// The value itself.
+    #[must_use]
+    pub const fn positive(operand: Operand) -> Self {
+        Self {
+            operand,
+            negative: false,
+        }
+    }
+
+    /// The value or its negative.
+    #[must_use]
+    pub const fn times(self, negative: bool) -> Self {
+        Self {
+            operand: self.operand,
+            negative: self.negative != negative,
+        }
+    }
+}
+
+/// A named array of numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Array {
+    /// Name, a Rust identifier.
+    pub name: String,
+    /// Length, or rows and columns.
+    pub shape: Vec<usize>,
+}
+
+impl Array {
+    /// Number of elements.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Whether the array has no elements.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// What has to hold for the outputs to mean something.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// The value is not negative, else the pose is out of the leg's reach.
+    Reach {
+        /// Name of the leg.
+        leg: String,
+    },
+    /// The value is not small against `home`, else the leg is singular.
+    Leg {
+        /// Name of the leg.
+        leg: String,
+        /// The value's magnitude at the home configuration.
+        home: f64,
+    },
+    /// The value is not small against `home`, else the actuators do not determine the platform.
+    Platform {
+        /// `actuators` or `kept actuators`.
+        actuators: &'static str,
+        /// The value's magnitude at the home configuration.
+        home: f64,
+    },
+}
+
+/// A value below this fraction of its magnitude at home counts as zero.
+pub const SINGULAR: f64 = 1e-9;
+
+/// A condition on a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guard {
+    /// The value.
+    pub operand: Operand,
+    /// The condition.
+    pub condition: Condition,
+}
+
+/// A straight-line program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Program {
+    /// Inputs, in the order of the function's arguments.
+    pub inputs: Vec<Array>,
+    /// The output.
+    pub output: Array,
+    /// The output's numbers, row-major.
+    pub entries: Vec<Entry>,
+    /// The assignments, operands first.
+    pub steps: Vec<Step>,
+    /// Conditions, each on a step that exists.
+    pub guards: Vec<Guard>,
+}
+
+impl Program {
+    /// For each input, whether the program reads any of its elements.
+    #[must_use]
+    pub fn used_inputs(&self) -> Vec<bool> {
+        let mut used = vec![false; self.inputs.len()];
+        let operands = self.steps.iter().flat_map(|s| s.operation.operands());
+        for operand in operands.chain(self.entries.iter().map(|e| e.operand)) {
+            if let Operand::Input { array, .. } = operand {
+                used[array] = true;
+            }
+        }
+        used
+    }
+
+    /// How often each step is used by steps, entries and guards.
+    #[must_use]
+    pub fn uses(&self) -> Vec<usize> {
+        let mut uses = vec![0; self.steps.len()];
+        let operands = self.steps.iter().flat_map(|s| s.operation.operands());
+        let entries = self.entries.iter().map(|entry| entry.operand);
+        let guards = self.guards.iter().map(|guard| guard.operand);
+        for operand in operands.chain(entries).chain(guards) {
+            if let Operand::Step(at) = operand
+                && let Some(uses) = uses.get_mut(at)
+            {
+                *uses += 1;
+            }
+        }
+        uses
+    }
+}

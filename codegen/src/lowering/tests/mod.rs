@@ -1,0 +1,10 @@
+//! Tests of the optimiser: what each pass makes of small expressions ([`cases`]), and what all passes
+//! keep on random ones ([`properties`]).
+
+mod build;
+mod cases;
+mod damage;
+mod language;
+mod listing;
+mod properties;
+mod random;
