@@ -1451,10 +1451,10 @@ impl DualV {
         let t4 = t3 - 0.3950502153918333;
         let t5 = 0.5 * t4;
         let t6 = pose[0] - t5;
-        let t7 = -0.3950502153918333 + t6;
+        let t7 = t6 - 0.3950502153918333;
         let t8 = t7 + t7;
         let t9 = 0.11 * c_phi;
-        let t11 = pose[1] - (t9 + -0.10970563941232059);
+        let t11 = pose[1] - (t9 - 0.10970563941232059);
         let t12 = 0.5 * t11;
         let t13 = pose[1] - t12;
         let t14 = t13 + t13;
@@ -3300,7 +3300,7 @@ impl DualV {
         let t22 = 0.5 * t21;
         let t23 = pose[0] - t22;
         let t24 = t23 + t23;
-        let t26 = pose[1] + t2 + -0.10970563941232059;
+        let t26 = pose[1] + t2 - 0.10970563941232059;
         let t28 = t26 * t26;
         let t29 = t24 * t24 + t28;
         let t31 = 0.0784 / t29 - 0.25;
@@ -3775,7 +3775,7 @@ impl DualV {
         let (s_phi, c_phi) = ::overact::math::sin_cos(pose[2]);
         let t2 = 0.11 * s_phi;
         let t3 = 0.11 * c_phi;
-        let t5 = pose[1] - (t3 + -0.10970563941232059);
+        let t5 = pose[1] - (t3 - 0.10970563941232059);
         let t6 = 0.5 * t5;
         let t7 = pose[1] - t6;
         let t8 = t7 + t7;
