@@ -74,10 +74,10 @@ fn the_document_has_its_keys() {
         .iter()
         .filter_map(|e| Some((e["model"].as_str()?, e["stage"].as_str()?)))
         .collect();
-    let both = |model| [(model, "base"), (model, "essential")];
-    assert_eq!(models, [both("platform"), both("actuators")].concat());
+    let all = |model| ["base", "recommended", "essential"].map(|stage| (model, stage));
+    assert_eq!(models, [all("platform"), all("actuators")].concat());
     assert_eq!(
-        estimates[2]["kept_actuators"],
+        estimates[3]["kept_actuators"],
         serde_json::json!(["leg1", "leg2", "leg3"])
     );
     for key in ["relative_error_percent", "condition_number", "equations"] {
@@ -97,6 +97,14 @@ fn the_document_has_its_keys() {
     ] {
         assert!(payload[key].is_number(), "{key}");
     }
+    let interval: Vec<f64> = payload["interval_95"]
+        .as_array()
+        .expect("two numbers")
+        .iter()
+        .map(number)
+        .collect();
+    let value = number(&payload["value"]);
+    assert!(interval.len() == 2 && interval[0] < value && value < interval[1]);
     assert!(
         (number(&payload["value"]) / 5.4 - 1.0).abs() < 0.02,
         "{payload}"

@@ -188,7 +188,7 @@ fn noise_is_covered_by_the_standard_deviations() {
     };
     let result = identify(&Point, &dataset, &settings(), &|_| {}).expect("a result");
     println!("{:#?}", result.estimates);
-    assert_eq!(result.estimates[2].kept_actuators, ["leg1", "leg3"]);
+    assert_eq!(result.estimates[3].kept_actuators, ["leg1", "leg3"]);
     for estimate in result
         .estimates
         .iter()

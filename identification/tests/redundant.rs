@@ -149,16 +149,18 @@ fn both_cases_and_the_payload_recover_the_truth() {
             models,
             [
                 (ModelKind::Platform, Stage::Base),
+                (ModelKind::Platform, Stage::Recommended),
                 (ModelKind::Platform, Stage::Essential),
                 (ModelKind::Actuators, Stage::Base),
+                (ModelKind::Actuators, Stage::Recommended),
                 (ModelKind::Actuators, Stage::Essential)
             ]
         );
-        assert_eq!(result.estimates[2].kept_actuators, [["leg1", "leg2"][kept]]);
+        assert_eq!(result.estimates[3].kept_actuators, [["leg1", "leg2"][kept]]);
         for estimate in &result.estimates {
             check(estimate);
         }
-        let partition = result.estimates[2].partition.as_ref().expect("kept");
+        let partition = result.estimates[3].partition.as_ref().expect("kept");
         assert!((partition.largest - 1.0).abs() < 1e-12);
         for cross in &result.cross_validation {
             assert!(cross.relative_error_percent < 1e-7);

@@ -56,7 +56,7 @@ fn finals(identification: &Identification) -> Vec<&Estimate> {
     let all = &identification.estimates;
     let has_later = |one: &Estimate| {
         let mut others = all.iter();
-        one.stage == Stage::Base
+        one.stage != Stage::Essential
             && others.any(|other| other.model == one.model && other.stage == Stage::Essential)
     };
     all.iter().filter(|one| !has_later(one)).collect()

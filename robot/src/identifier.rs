@@ -162,7 +162,7 @@ fn without_elimination(settings: &Settings, essential: bool) -> Settings {
 
 /// Leaves the base parameters only.
 fn without_essential(result: &mut Identification) {
-    let is_kept = |stage: Stage| stage != Stage::Essential;
+    let is_kept = |stage: Stage| stage == Stage::Base;
     result.estimates.retain(|one| is_kept(one.stage));
     result.cross_validation.retain(|one| is_kept(one.stage));
     let figures = &mut result.figures;

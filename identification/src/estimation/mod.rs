@@ -3,10 +3,14 @@
 //! - `base`: base parameters in the symmetric order (42)-(43);
 //! - `estimate`: ordinary or weighted least squares with standard deviations (44)-(48);
 //! - `correlation`, `fourier`: deviations under residuals that are correlated over time and lines;
-//! - `essential`: backward elimination of parameters that the data do not determine.
+//! - `intervals`: 95 % intervals that admit all of that and what was cancelled;
+//! - `essential`: backward elimination of parameters that the data do not determine;
+//! - `recommended`: the same as far as a test of the data goes.
 
 pub(crate) mod base;
 pub(crate) mod correlation;
 pub(crate) mod essential;
 pub(crate) mod estimate;
 mod fourier;
+pub(crate) mod intervals;
+pub(crate) mod recommended;

@@ -1,4 +1,4 @@
-//! Base and essential estimates of one projection, with what is to be said about them.
+//! Base, recommended and essential estimates of one projection, with what is to be said about them.
 
 use std::collections::BTreeMap;
 
@@ -16,6 +16,8 @@ use crate::{
         correlation::Noise,
         essential::{Removal, essential},
         estimate::{Estimation, estimate},
+        intervals::Intervals,
+        recommended::recommended,
     },
     regression::{
         elimination::eliminate,
@@ -38,6 +40,8 @@ const LARGEST_RELATIVE_ERROR_PERCENT: f64 = 50.0;
 pub struct Outcome {
     /// All base parameters.
     pub base: Estimate,
+    /// The fewest that the data do not refute.
+    pub recommended: Estimate,
     /// The essential parameters.
     pub essential: Estimate,
     /// What the user should know.
@@ -63,10 +67,14 @@ pub fn estimate_projection(
     let rest = essential(system, &selected, &names, &base, settings)?;
     warnings.extend(quality_warnings(system, &base, &rest.removals));
     let rest_noise = Noise::new(system, &rest.selected, &rest.estimation);
+    let intervals = Intervals::new(system, &selected, &base);
+    let chosen = recommended(system, (&selected, &names), &base, &intervals, settings)?;
+    let chosen_noise = Noise::new(system, &chosen.selected, &chosen.estimation);
     let context = Context {
         prepared,
         system,
         truth: truth(prepared, true_values),
+        intervals,
         kept_actuators: match system.projection {
             Projection::Platform => Vec::new(),
             _ => system.line_names.clone(),
@@ -80,6 +88,13 @@ pub fn estimate_projection(
             &selected,
             &names,
             (Vec::new(), None),
+        ),
+        recommended: context.estimate(
+            Stage::Recommended,
+            (chosen.estimation, chosen_noise),
+            &chosen.selected,
+            &chosen.names,
+            (Vec::new(), Some(chosen.stop)),
         ),
         essential: context.estimate(
             Stage::Essential,
@@ -127,6 +142,7 @@ struct Context<'a> {
     prepared: &'a Prepared,
     system: &'a System,
     truth: BTreeMap<usize, f64>,
+    intervals: Intervals,
     kept_actuators: Vec<String>,
     weighted: bool,
 }
@@ -186,6 +202,7 @@ impl Context<'_> {
                 relative_standard_deviation_percent: estimation
                     .relative_standard_deviations_percent[place],
                 correlated_standard_deviation: correlated[place],
+                interval_95: self.intervals.of(column).unwrap_or([value; 2]),
                 true_value,
                 error_percent: true_value
                     .filter(|truth| *truth != 0.0)
@@ -275,7 +292,7 @@ fn quality_warnings(system: &System, base: &Estimation, removals: &[Removal]) ->
         .collect();
     if !significant.is_empty() {
         warnings.push(format!(
-            "model {label}: the elimination cancelled parameters that the data determine ({}); raise r_sigma, keep significant parameters, or trust the base parameters",
+            "model {label}: the elimination cancelled parameters that the data determine ({}); raise `r_sigma`, take the recommended parameters, or leave out the essential ones with `essential = false`",
             significant.join(", ")
         ));
     }

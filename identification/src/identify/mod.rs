@@ -1,7 +1,7 @@
 //! The whole identification: runs in, parameters with their quality out.
 //!
 //! [`identify`] estimates case 1 and case 2 of a redundant robot, or the joint model of one without
-//! redundancy; each in base parameters, then in essential ones. [`study()`] compares case 2 for many
+//! redundancy; each in base, recommended and essential parameters. [`study()`] compares case 2 for many
 //! choices of kept actuators. [`prepare`] and [`estimate_projection`] are what both are made of: one
 //! pass over the data for all projections, then the estimates.
 
@@ -117,7 +117,9 @@ fn estimates(
         match outcome {
             Ok(outcome) => {
                 warnings.extend(outcome.warnings);
-                estimates.extend([outcome.base, outcome.essential].map(|one| (number, one)));
+                estimates.extend(
+                    [outcome.base, outcome.recommended, outcome.essential].map(|one| (number, one)),
+                );
             }
             Err(error) if matches!(projection, Projection::Actuators(_)) => {
                 warnings.push(format!("case 2 is left out: {error}"));

@@ -41,7 +41,7 @@ pub struct Identification {
     pub base_parameters: Vec<BaseParameter>,
     /// Standard parameters that have no effect on the model.
     pub without_effect: Vec<String>,
-    /// The estimates: for each model, base then essential.
+    /// The estimates: for each model base, recommended and essential.
     pub estimates: Vec<Estimate>,
     /// Every estimate on every run that was not identified from.
     pub cross_validation: Vec<CrossValidation>,
@@ -233,6 +233,9 @@ pub struct ParameterEstimate {
     /// σ under residuals that are correlated over time and between the lines (see the
     /// module `correlation`), never below the white one: the one to trust.
     pub correlated_standard_deviation: f64,
+    /// The 95 % interval of the true value, from the base parameters at every stage (see the
+    /// module `intervals`).
+    pub interval_95: [f64; 2],
     /// The regrouped true value, where it is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub true_value: Option<f64>,

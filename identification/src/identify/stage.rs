@@ -8,16 +8,19 @@ use serde::Serialize;
 pub enum Stage {
     /// All base parameters.
     Base,
+    /// The fewest that the data do not refute.
+    Recommended,
     /// Only parameters that the data determine.
     Essential,
 }
 
 impl Stage {
-    /// `base` or `essential`.
+    /// `base`, `recommended` or `essential`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Base => "base",
+            Self::Recommended => "recommended",
             Self::Essential => "essential",
         }
     }

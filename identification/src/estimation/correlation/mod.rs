@@ -121,7 +121,7 @@ impl Noise {
 }
 
 /// Pieces of a stretch that are short enough: first equation and number of equations.
-fn pieces(stretch: &Stretch) -> impl Iterator<Item = (&Stretch, usize, usize)> {
+pub(crate) fn pieces(stretch: &Stretch) -> impl Iterator<Item = (&Stretch, usize, usize)> {
     let rows = stretch.lines.first().map_or(0, DMatrix::nrows);
     let count = rows.div_ceil(LARGEST_PIECE).max(1);
     (0..count).map(move |piece| {
@@ -262,10 +262,10 @@ impl Line {
 }
 
 /// Some equations of a line.
-type View<'a> = DMatrixView<'a, f64, nalgebra::Const<1>, nalgebra::Dyn>;
+pub(crate) type View<'a> = DMatrixView<'a, f64, nalgebra::Const<1>, nalgebra::Dyn>;
 
 /// Y - W χ.
-fn residual(rows: &View<'_>, selected: &[usize], values: &[f64]) -> Vec<f64> {
+pub(crate) fn residual(rows: &View<'_>, selected: &[usize], values: &[f64]) -> Vec<f64> {
     let mut residual = rows.column(rows.ncols() - 1).clone_owned();
     for (&column, value) in selected.iter().zip(values) {
         residual.axpy(-value, &rows.column(column), 1.0);
@@ -343,4 +343,4 @@ fn spectrum(sums: &[f64], count: usize, interval: f64) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

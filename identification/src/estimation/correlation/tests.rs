@@ -56,7 +56,7 @@ fn system(a: f64, seed: u64) -> System {
     }
 }
 
-fn settings() -> Settings {
+pub(crate) fn settings() -> Settings {
     Settings {
         filter_order: 4,
         filter_cutoff_hz: 10.0,

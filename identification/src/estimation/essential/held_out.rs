@@ -91,6 +91,16 @@ impl HeldOut {
         self.error_percent_in(self, selected)
     }
 
+    /// ||Y - W χ||² of each fold, χ being estimated from the others.
+    pub(crate) fn squares(&self, selected: &[usize]) -> Option<Vec<f64>> {
+        let square = |fold: &Fold| {
+            let reduced = fold.others.reduced(selected);
+            let values = reduced.triangle.solve_upper_triangular(&reduced.rhs)?;
+            Some(fold.own.residual_norm(selected, values.as_slice()).powi(2))
+        };
+        self.folds.iter().map(square).collect()
+    }
+
     /// The relative error with the equations of another projection: its folds are predicted by what is
     /// estimated from the others of this one.
     pub(crate) fn error_percent_in(&self, other: &Self, selected: &[usize]) -> Option<f64> {

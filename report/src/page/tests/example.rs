@@ -40,6 +40,7 @@ fn parameter(name: &str, value: f64) -> ParameterEstimate {
         standard_deviation: 0.01 * value.abs(),
         relative_standard_deviation_percent: 1.0,
         correlated_standard_deviation: 0.02 * value.abs(),
+        interval_95: [value - 0.04 * value.abs(), value + 0.04 * value.abs()],
         true_value: Some(1.01 * value),
         error_percent: Some(-1.0),
     }

@@ -1,0 +1,125 @@
+//! Intervals of the estimates that contain the true value as often as they say.
+//!
+//! - `scores`: the covariance of the base estimate, whatever the residual is like in time and size,
+//!   and the degrees of freedom of its variances.
+//! - `repeats`: how much larger it is for what returns with the motion.
+//! - `distributions`: Student's distribution and its kin.
+//!
+//! The interval of base parameter i is χ_i ± t_0.975(ν_i) σ_i.
+//!
+//! A model with fewer parameters has smaller deviations, which hold if the cancelled parameters are
+//! exactly zero. Nobody knows that: they were cancelled because these data did not speak loudly for
+//! them. An interval that is shorter than the base model's and still contains the truth as often,
+//! whatever the cancelled parameters are, does not exist (Leeb and Pötscher, *Econometric Theory* 21,
+//! 2005). So the interval of a parameter in a smaller model is that of the base model. An estimate
+//! that lies outside of it has been moved there by cancelling, and the data speak against it.
+
+pub(crate) mod distributions;
+pub(crate) mod repeats;
+pub(crate) mod scores;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::estimate::Estimation;
+use crate::regression::system::System;
+use distributions::student_quantile;
+use repeats::ratios;
+use scores::{Context, Covariance};
+
+/// What an interval may miss.
+const MISSES: f64 = 0.05;
+
+/// The base estimates with what is known of their uncertainty.
+#[derive(Debug, Clone)]
+pub(crate) struct Intervals {
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    covariance: DMatrix<f64>,
+    /// Degrees of freedom of the covariance as a whole.
+    freedom: f64,
+    /// Ends of the 95 % intervals.
+    ends: Vec<[f64; 2]>,
+}
+
+impl Intervals {
+    /// Those of the base `estimation` of the columns `selected`. Without successive equations they are
+    /// those under white residuals.
+    pub(crate) fn new(system: &System, selected: &[usize], estimation: &Estimation) -> Self {
+        let context = Context::new(selected, estimation);
+        let columns = selected.to_vec();
+        let values = &estimation.values;
+        let Some(mut covariance) = Covariance::new(system, &context) else {
+            let square = estimation.residual_deviation.powi(2);
+            return Self::known(columns, values, context.inverse * square, f64::INFINITY);
+        };
+        let mut sorted = covariance.freedoms.clone();
+        sorted.sort_by(f64::total_cmp);
+        let freedom = sorted[sorted.len() / 2];
+        covariance.enlarge(&ratios(system, &context));
+        let ends = ends(values, &covariance.matrix, &covariance.freedoms);
+        Self {
+            columns,
+            values: values.clone(),
+            covariance: covariance.matrix,
+            freedom,
+            ends,
+        }
+    }
+
+    /// Those of estimates with a known covariance of so many degrees of freedom.
+    pub(crate) fn known(
+        columns: Vec<usize>,
+        values: &[f64],
+        covariance: DMatrix<f64>,
+        freedom: f64,
+    ) -> Self {
+        Self {
+            ends: ends(values, &covariance, &vec![freedom; values.len()]),
+            columns,
+            values: values.to_vec(),
+            covariance,
+            freedom,
+        }
+    }
+
+    /// The interval of a column; none that was not estimated.
+    pub(crate) fn of(&self, column: usize) -> Option<[f64; 2]> {
+        let place = self.columns.iter().position(|own| *own == column)?;
+        self.ends.get(place).copied()
+    }
+
+    /// χᵀ V^-1 χ of some columns, and the degrees of freedom of V; none where V is singular.
+    pub(crate) fn distance(&self, columns: &[usize]) -> Option<(f64, f64)> {
+        let place = |column: &usize| self.columns.iter().position(|own| own == column);
+        let places: Vec<usize> = columns.iter().map(place).collect::<Option<_>>()?;
+        let matrix = self.covariance.select_rows(&places).select_columns(&places);
+        // Divided by their deviations, so that units do not matter.
+        let scales = matrix.diagonal().map(|variance| 1.0 / variance.sqrt());
+        let scaled = DMatrix::from_fn(places.len(), places.len(), |i, j| {
+            matrix[(i, j)] * scales[i] * scales[j]
+        });
+        let values = scales.zip_map(
+            &DVector::from_iterator(places.len(), places.iter().map(|place| self.values[*place])),
+            |scale, value| scale * value,
+        );
+        let solved = scaled.cholesky()?.solve(&values);
+        Some((values.dot(&solved), self.freedom))
+    }
+}
+
+/// χ ± t σ.
+fn ends(values: &[f64], covariance: &DMatrix<f64>, freedoms: &[f64]) -> Vec<[f64; 2]> {
+    let variances = covariance.diagonal();
+    let spreads = variances.iter().zip(freedoms);
+    let ends = values
+        .iter()
+        .zip(spreads)
+        .map(|(value, (variance, freedom))| {
+            let half = student_quantile(MISSES, *freedom) * variance.sqrt();
+            [value - half, value + half]
+        });
+    ends.collect()
+}
+
+#[cfg(test)]
+mod tests;

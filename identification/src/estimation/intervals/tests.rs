@@ -1,0 +1,134 @@
+//! How often the intervals of synthetic experiments contain the truth.
+
+use super::Intervals;
+use crate::{
+    estimation::{correlation::tests::settings, estimate::estimate},
+    regression::{
+        factor::Factor,
+        projection::Projection,
+        system::{Stretch, System},
+    },
+};
+use nalgebra::DMatrix;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+
+const TRUTH: [f64; 3] = [2.0, -1.0, 0.5];
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// Correlation of the residual from one instant to the next.
+    memory: f64,
+    /// How much larger the residual is where the first column is large.
+    growth: f64,
+    /// A part of the residual that returns with the motion.
+    repeated: f64,
+}
+
+/// Two lines with periodic columns and a constant one, and residuals that the lines share in
+/// part.
+fn system(kind: Kind, samples: usize, seed: u64) -> System {
+    let mut generator = Pcg64::seed_from_u64(seed);
+    let mut white = || {
+        (0..12)
+            .map(|_| generator.random_range(-0.5..0.5))
+            .sum::<f64>()
+    };
+    let harmonics: Vec<[f64; 2]> = (0..40).map(|_| [white(), white()]).collect();
+    let mut state = [0.0; 2];
+    let mut lines = vec![DMatrix::zeros(samples, 4); 2];
+    for k in 0..samples {
+        let common = white();
+        let angle = std::f64::consts::TAU * k as f64 / 100.0;
+        for (line, rows) in lines.iter_mut().enumerate() {
+            state[line] = kind.memory * state[line] + 0.6 * common + 0.8 * white();
+            let wave = |harmonic: usize, phase: f64| {
+                let phase = phase * (harmonic * harmonic) as f64 + line as f64;
+                (harmonic as f64 * angle + phase).sin() / (harmonic as f64).sqrt()
+            };
+            let slow: f64 = (1..10).map(|harmonic| wave(harmonic, 0.7)).sum();
+            let fast: f64 = (4..16).map(|harmonic| wave(harmonic, 1.9)).sum();
+            let row = [slow, 1.0, fast];
+            let waves = harmonics.iter().enumerate().map(|(h, [a, b])| {
+                let (sin, cos) = ((h + 1) as f64 * angle + line as f64).sin_cos();
+                a * sin + b * cos
+            });
+            let repeated = kind.repeated * waves.sum::<f64>();
+            let y: f64 = row.iter().zip(TRUTH).map(|(w, x)| w * x).sum();
+            let noise = state[line] * (1.0 + kind.growth * row[0] * row[0]);
+            for (column, value) in row.into_iter().enumerate() {
+                rows[(k, column)] = value;
+            }
+            rows[(k, 3)] = y + (1 + line) as f64 * (noise + repeated);
+        }
+    }
+    let factor = |rows: &DMatrix<f64>| {
+        let mut factor = Factor::new(3);
+        factor.push(rows);
+        factor
+    };
+    System {
+        projection: Projection::Platform,
+        line_names: vec![String::from("x"), String::from("y")],
+        lines: lines.iter().map(factor).collect(),
+        parts: Vec::new(),
+        stretches: vec![Stretch { run: 0, lines }],
+        partition: None,
+    }
+}
+
+/// The intervals of one draw.
+fn intervals(kind: Kind, samples: usize, seed: u64) -> Vec<[f64; 2]> {
+    let system = system(kind, samples, seed);
+    let selected = [0, 1, 2];
+    let found = estimate(&system, &selected, &settings()).expect("an estimate");
+    Intervals::new(&system, &selected, &found).ends
+}
+
+#[test]
+fn intervals_contain_the_truth_as_often_as_they_say() {
+    const DRAWS: u64 = 100;
+    for (memory, growth, repeated) in [
+        (0.0, 0.0, 0.0),
+        (0.7, 0.0, 0.0),
+        (0.0, 1.0, 0.0),
+        (0.0, 0.0, 0.3),
+    ] {
+        let kind = Kind {
+            memory,
+            growth,
+            repeated,
+        };
+        let mut covering = [0; 3];
+        for seed in 0..DRAWS {
+            for (i, [low, high]) in intervals(kind, 600, seed).into_iter().enumerate() {
+                covering[i] += usize::from((low..=high).contains(&TRUTH[i]));
+            }
+        }
+        let rates = covering.map(|count| f64::from(count as u32) / DRAWS as f64);
+        println!("memory {memory}, growth {growth}, repeated {repeated}: {rates:.3?}");
+        let mean = rates.iter().sum::<f64>() / 3.0;
+        // A residual of a few sharp frequencies tells little of its own size.
+        let least = if repeated > 0.0 { 0.88 } else { 0.925 };
+        assert!((least..0.99).contains(&mean), "{mean}");
+    }
+}
+
+#[test]
+fn more_periods_tell_no_more_of_what_repeats_itself() {
+    let kind = Kind {
+        memory: 0.0,
+        growth: 0.0,
+        repeated: 1.0,
+    };
+    let width = |samples| -> f64 {
+        let draws = (0..20).map(|seed| intervals(kind, samples, seed));
+        let first = draws.map(|intervals| intervals[0][1] - intervals[0][0]);
+        first.sum()
+    };
+    let (few, many) = (width(600), width(2400));
+    println!("widths of 6 and 24 periods: {few:.2}, {many:.2}");
+    // Of white residuals it would be one half.
+    assert!(many > 0.75 * few);
+}

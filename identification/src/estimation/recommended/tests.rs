@@ -1,0 +1,45 @@
+//! The level of the choice, and what it must not cancel.
+
+use super::{grows, refuted};
+use crate::estimation::intervals::Intervals;
+use nalgebra::DMatrix;
+
+/// Estimates of unit deviation.
+fn intervals(values: &[f64], freedom: f64) -> Intervals {
+    let count = values.len();
+    let columns = (0..count).collect();
+    Intervals::known(columns, values, DMatrix::identity(count, count), freedom)
+}
+
+#[test]
+fn what_is_far_from_zero_is_not_cancelled() {
+    let known = intervals(&[0.3, -1.1, 6.0], 60.0);
+    assert_eq!(refuted(&known, &[0]), None);
+    assert_eq!(refuted(&known, &[0, 1]), None);
+    assert!(refuted(&known, &[0, 1, 2]).is_some_and(|why| why.contains("F = ")));
+}
+
+#[test]
+fn many_small_parameters_together_are_more_than_chance() {
+    // Each alone is within its interval.
+    let known = intervals(&[1.9; 12], 200.0);
+    assert_eq!(refuted(&known, &[0]), None);
+    let all: Vec<usize> = (0..12).collect();
+    assert!(refuted(&known, &all).is_some());
+}
+
+#[test]
+fn few_degrees_of_freedom_cannot_test_many_parameters() {
+    let known = intervals(&[0.0; 12], 20.0);
+    let all: Vec<usize> = (0..12).collect();
+    assert!(refuted(&known, &all).is_some_and(|why| why.contains("more than these data can test")));
+    assert_eq!(refuted(&known, &all[..10]), None);
+}
+
+#[test]
+fn held_out_errors_grow_where_all_folds_say_so() {
+    assert!(grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 2.2, 1.8, 1.3]));
+    assert!(!grows(&[1.0, 2.0, 1.5, 1.0], &[1.2, 1.8, 1.6, 0.9]));
+    // Two folds have no spread to speak of.
+    assert!(!grows(&[1.0, 2.0], &[1.5, 2.5]));
+}
