@@ -1,0 +1,76 @@
+//! A robot whose virtual experiments are drawn.
+
+use crate::Failure;
+use overact::{Info, Model};
+use overact_identification::{Projection, Settings};
+use overact_robot::{InterpretedRobot, Robot};
+use overact_simulation::Experiment;
+use std::{collections::BTreeMap, path::Path};
+
+/// A robot with its virtual experiment and the settings of its identification.
+pub struct Subject {
+    robot: Robot,
+    /// Its experiment, without the runs that are held out.
+    pub experiment: Experiment,
+    /// The true values by name.
+    pub truth: BTreeMap<String, f64>,
+    /// How it is identified.
+    pub settings: Settings,
+}
+
+impl Subject {
+    /// Reads the description of a robot.
+    ///
+    /// # Errors
+    /// A description that is wrong or has no virtual experiment.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        let said = |error: overact_robot::Error| error.render(false);
+        let robot = Robot::from_toml(path).map_err(said)?;
+        let mut experiment = robot.experiment().map_err(said)?.plan().clone();
+        let held = robot.held_out();
+        experiment.runs.retain(|run| !held.contains(&run.name));
+        Ok(Self {
+            settings: robot.settings(experiment.sampling_hz),
+            truth: robot.true_values().unwrap_or_default(),
+            experiment,
+            robot,
+        })
+    }
+
+    /// The model.
+    #[must_use]
+    pub const fn model(&self) -> &InterpretedRobot {
+        self.robot.model()
+    }
+
+    /// What is known of the robot.
+    #[must_use]
+    pub fn info(&self) -> Info<'_> {
+        self.model().info()
+    }
+
+    /// Shortens all runs to a part of their duration.
+    pub fn shorten(&mut self, part: f64) {
+        self.experiment.duration_s *= part;
+        for duration in self
+            .experiment
+            .runs
+            .iter_mut()
+            .flat_map(|run| &mut run.duration_s)
+        {
+            *duration *= part;
+        }
+    }
+
+    /// Case 1 and case 2, or the joint model of a robot without redundancy.
+    #[must_use]
+    pub fn projections(&self) -> Vec<Projection> {
+        let sizes = self.info().sizes;
+        if sizes.actuators > sizes.dof {
+            let kept = self.settings.kept_actuators.clone();
+            vec![Projection::Platform, Projection::Actuators(kept)]
+        } else {
+            vec![Projection::Joints]
+        }
+    }
+}

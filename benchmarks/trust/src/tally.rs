@@ -1,0 +1,137 @@
+//! Coverage over draws.
+//!
+//! A draw contributes the fraction of its intervals that contain the truth. Draws are independent,
+//! their parameters are not, so the coverage is the mean of the fractions and its deviation that of a
+//! mean of as many values as there are draws, by Student's distribution.
+
+use crate::{Counted, Noise};
+use overact_identification::{ModelKind, Stage};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The coverage of one cell of the table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Cell {
+    /// Name of the robot.
+    pub robot: String,
+    /// Which inputs are explained.
+    pub model: ModelKind,
+    /// Which parameters are estimated.
+    pub stage: Stage,
+    /// Multiples of the description's noise.
+    pub noise: Noise,
+    /// Number of draws.
+    pub draws: usize,
+    /// Mean number of parameters.
+    pub parameters: f64,
+    /// Percent of the intervals that contain the truth.
+    pub coverage_percent: f64,
+    /// 99.9 % interval of that, percent.
+    pub coverage_interval_percent: [f64; 2],
+    /// Median width of the intervals by those of the base model.
+    pub relative_width: f64,
+    /// Root mean square of the errors by half of the width, times 1.96: 1 for intervals of the right
+    /// width and many degrees of freedom.
+    pub spread: f64,
+    /// The parameter whose intervals contain the truth least often, and how often, percent.
+    pub worst: (String, f64),
+}
+
+/// Collects the draws of one robot.
+#[derive(Debug, Default)]
+pub struct Tally {
+    draws: Vec<Vec<Counted>>,
+}
+
+impl Tally {
+    /// Adds a draw.
+    pub fn add(&mut self, draw: Vec<Counted>) {
+        self.draws.push(draw);
+    }
+
+    /// The cells of all models, stages and noises, in the order in which they were counted.
+    #[must_use]
+    pub fn cells(&self, robot: &str) -> Vec<Cell> {
+        let first = self.draws.first().map_or(&[][..], Vec::as_slice);
+        first.iter().map(|key| self.cell(robot, key)).collect()
+    }
+
+    fn cell(&self, robot: &str, key: &Counted) -> Cell {
+        let same =
+            |one: &&Counted| (one.noise, one.model, one.stage) == (key.noise, key.model, key.stage);
+        let own: Vec<&Counted> = self.draws.iter().flatten().filter(same).collect();
+        let fractions: Vec<f64> = own.iter().filter_map(|one| fraction(one)).collect();
+        let (coverage, half) = mean(&fractions);
+        let all = || own.iter().flat_map(|one| &one.parameters);
+        let squares: f64 = all().map(|one| one.miss.powi(2)).sum();
+        let mut widths: Vec<f64> = all().map(|one| one.relative_width).collect();
+        let mut names: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for one in all() {
+            let count = names.entry(one.name.as_str()).or_default();
+            count.0 += usize::from(one.covers);
+            count.1 += 1;
+        }
+        // A parameter that is rarely among the chosen ones says little.
+        let often = names
+            .iter()
+            .filter(|(_, (_, count))| 2 * count >= own.len());
+        let rates = often.map(|(name, (hits, count))| (*name, *hits as f64 / *count as f64));
+        let worst = rates
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or(("", f64::NAN));
+        Cell {
+            robot: robot.to_owned(),
+            model: key.model,
+            stage: key.stage,
+            noise: key.noise,
+            draws: own.len(),
+            parameters: all().count() as f64 / own.len() as f64,
+            coverage_percent: 100.0 * coverage,
+            coverage_interval_percent: [
+                100.0 * (coverage - half).max(0.0),
+                100.0 * (coverage + half).min(1.0),
+            ],
+            relative_width: median(&mut widths),
+            spread: 1.96 * (squares / all().count() as f64).sqrt(),
+            worst: (worst.0.to_owned(), 100.0 * worst.1),
+        }
+    }
+}
+
+/// The part of a draw's intervals that contain the truth.
+fn fraction(one: &Counted) -> Option<f64> {
+    let count = one.parameters.len();
+    let covering = one.parameters.iter().filter(|one| one.covers).count();
+    (count > 0).then(|| covering as f64 / count as f64)
+}
+
+/// The mean of independent values, and half of its 99.9 % interval.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let deviation = (squares / (count - 1.0) / count).sqrt();
+    (mean, quantile_999(count - 1.0) * deviation)
+}
+
+/// The value that Student's distribution of so many degrees of freedom exceeds in magnitude one time
+/// in a thousand, by the first terms of its expansion about the normal distribution (Abramowitz and
+/// Stegun 26.7.5), right to 1 % from 10 degrees on.
+fn quantile_999(freedom: f64) -> f64 {
+    let x = 3.290_526_731_491_896_f64;
+    let terms = [
+        (x.powi(3) + x) / 4.0,
+        (5.0 * x.powi(5) + 16.0 * x.powi(3) + 3.0 * x) / 96.0,
+        (3.0 * x.powi(7) + 19.0 * x.powi(5) + 17.0 * x.powi(3) - 15.0 * x) / 384.0,
+    ];
+    let mut power = 1.0;
+    terms.iter().fold(x, |sum, term| {
+        power *= freedom;
+        sum + term / power
+    })
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
