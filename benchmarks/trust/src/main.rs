@@ -3,7 +3,12 @@
 use clap::Parser;
 use overact_trust::{Cell, Counted, Failure, Noise, Subject, Tally, measure, table};
 use rayon::prelude::*;
-use std::{fs, path::PathBuf, process::ExitCode, time::Instant};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
 
 /// Counts how often 95 % intervals contain the truth.
 #[derive(Debug, Parser)]
@@ -42,7 +47,7 @@ fn noise(text: &str) -> Result<Noise, String> {
     })
 }
 
-fn cells(arguments: &Arguments, path: &PathBuf) -> Result<Vec<Cell>, Failure> {
+fn cells(arguments: &Arguments, path: &Path) -> Result<Vec<Cell>, Failure> {
     let mut subject = Subject::load(path)?;
     subject.shorten(arguments.part);
     let start = Instant::now();
